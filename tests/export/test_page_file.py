@@ -344,3 +344,48 @@ def test_buffers_keep_every_bit():
         assert back.tolist() == np.array(numbers, kind).tolist()
     told = resources.resource(lang.Buffer([(1.0, 2.0, 3.0)]), Buffer(distal.ir.types.VEC3))
     assert (told["size"], told["components"]) == ([1], 3)
+
+
+def test_a_page_by_paths_has_two_programs_more_and_other_pages_nothing(tmp_path):
+    scene = distal.Scene(distal.Sphere(0.5), name="ball")
+    pages = {}
+    for mode in ("direct", "path"):
+        path = tmp_path / f"{mode}.html"
+        scene.export(path, mode=mode, poster=False, views=["color", "normal"])
+        pages[mode] = Parts(path.read_text(encoding="utf-8")).payload
+    plain, traced = pages["direct"], pages["path"]
+    assert [view.get("film") for view in plain["views"]] == [None, None]
+    assert "Film" not in plain["resources"]
+    film = traced["views"][0]["film"]
+    assert film["trace"] != film["show"] != traced["views"][0]["program"]
+    assert film["name"] in traced["resources"]
+    assert "film" not in traced["views"][1]
+    # A scene that asks for paths itself has them without being told.
+    asked = distal.Scene(distal.Sphere(0.5), mode="path")
+    asked.export(tmp_path / "asked.html", poster=False, views=["color"])
+    assert Parts((tmp_path / "asked.html").read_text()).payload["views"][0]["film"]
+
+
+def test_the_command_takes_a_mode(tmp_path):
+    scene = tmp_path / "ball.py"
+    scene.write_text("from distal import Scene, Sphere\nscene = Scene(Sphere(0.5))\n")
+    page, text = tmp_path / "ball.html", tmp_path / "ball.frag"
+
+    def run(*arguments):
+        made = CliRunner().invoke(application, ["export", *map(str, arguments)])
+        return made.exit_code, made.output
+
+    options = ("--no-poster", "--views", "color")
+    assert run(scene, "-o", page, "--mode", "path", *options)[0] == 0
+    assert Parts(page.read_text(encoding="utf-8")).payload["views"][0]["film"]
+    code, said = run(scene, "-o", page, "--mode", "rays")
+    assert (code, said) == (2, "error: there is no mode 'rays'; modes: direct, path\n")
+    code, said = run(scene, "-o", text, "--mode", "path")
+    assert (code, said) == (2, f"error: --mode is for pages, and {text} is a text (glsl-es300)\n")
+    image = tmp_path / "image.py"
+    image.write_text(RINGS)
+    code, said = run(image, "-o", page, "--mode", "path")
+    assert (code, said) == (
+        1,
+        "error: modes are for scenes and shapes; 'picture' is an @image\n",
+    )

@@ -195,3 +195,19 @@ def test_without_the_extra_the_mend_is_named(monkeypatch):
     with pytest.raises(ImportError) as caught:
         ball().show()
     assert str(caught.value) == "anywidget is missing: pip install 'distal[notebook]'"
+
+
+def test_a_scene_by_paths_has_the_player_of_paths_and_renders_so():
+    widget = ball().show(size=(24, 16), mode="path")
+    assert "Film_offset" in widget._esm
+    assert "Film_offset" not in shown_ball()._esm
+    views = {view["name"]: view for view in widget.payload["views"]}
+    assert views["color"]["film"]["name"] == "Film"
+    assert "film" not in views["normal"]
+    picture = widget.render(samples=3)
+    assert (picture.provenance.mode, picture.stats["samples"]) == ("path", 3)
+    assert widget.render(time_limit=1e-6, size=(8, 8)).stats["samples"] == 1
+    widget.view = "normal"
+    assert widget.render().provenance.mode == "direct"
+    with pytest.raises(ValueError, match="there is no mode 'rays'; modes: direct, path"):
+        ball().show(mode="rays")

@@ -1,4 +1,4 @@
-"""Pages with paths in a real browser: the film's light is the CPU's, and starts anew with the camera."""
+"""Pages with paths in a real browser: the light is that of the CPU, and begins anew with a move."""
 
 from __future__ import annotations
 
@@ -53,6 +53,7 @@ _PICTURE = """async (samples) => {
   const bytes = new Uint8Array(await blob.slice().arrayBuffer());
   return btoa(Array.from(bytes, (b) => String.fromCharCode(b)).join(""));
 }"""
+
 
 @pytest.fixture(scope="module", autouse=True)
 def browser():

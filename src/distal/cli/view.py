@@ -17,6 +17,7 @@ from distal.cli.base import (
     Device,
     DeviceOption,
     LookOption,
+    ModeOption,
     SceneArgument,
     SetOption,
     SizeOption,
@@ -46,6 +47,7 @@ def view(
     ] = 1.0,
     paused: Annotated[bool, typer.Option("--paused", help="Begin with the time paused.")] = False,
     look: LookOption = None,
+    mode: ModeOption = None,
 ) -> None:
     """Show a scene in a window, and reload it whenever its file is saved. H shows the keys."""
     from distal.lang.render_options import RenderOptions
@@ -72,6 +74,7 @@ def view(
             scale=scale,
             paused=paused,
             look=look,
+            mode=mode,
         )
     except ValueError as error:
         raise UsageError(str(error)) from None

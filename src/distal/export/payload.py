@@ -25,7 +25,7 @@ from distal.export.page_options import PageOptions
 from distal.export.resources import resource, table
 from distal.frontend import lower
 from distal.ir.nodes import Module
-from distal.ir.types import Buffer, Texture
+from distal.ir.types import TEXTURE_2D, Buffer, Texture
 from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
@@ -247,7 +247,7 @@ class PagePrograms:
             CompileError: WebGL 2 cannot run them.
         """
         trace, show = (self._added_program(image) for image in (added, shown))
-        name = self._resource("Film", FILM, FILM.__distal_type__)
+        name = self._resource("Film", FILM, TEXTURE_2D)
         return {"trace": trace, "show": show, "name": name}
 
     def add_guide(self, guide: Guide) -> int:

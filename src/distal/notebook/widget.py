@@ -14,7 +14,7 @@ from typing import Any, Unpack
 import anywidget
 import traitlets
 
-from distal.export.page import PLAYER
+from distal.export.page import PLAYER, player_of
 from distal.export.page_options import PageOptions
 from distal.export.payload import payload
 from distal.images.picture import Picture
@@ -28,6 +28,7 @@ from distal.lang.render_options import (
     checked_time,
 )
 from distal.scene.steering import Steering
+from distal.scene.view_options import ViewOptions
 from distal.scene.viewing.viewable import Viewable, viewable
 
 
@@ -64,6 +65,7 @@ class LiveView(anywidget.AnyWidget):
         playing: bool | None = None,
         view: str = "color",
         panel: bool = True,
+        mode: str | None = None,
     ) -> None:
         """Show a scene, a shape or an ``@image`` as a live picture.
 
@@ -75,13 +77,14 @@ class LiveView(anywidget.AnyWidget):
             playing: Whether the time runs; None: if the picture depends on it.
             view: The initial view.
             panel: Whether to show controls beside the picture.
+            mode: How light is computed: "direct" or "path"; None: as the scene says.
 
         Raises:
             CompileError: The scene code has mistakes, or uses something that WebGL lacks.
             ValueError: A value is out of its parameter's range, or there is no such view.
         """
         size, time = checked_size(size), checked_time(time)
-        self._seen: Viewable = viewable(obj, params, time)
+        self._seen: Viewable = viewable(obj, params, time).in_mode(mode)
         if view not in self._seen.views:
             raise ValueError(f"there is no view '{view}'; views: {', '.join(self._seen.views)}")
         values = self._checked(params)
@@ -89,6 +92,8 @@ class LiveView(anywidget.AnyWidget):
         made = payload(self._seen, PageOptions(size=size, params=values, time=time, panel=panel))
         # Without views that WebGL cannot show.
         self._views = [shown["name"] for shown in made["views"]]
+        if (player := player_of(self._seen)) != PLAYER:
+            self._esm = player.read_text(encoding="utf-8")
         super().__init__(
             params={**{p.name: _plain(p.default) for p in self._seen.parameters}, **values},
             time=time,
@@ -119,6 +124,8 @@ class LiveView(anywidget.AnyWidget):
         mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
         index: int = 0,
         seed: int = 0,
+        samples: int | None = None,
+        time_limit: float | None = None,
         freeze: bool = False,
     ) -> Picture:
         """Render what the widget shows now in Python, as a ``Picture`` to save or to measure.
@@ -132,8 +139,11 @@ class LiveView(anywidget.AnyWidget):
             mouse: The frame's mouse.
             index: The number of the frame.
             seed: The seed of random numbers.
+            samples: Samples in each pixel.
+            time_limit: In mode "path": seconds after which no more samples are begun.
             freeze: Compile all numbers as constants.
         """
+        limits = ViewOptions(view=self.view, time_limit=time_limit)
         options = RenderOptions(
             size=size or self._size,
             time=self.time,
@@ -145,7 +155,9 @@ class LiveView(anywidget.AnyWidget):
             mouse=mouse,
             index=index,
             seed=seed,
+            samples=samples,
             freeze=freeze,
+            refinement=limits.refinement(self._seen.mode, samples),
         )
         moved = _as_steering(self.steering) if self._seen.steers else None
         return self._seen.render(options, view=self.view, steering=moved)

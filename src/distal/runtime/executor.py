@@ -145,17 +145,9 @@ class PythonExecutor:
             options = replace(options, settings={film.SAMPLES: options.samples})
         adaptive = isinstance(image, Composed) and image.adaptive
         refined = isinstance(image, Composed) and image.refined
-        with paused_collection():
-            run = self._parts(image)
-            parts = run.parts
-            values, others = _uniforms(run.declared, options)
-            if options.freeze:
-                numbers = run.declared.number_values(options.settings)
-                kept = film.PASS_NUMBERS if adaptive or refined else ()
-                parts = tuple(part.frozen(numbers, kept) for part in parts)
-            kernels = [self.kernels.kernel(part, device, 32) for part in parts]
-        moved = moved_resources(parts[0].resources, values, options.time)
-        passes = Passes(kernels, parts, run.declared, (values, others), options, moved)
+        passes = self.passes(image, replace(options, device=device))
+        parts, kernels = passes.parts, passes.kernels
+        values, others = passes.values
         contrast = self._contrast(device) if adaptive else None
         compiled = time.perf_counter()
         linear: NDArray[np.float32] | None = None
@@ -203,6 +195,29 @@ class PythonExecutor:
             device=device,
         )
         return Picture(pixels, origin, stats, linear, {} if exposed is None else _layers(exposed))
+
+    def passes(self, image: Image | Composed, options: RenderOptions) -> Passes:
+        """Return the compiled kernels of a picture, which renders its passes one by one.
+
+        Args:
+            image: The picture.
+            options: As for ``render``; the device is not "auto".
+
+        Raises:
+            DeviceError: The device is missing.
+        """
+        is_in_passes = isinstance(image, Composed) and (image.adaptive or image.refined)
+        with paused_collection():
+            run = self._parts(image)
+            parts = run.parts
+            values, others = _uniforms(run.declared, options)
+            if options.freeze:
+                numbers = run.declared.number_values(options.settings)
+                kept = film.PASS_NUMBERS if is_in_passes else ()
+                parts = tuple(part.frozen(numbers, kept) for part in parts)
+            kernels = [self.kernels.kernel(part, options.device, 32) for part in parts]
+        moved = moved_resources(parts[0].resources, values, options.time)
+        return Passes(kernels, parts, run.declared, (values, others), options, moved)
 
     def _contrast(self, device: str) -> tuple[Kernel, Mapping[str, Any]]:
         """Return the kernel of ``film.contrast``, and its buffer by name."""

@@ -124,7 +124,7 @@ class Passes:
         empty = accumulation.Film.empty(*size, signed=refinement.signed)
         seen = Previews(preview)
         if refinement.film is None:
-            rendered = partial(self._pass, refinement)
+            rendered = partial(self.pass_of, refinement)
             with seen.of(empty):
                 accumulation.accumulate(empty, rendered, refinement, seen.show, progress)
             return empty
@@ -137,16 +137,22 @@ class Passes:
 
         try:
             with seen.of(exposed):
-                rendered = partial(self._pass, refinement)
+                rendered = partial(self.pass_of, refinement)
                 accumulation.accumulate(exposed, rendered, refinement, watch, progress)
         finally:
             file.write(exposed)
         return exposed
 
-    def _pass(
+    def pass_of(
         self, refinement: Refinement, asked: Pass, progress: Progress | None
     ) -> NDArray[np.float32]:
-        """Render a pass; see ``accumulation.Rendered``."""
+        """Render a pass; see ``accumulation.Rendered``.
+
+        Args:
+            refinement: What is shared by all samples.
+            asked: The samples.
+            progress: Called with the finished share, from 0 to 1.
+        """
         numbers: dict[str, Any] = {film.FIRST_SAMPLE: asked.first, film.SAMPLES: asked.count}
         if refinement.shutter > 0.0:
             numbers["time"] = self._time_of(asked.first, refinement.shutter)

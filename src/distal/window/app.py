@@ -237,6 +237,10 @@ class Application:
                 words.append(f"{self._scheduler.frames_per_s:.0f} fps")
             words.append(f"{made.seconds * 1000:.1f} ms")
             words.append("{}x{}".format(*shown.pixels))
+            if made.samples:
+                words.append(f"{made.samples} samples, {made.rate:.{made.rate < 10:d}f}/s")
+            elif shown.shot.mode == "path":
+                words.append("direct light")
         words.append(self._scheduler.renderer.device)
         place = session.camera.known_place(session.moment(now))
         if place is not None and session.steering != STILL and not session.playing:
@@ -391,13 +395,16 @@ class Application:
         """Save the current picture at the size of a frame in the window."""
         session, size = self._session, self._frame_size()
         shot, viewable = session.shot(time.monotonic()), session.viewable
-        renderer, title = self._scheduler.renderer, self._source.title
+        renderer, title, film = self._scheduler.renderer, self._source.title, self._scheduler.film
         samples = renderer.samples[-1] if viewable.is_sampled(shot.view) else 1
         options = render_options(shot, size, renderer.device, samples=samples)
 
         def job(_: object) -> Path:
             path = free_name(Path.cwd(), title, shot)
-            picture(viewable, shot, options).save(path)
+            if shot.mode == "path":
+                film.picture(viewable, shot, size).save(path)
+            else:
+                picture(viewable.in_mode("direct"), shot, options).save(path)
             return path
 
         def done(result: Path | BaseException) -> None:

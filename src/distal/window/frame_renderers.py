@@ -41,12 +41,16 @@ class RenderedFrame:
         texture: A texture of wgpu; None if the frame is pixels.
         seconds: The rendering time without compilation.
         share: The fraction that was rendered; below 1 it was cancelled, and there is no picture.
+        samples: The samples of each pixel of a picture by paths; 0 for other pictures.
+        rate: How many of them are rendered in a second.
     """
 
     pixels: NDArray[np.uint8] | None = None
     texture: Any = None
     seconds: float = 0.0
     share: float = 1.0
+    samples: int = 0
+    rate: float = 0.0
 
 
 class FrameRenderer(Protocol):
@@ -124,7 +128,7 @@ def picture(viewable: Viewable, shot: Shot, options: RenderOptions) -> Picture:
 
 
 class PixelRenderer:
-    """Renders pixels, on any device that renders to memory."""
+    """Renders pixels by direct light, on any device that renders to memory."""
 
     samples: tuple[int | None, ...] = (1, None)
 
@@ -133,7 +137,8 @@ class PixelRenderer:
 
     def prepare(self, viewable: Viewable, shot: Shot) -> None:
         """Compile what a shot needs."""
-        picture(viewable, shot, render_options(shot, _SMALLEST, self.device))
+        direct = viewable.in_mode("direct")
+        picture(direct, shot, render_options(shot, _SMALLEST, self.device))
 
     def render(
         self,
@@ -164,7 +169,8 @@ class PixelRenderer:
 
         options = render_options(shot, size, self.device, samples=samples)
         try:
-            made = picture(viewable, shot, replace(options, cancel=cancel, progress=progress))
+            options = replace(options, cancel=cancel, progress=progress)
+            made = picture(viewable.in_mode("direct"), shot, options)
         except Cancelled:
             return RenderedFrame(seconds=time.perf_counter() - begin, share=min(done, 0.999))
         begin = time.perf_counter()

@@ -6,12 +6,14 @@ rate. Does not depend on windows or keys.
 
 from __future__ import annotations
 
+import threading
 import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
+from distal.window.film_renderer import MOST_SAMPLES, FilmRenderer
 from distal.window.frame_renderers import FrameRenderer, RenderedFrame
 from distal.window.resolution import ResolutionChooser
 from distal.window.session import Shot
@@ -37,7 +39,8 @@ class FrameRequest:
         shot: Time, parameters, view and camera.
         size: Width and height of the window's picture in pixels.
         share: The fraction of width and height that is rendered.
-        refinement: How often a still was refined: the index in the samples of the renderer.
+        refinement: How often a still was refined: the index in the samples of the renderer; in mode
+            "path" 0 is direct light, and each further frame has more samples.
     """
 
     viewable: Viewable
@@ -70,6 +73,7 @@ class FrameScheduler:
         shown: The last frame that was finished.
         failed: The request that could not be rendered; it is not tried again.
         made: The rendered frame of ``shown``.
+        film: Renders stills by paths.
     """
 
     def __init__(
@@ -84,6 +88,7 @@ class FrameScheduler:
         self.made: RenderedFrame | None = None
         self.failed: FrameRequest | None = None
         self._worker = worker
+        self.film = FilmRenderer(renderer.device)
         self._on_finished, self._on_failure = on_finished, on_failure
         self._resolution = ResolutionChooser()
         self._in_progress: FrameRequest | None = None
@@ -154,6 +159,9 @@ class FrameScheduler:
         return request.quality >= (1.0, self._last_refinement(request))
 
     def _last_refinement(self, request: FrameRequest) -> int:
+        if request.shot.mode == "path":
+            is_finished = self.made is not None and self.made.samples >= MOST_SAMPLES
+            return request.refinement + (0 if is_finished else 1)
         is_sampled = request.viewable.is_sampled(request.shot.view)
         return len(self.renderer.samples) - 1 if is_sampled else 0
 
@@ -186,16 +194,15 @@ class FrameScheduler:
 
     def _begin(self, request: FrameRequest) -> None:
         self._in_progress, self._begun = request, time.monotonic()
-        self._worker.submit(
-            lambda cancel: self.renderer.render(
-                request.viewable,
-                request.shot,
-                request.pixels,
-                cancel,
-                samples=self.renderer.samples[request.refinement],
-            ),
-            lambda result: self._end(request, result),
-        )
+        what = request.viewable, request.shot, request.pixels
+
+        def job(cancel: threading.Event) -> RenderedFrame:
+            if request.refinement > 0 and request.shot.mode == "path":
+                return self.film.render(*what, cancel)
+            samples = self.renderer.samples[request.refinement]
+            return self.renderer.render(*what, cancel, samples=samples)
+
+        self._worker.submit(job, lambda result: self._end(request, result))
 
     def _end(self, request: FrameRequest, result: Any) -> None:
         self._in_progress = None

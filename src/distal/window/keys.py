@@ -40,6 +40,7 @@ class Action(Enum):
     FASTER = "faster"
     NEXT_VIEW = "next_view"
     LAST_VIEW = "last_view"
+    MODE = "mode"
     PARAMETERS = "parameters"
     SCREENSHOT = "screenshot"
     FULL_SCREEN = "full_screen"

@@ -30,6 +30,7 @@ def view(
     scale: float = 1.0,
     paused: bool = False,
     look: str | None = None,
+    mode: str | None = None,
 ) -> tuple[int, bool]:
     """Show a loaded object until the window is closed.
 
@@ -43,6 +44,7 @@ def view(
         scale: Rendered pixels per pixel of the window, along each side.
         paused: Whether the time is paused at the start.
         look: The name of a look to show it in; None for its own.
+        mode: How light is computed: "direct" or "path"; None: as the scene says.
 
     Returns:
         The exit code, 0 or 130, and whether all threads have ended: a running compilation cannot
@@ -57,6 +59,7 @@ def view(
     known = loaded_from(obj)
     origin = SceneSource(path, name, known.files if known is not None else (), look)
     shown = viewable(obj, options.params, options.time, look)
+    shown.in_mode(mode)  # raises if it has no such mode
     if first_view not in shown.views:
         raise ValueError(f"there is no view '{first_view:.40}'; views: {', '.join(shown.views)}")
     canvas = open_canvas(options.size, f"{origin.title} - distal")
@@ -69,6 +72,7 @@ def view(
             view=first_view,
             paused=paused,
             guided=True,
+            mode=mode,
             now=time.monotonic(),
         )
         loop = canvas._rc_canvas_group.get_loop()

@@ -17,6 +17,7 @@ from distal.lang.parameters import Parameter
 from distal.scene.steering import Steering
 from distal.scene.viewing import interaction
 from distal.scene.viewing.guide import Moment
+from distal.scene.viewing.viewable import COLOR
 from distal.window.clock import Clock
 from distal.window.dials import Dial, Line, dials, lines_of
 from distal.window.gestures import Mouse, on_picture, orbited, panned, zoomed
@@ -49,6 +50,7 @@ class Shot:
         view: The name of the view.
         steering: The movement of the camera; None if there is no movable camera.
         mouse: The pointer for an ``@image``.
+        mode: How light is computed: "direct" or "path".
     """
 
     time: float
@@ -56,6 +58,7 @@ class Shot:
     view: str
     steering: Steering | None
     mouse: Mouse
+    mode: str = "direct"
 
     @property
     def index(self) -> int:
@@ -82,6 +85,7 @@ class Session:
         camera: The camera, moved by gestures and keys.
         values: The parameters that a person moved, by name.
         view: The name of the view.
+        mode: How light is computed at rest: "direct" or "path"; None: as the scene says.
         dials: The controls of the parameters.
         lines: The rows of their table: the controls, and the names of groups.
         chosen: The index of the control that keys move.
@@ -100,6 +104,7 @@ class Session:
         view: str = "color",
         paused: bool = False,
         guided: bool = False,
+        mode: str | None = None,
         now: float = 0.0,
     ) -> None:
         """Make the state of a window that has just opened.
@@ -112,6 +117,7 @@ class Session:
             paused: Whether the time is paused at the start.
             guided: Whether the camera is kept out of solids, and keys show the whole scene; this
                 compiles the scene's guide.
+            mode: How light is computed: "direct" or "path"; None: as the scene says.
             now: The reading of the clock, in seconds.
         """
         self.clock = Clock(time, running=False, now=now)
@@ -119,6 +125,7 @@ class Session:
         self.mouse = Mouse()
         self.values: dict[str, Value] = dict(values or {})
         self.view = view
+        self.mode = mode
         self.chosen = 0
         self.size = (640.0, 480.0)
         self.shows_parameters = self.shows_help = False
@@ -182,7 +189,15 @@ class Session:
             view=self.view,
             steering=self.steering if self.viewable.steers else None,
             mouse=self.mouse,
+            mode=self.shown_mode,
         )
+
+    @property
+    def shown_mode(self) -> str:
+        """How the light of the view is computed while nothing moves."""
+        if self.viewable.scene is None or self.view != COLOR:
+            return "direct"
+        return self.viewable.mode if self.mode is None else self.mode
 
     def frame_begun(self) -> None:
         """Record that a frame has shown the press of the button, which is then no longer fresh."""
@@ -233,6 +248,9 @@ class Session:
                 self.clock.change_speed(1 if action is Action.FASTER else -1, now)
             case Action.NEXT_VIEW | Action.LAST_VIEW:
                 self._turn_views(1 if action is Action.NEXT_VIEW else -1)
+            case Action.MODE:
+                if self.viewable.scene is not None and self.view == COLOR:
+                    self.mode = "direct" if self.shown_mode == "path" else "path"
             case Action.PARAMETERS:
                 self.shows_parameters = not self.shows_parameters
             case Action.RESET_PARAMETER:

@@ -63,18 +63,18 @@ class WindowSurface:
         self._exact = device.create_sampler(min_filter="nearest", mag_filter="nearest")
         self._smooth = device.create_sampler(min_filter="linear", mag_filter="linear")
         self._frame: Any = None
+        self._is_own = False  # whether the frame is a texture made here
         self._panels: dict[int, tuple[Panel, Any]] = {}
 
     def show(self, made: RenderedFrame) -> None:
         """Use a frame as the picture from now on."""
         if made.texture is not None:
-            self._frame = self._readable(made.texture)
+            self._frame, self._is_own = self._readable(made.texture), False
             return
         assert made.pixels is not None
         height, width = made.pixels.shape[:2]
-        old = self._frame
-        if old is None or old.size[:2] != (width, height):
-            self._frame = self._texture(width, height)
+        if not self._is_own or self._frame.size[:2] != (width, height):
+            self._frame, self._is_own = self._texture(width, height), True
         self._upload(self._frame, made.pixels)
 
     def draw(self, panels: Sequence[Panel]) -> None:

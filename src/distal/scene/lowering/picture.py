@@ -293,7 +293,8 @@ class SceneLowering:
     def _film_texel(self, coord: Expr) -> Expr:
         """Return the texel of a pixel on the host's film."""
         offset = self._assembly.number(live_film.FILM_OFFSET, VEC2, (0.0, 0.0))
-        film = self._assembly.resource(live_film.FILM, "Film")
+        # Stubs describe what authors declare; here it is a resource.
+        film = self._assembly.resource(cast(Any, live_film.FILM), "Film")
         return self.composer.call(
             live_film.film_texel, {"film": film, "coord": coord, "offset": offset}
         )
