@@ -210,7 +210,7 @@ class Application:
 
     def _waiting_note(self, now: float) -> str | None:
         """Return what the window waits for: "" while it is still fast, None if it does not wait."""
-        if not self._worker.waiting:
+        if not self._worker.waiting or self._scheduler.is_tracing:
             self._busy_since = None
             return None
         if self._busy_since is None:

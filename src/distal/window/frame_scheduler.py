@@ -101,6 +101,12 @@ class FrameScheduler:
         return self._in_progress is not None
 
     @property
+    def is_tracing(self) -> bool:
+        """Whether samples are being added to a film; the status counts them."""
+        current = self._in_progress
+        return current is not None and current.refinement > 0 and current.shot.mode == "path"
+
+    @property
     def frames_per_s(self) -> float:
         """The number of frames in the last second."""
         now = time.monotonic()
