@@ -139,7 +139,11 @@ def test_a_time_that_no_message_can_carry_is_refused():
 @pytest.mark.parametrize(
     ("options", "error", "message"),
     [
-        ({"widht": 3}, TypeError, "'widht' is no option of show; options: panel, params, playing,"),
+        (
+            {"widht": 3},
+            TypeError,
+            "'widht' is no option of show; options: mode, panel, params, playing,",
+        ),
         ({"size": 3}, TypeError, "size is .width, height. in pixels, not 3"),
         ({"size": (0, -3)}, ValueError, "each side has 1 to"),
         ({"time": "a"}, TypeError, "time is a number of seconds, not 'a'"),

@@ -35,6 +35,7 @@ SIZE = (640.0, 360.0)
 BUTTONS = {0: 1, 1: 3, 2: 2}  # as browsers count them -> as the window's canvas does
 APART = (
     *("pause", "next_view", "last_view", "full_screen", "screenshot", "parameters", "help"),
+    "mode",
     *("frame", "front", "right_side", "top", "copy_camera"),  # these ask the scene's guide
 )
 KEYS = [key for b in BINDINGS if b.in_page and b.action not in APART for key in b.keys]
@@ -135,7 +136,13 @@ def run(built: Path, given: dict[str, Any]) -> dict[str, Any]:
     """What the player's modules make of it."""
     node = shutil.which("node")
     assert node is not None
-    bundle = ("test/replay.ts", "--bundle", "--platform=node", "--format=esm")
+    bundle = (
+        "test/replay.ts",
+        "--bundle",
+        "--platform=node",
+        "--format=esm",
+        "--define:PATHS=true",
+    )
     esbuild = built / "node_modules" / ".bin" / "esbuild"
     if not (built / "replay.mjs").exists():
         command = [esbuild, *bundle, "--outfile=replay.mjs", "--log-level=error"]

@@ -258,8 +258,8 @@ export class Renderer {
 
   #wants(): boolean {
     if (!this.#visible || !this.#painter || !this.#program) return false;
-    const isTraced = PATHS && !!this.paths?.wants(this.#revision);
-    const isDone = this.#isSharp && !this.#nextSamples() && !isTraced;
+    if (PATHS && this.paths?.wants(this.#revision)) return true;
+    const isDone = this.#isSharp && !this.#nextSamples();
     return this.subject.playing || !isDone || this.#captures.length > 0;
   }
 
@@ -318,9 +318,9 @@ export class Renderer {
     const plan = (scale: number, abortable: boolean, samples = 1, isAside = false): Plan => {
       return { scale, samples, size: painter.size(scale), revision, abortable, isAside };
     };
-    const isNew = revision !== this.#shown.revision;
     if (PATHS && this.paths && !this.subject.playing) {
       const { paths } = this;
+      const isNew = revision !== this.#shown.revision;
       // Until there are samples, the poster or direct light is to be seen.
       if (!isNew || (this.#shown.revision < 0 && this.subject.hasPoster)) {
         if (performance.now() - this.#changed < REST_MS || !paths.isReady) return null;
@@ -340,11 +340,12 @@ export class Renderer {
     if (cost === null) return plan(1, true); // Settled after the probe.
     const pixels = this.canvas.width * this.canvas.height;
     const playing = this.subject.playing;
+    const isNews = revision !== this.#shown.revision;
     if (!playing && rests) {
       // A still that takes long is heralded by a coarse picture.
       const isAwaited = this.#shown.revision >= 0 || !this.subject.hasPoster;
-      if (!isNew || !isAwaited || cost * pixels < LONG_MS) return plan(1, true);
-    } else if (!playing && !isNew) return null; // It may come to rest.
+      if (!isNews || !isAwaited || cost * pixels < LONG_MS) return plan(1, true);
+    } else if (!playing && !isNews) return null; // It may come to rest.
     return plan(this.#resolution.moving(pixels), false);
   }
 

@@ -19,7 +19,7 @@ export function toolbarOf(player: Player): HTMLElement {
   if (!embed) {
     bar.append(
       views(player) || "",
-      (PATHS && samples(player)) || "",
+      ...(PATHS ? [samples(player)] : []),
       iconButton("Save a picture (S)", ICONS.camera, () => void player.saveScreenshot()),
     );
   } else if (player.payload.steering) {
@@ -96,10 +96,14 @@ function samples(player: Player): HTMLElement {
   };
   player.on("frame", ({ samples, rate }) => {
     if (rate === undefined) wait();
-    else show(`${samples} samples, ${rate.toFixed(rate < 10 ? 1 : 0)}/s`);
+    else show(`${samples} samples · ${rate.toFixed(rate < 10 ? 1 : 0)}/s`);
   });
   player.on("mode", name);
-  player.on("view", ({ name }) => (button.hidden = !player.payload.views.find((v) => v.name === name)?.film));
+  const seen = () => {
+    button.hidden = !player.payload.views.find(({ name }) => name === player.view)?.film;
+  };
+  player.on("view", seen);
+  seen();
   name();
   return button;
 }

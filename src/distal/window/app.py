@@ -210,7 +210,9 @@ class Application:
 
     def _waiting_note(self, now: float) -> str | None:
         """Return what the window waits for: "" while it is still fast, None if it does not wait."""
-        if not self._worker.waiting or self._scheduler.is_tracing:
+        made, is_tracing = self._scheduler.made, self._scheduler.is_tracing
+        is_counted = is_tracing and made is not None and made.samples > 0
+        if not self._worker.waiting or is_counted:
             self._busy_since = None
             return None
         if self._busy_since is None:
@@ -219,6 +221,8 @@ class Application:
             what = "loading the saved file …"
         elif self._scheduler.shown is None:
             what = "compiling …"
+        elif is_tracing:
+            what = "tracing paths …"
         elif self._scheduler.is_busy:
             what = "rendering …"
         else:
@@ -238,7 +242,7 @@ class Application:
             words.append(f"{made.seconds * 1000:.1f} ms")
             words.append("{}x{}".format(*shown.pixels))
             if made.samples:
-                words.append(f"{made.samples} samples, {made.rate:.{made.rate < 10:d}f}/s")
+                words.append(f"{made.samples} samples  {made.rate:.{made.rate < 10:d}f}/s")
             elif shown.shot.mode == "path":
                 words.append("direct light")
         words.append(self._scheduler.renderer.device)

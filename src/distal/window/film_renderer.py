@@ -28,9 +28,8 @@ if TYPE_CHECKING:
 
 # A film has enough: its error is 1/128 of that of one sample. As on pages.
 MOST_SAMPLES: Final = 16384
-# With fewer samples direct light looks better, unless they take long.
+# With fewer samples direct light looks better.
 _FEWEST_SHOWN: Final = 4
-_LONGEST_S: Final = 2.0
 # A saved picture has so many at least.
 _FEWEST_SAVED: Final = 16
 # Seconds between two pictures of a film.
@@ -115,8 +114,7 @@ class FilmRenderer:
 
     def _is_enough(self, seconds: float) -> bool:
         """Return whether the film is shown now that it has got samples for so many seconds."""
-        is_shown = self._done >= _FEWEST_SHOWN
-        return seconds > (0.5 * _FRAME_S if is_shown else _LONGEST_S)
+        return self._done >= _FEWEST_SHOWN and seconds > 0.5 * _FRAME_S
 
     @property
     def _done(self) -> int:
