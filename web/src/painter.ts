@@ -71,32 +71,30 @@ export class Painter {
     return made;
   }
 
-  /** What a program draws that reads nothing, byte by byte; the picture being drawn is not touched. */
-  async bytes(source: Program, width: number, height: number): Promise<Uint8Array> {
-    const { gl } = this;
-    const program = await link(gl, source);
-    const work = this.#work;
-    this.#work = newTarget(gl);
-    this.draw(program, {} as Inputs, [width, height], 0, width);
-    this.#work = work;
-    const read = new Uint8Array(4 * width * height);
-    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, read);
-    return read;
+  /** What a program draws that reads nothing, byte by byte, as `pixels`. */
+  async bytes(source: Program, width: number, height: number): Promise<Uint8Array | null> {
+    const program = await link(this.gl, source);
+    return this.pixels(program, {} as Inputs, [width, height]);
   }
 
   /** What a program draws, byte by byte, as soon as the GPU has it; null where it was lost. */
-  async pixels(program: Linked, inputs: Inputs, size: [number, number]): Promise<Uint8Array | null> {
-    const { gl } = this;
+  pixels(program: Linked, inputs: Inputs, size: [number, number]): Promise<Uint8Array | null> {
     const work = this.#work;
     this.#work = this.#read;
     this.draw(program, inputs, size, 0, size[0]);
     this.#work = work;
-    const read = new Uint8Array(4 * size[0] * size[1]);
+    return this.#bytes(...size);
+  }
+
+  /** The bytes of the target that is bound, as soon as the GPU has them; null where it was lost. */
+  async #bytes(width: number, height: number): Promise<Uint8Array | null> {
+    const { gl } = this;
+    const read = new Uint8Array(4 * width * height);
     // Into a buffer first: to read pixels at once would hold up the page until they are drawn.
     const buffer = gl.createBuffer();
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
     gl.bufferData(gl.PIXEL_PACK_BUFFER, read.byteLength, gl.STREAM_READ);
-    gl.readPixels(0, 0, ...size, gl.RGBA, gl.UNSIGNED_BYTE, 0);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, 0);
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
     const isDone = (await gpuDone(gl)) !== null;
     if (isDone) {
@@ -139,12 +137,12 @@ export class Painter {
   }
 
   /** The picture that was drawn, as a PNG; the one that is shown stays. */
-  png(isTransparent: boolean): Promise<Blob | null> {
+  async png(isTransparent: boolean): Promise<Blob | null> {
     const { gl } = this;
     const { frame, width, height } = this.#work;
-    const bytes = new Uint8ClampedArray(4 * width * height);
     gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    const bytes = await this.#bytes(width, height);
+    if (!bytes) return null;
     const image = new ImageData(width, height);
     const row = 4 * width;
     for (let y = 0; y < height; y++) {

@@ -361,16 +361,19 @@ export class Renderer {
     const inputs = this.subject.inputs(width, height, isAside);
     if (PATHS && this.paths && plan.isTraced) {
       const { paths } = this;
-      const isStale = () => plan.revision !== this.#revision || painter !== this.#painter || paths !== this.paths;
+      const isStale = () => {
+        const isOld = plan.revision !== this.#revision || painter !== this.#painter;
+        return isOld || paths !== this.paths;
+      };
       const { floor } = this.#resolution;
       const ms = await paths.add(plan.revision, plan.size, inputs, floor, isStale);
       if (ms === null || !paths.isShown) return;
       const { samples, rate } = paths;
       paths.show(inputs);
-      const [wanted] = this.#captures;
-      const blob = wanted && samples >= wanted.samples && plan.scale >= this.#stillScale && painter.png(this.transparent);
+      const least = plan.scale < this.#stillScale ? Infinity : this.#captures[0]?.samples;
+      const blob = least !== undefined && samples >= least && painter.png(this.transparent);
       this.#present(painter, { ...plan, samples });
-      if (blob) this.#captures.shift()!.resolve(await blob);
+      if (blob) this.#captures.shift()?.resolve(await blob);
       this.#endRest();
       return this.subject.drawn({ ms, width, height, fps: 0, samples, rate });
     }

@@ -61,8 +61,9 @@ export function trusting({ fragment, trust }: Program, names: readonly string[])
   return fragment.replace("\n", `\n${lines}#line 2\n`); // Nothing may precede the version.
 }
 
-function good({ buffer }: Uint8Array): string[] {
-  const values = new Float32Array(buffer);
+function good(bytes: Uint8Array | null): string[] {
+  if (!bytes) return [];
+  const values = new Float32Array(bytes.buffer);
   return NAMES.filter((name, row) => {
     for (let i = 0; i < COUNT; i++) {
       const x = (i + 0.5 - COUNT / 2) * (row < 3 ? STEP : 2 / COUNT);

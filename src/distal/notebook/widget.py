@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, Unpack
 
 import anywidget
@@ -45,7 +46,7 @@ class LiveView(anywidget.AnyWidget):
         error: The message of the browser's driver about the shader, or "".
     """
 
-    _esm = PLAYER
+    _esm: Path | str = PLAYER
 
     payload = traitlets.Dict(read_only=True).tag(sync=True)
     params = traitlets.Dict().tag(sync=True)
