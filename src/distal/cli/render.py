@@ -50,6 +50,7 @@ class PathArguments:
         noise: The error at which the picture is finished.
         film: The file that keeps the samples so far.
         goes_on: Whether the samples that it keeps already are used, and those of this run kept.
+        caustics: Whether photons find caustics.
     """
 
     mode: str | None
@@ -57,6 +58,7 @@ class PathArguments:
     noise: float | None
     film: Path
     goes_on: bool
+    caustics: bool = True
 
     def view_options(self, scene_mode: str) -> dict[str, Any]:
         """Return the arguments of ``ViewOptions``.
@@ -69,7 +71,9 @@ class PathArguments:
         """
         given = {"mode": self.mode, "time_limit": self.time_limit, "noise": self.noise}
         if (self.mode or scene_mode) == "path":
-            return {**given, "film": self.film}
+            return {**given, "film": self.film, "caustics": self.caustics}
+        if not self.caustics:
+            raise UsageError("--no-caustics is for --mode path")
         if self.goes_on:
             raise UsageError("--continue is for --mode path")
         return given
@@ -146,6 +150,13 @@ def render(
             help="In mode path: use the samples of a run that was broken off, and keep them.",
         ),
     ] = False,
+    caustics: Annotated[
+        bool,
+        typer.Option(
+            "--caustics/--no-caustics",
+            help="In mode path: whether photons find the light that glass and mirrors bundle.",
+        ),
+    ] = True,
     view: Annotated[
         str | None,
         typer.Option(
@@ -198,7 +209,7 @@ def render(
     width_height, seconds = read_size(size, LARGEST_SIDE_PX), read_time(at)
     suffix, _ = check_savable(output, bits)
     film = output.with_name(output.name + ".film")
-    paths = PathArguments(mode, time_limit, noise, film, goes_on)
+    paths = PathArguments(mode, time_limit, noise, film, goes_on, caustics)
     arguments = replace(read_view(view, plane, transparent, exposure, tone_map), paths=paths)
     device_name = chosen_device(device, adapter)
     begin = time.perf_counter()

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from distal.devices.base import Kernel
 from distal.lang.render_options import Progress, Refinement, RenderOptions
-from distal.lang.resources import MovingBuffer
 from distal.render import film
 from distal.runtime import accumulation, film_files
 from distal.runtime.fingerprints import fingerprint
 from distal.runtime.lost_rays import LostRays
 from distal.runtime.lowered import Lowered
+from distal.runtime.photons import PhotonPasses
 from distal.runtime.uniform_values import DeclaredUniforms
 
 
@@ -35,6 +35,7 @@ class Passes:
     options: RenderOptions
     resources: Mapping[str, Any]
     lost: LostRays = field(default_factory=LostRays)
+    photons: PhotonPasses | None = None
 
     def light(
         self,
@@ -67,7 +68,10 @@ class Passes:
 
         def rendered(first: int, count: int, progress: Progress | None) -> NDArray[np.float32]:
             numbers = {film.FIRST_SAMPLE: first, film.SAMPLES: count}
-            return self.light(self.options.size, numbers, {}, progress)
+            if self.photons is None:
+                return self.light(self.options.size, numbers, {}, progress)
+            found = self.photons.tables(first, count)
+            return self.light(self.options.size, numbers | found.numbers, found.buffers, progress)
 
         size, progress = self.options.size, self.options.progress
         if refinement.film is None:
@@ -107,16 +111,6 @@ class Passes:
         """Return the contrast of each pixel of display values with its neighbours."""
         height, width, _ = shown.shape
         return over_picture(kernel, resources, (width, height), {}, shown, self.options)[..., 0]
-
-
-def moved_resources(
-    resources: Mapping[str, Any], params: Mapping[str, Any], seconds: float
-) -> dict[str, Any]:
-    """Return resources in which buffers of what moves have the numbers of one picture."""
-    return {
-        name: source.at(params, seconds) if isinstance(source, MovingBuffer) else source
-        for name, source in resources.items()
-    }
 
 
 def over_picture(

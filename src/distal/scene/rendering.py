@@ -47,7 +47,9 @@ def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Pic
     steered = view.steering is not None
     refinement = view.refinement(scene.mode, options.samples)
     shown = {"transparent": view.transparent, "steered": steered}
-    image, sampled = scene.program(view.view, options.samples, mode=view.mode, **shown)
+    image, sampled = scene.program(
+        view.view, options.samples, mode=view.mode, caustics=view.caustics, **shown
+    )
     settings = {**sampled, **sliced, **moved}
     asked = replace(options, settings=settings, progress=shares[0], refinement=refinement)
     asked = with_range(image, asked)
