@@ -34,7 +34,7 @@ bowl = Sphere(0.62) - Sphere(0.57) - Cylinder(1.0, 1.0).translate(y=0.85)
 stem = Cylinder(0.055, 0.8).translate(y=-0.95)
 foot = RoundedCylinder(0.42, 0.06, 0.03).translate(y=-1.34)
 wine_glass = bowl.union(stem, smooth=0.05).union(foot, smooth=0.05)
-wine_glass = wine_glass.translate(0.25, 1.37, -0.65).paint(clear)
+wine_glass = wine_glass.translate(0.25, 1.4, -0.65).paint(clear)
 
 ring = Cylinder(0.62, 0.3) - Cylinder(0.57, 1.0)
 ring = ring.translate(1.35, 0.15, 0.55).paint(metal((1.0, 0.78, 0.42), roughness=0.05))

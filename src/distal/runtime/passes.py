@@ -71,7 +71,9 @@ class Passes:
             if self.photons is None:
                 return self.light(self.options.size, numbers, {}, progress)
             found = self.photons.tables(first, count)
-            return self.light(self.options.size, numbers | found.numbers, found.buffers, progress)
+            return self.light(
+                self.options.size, {**numbers, **found.numbers}, found.buffers, progress
+            )
 
         size, progress = self.options.size, self.options.progress
         if refinement.film is None:

@@ -23,7 +23,7 @@ from distal.runtime.moving import moved_resources
 from distal.runtime.uniform_values import DeclaredUniforms, frame_values
 
 # Photons for each pixel and sample, and the least and most of them in a pass.
-_OF_A_SAMPLE: Final = 0.25
+_OF_A_SAMPLE: Final = 0.5
 _FEWEST: Final = 2**14
 _MOST: Final = 2**21
 
@@ -162,5 +162,6 @@ def _sorted(
         places = np.hstack([place, bright])
         arrivals = np.zeros((len(order), 2, 4), np.float32)
         arrivals[:, 0, :3], arrivals[:, 1, :3] = arrival, power / bright
-    buffers = {photons.PLACES: places, photons.ARRIVALS: arrivals.reshape(-1, 4)}
-    return {**buffers, photons.STARTS: starts}
+    # Stubs describe a buffer by the type of its elements.
+    declared: list[Any] = [photons.PLACES, photons.ARRIVALS, photons.STARTS]
+    return dict(zip(declared, (places, arrivals.reshape(-1, 4), starts), strict=True))

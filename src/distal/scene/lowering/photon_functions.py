@@ -68,7 +68,7 @@ def _bundles(material: Any) -> bool:
     values = material.call.values
     rough, diffuse = values.get("roughness"), values.get("diffuse")
     known = rough.plain if isinstance(rough, Number) else None
-    if known is None:
+    if not isinstance(known, float):
         return True
     even = diffuse.plain != 0.0 if isinstance(diffuse, Number) else True
     only_mirrors = material.call.func.name in _WITHOUT_DIFFUSE
