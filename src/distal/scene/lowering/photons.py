@@ -19,6 +19,7 @@ from distal.loading import copy_loaded_from
 from distal.render import film, photon_aim, photons
 from distal.scene.lowering.photon_functions import PhotonFunctions, bundling_parts
 from distal.scene.lowering.picture import SceneLowering
+from distal.scene.lowering.shapes import ZERO_CELL
 from distal.scene.tree.values import StatementList
 
 if TYPE_CHECKING:
@@ -82,10 +83,12 @@ class PhotonDeposits(Composed):
         # Of the picture that the paths see, which the ends of rays in infinite scenes depend on.
         resolution = assembly.number(film.PICTURE_SIZE, VEC2, (640.0, 480.0))
         known = made.given(body, resolution, steered=self._steered, paths=True)
+        values = made.composer.values.all(made.node)
         functions = PhotonFunctions(made.composer, made._function)
         given: dict[str, Expr] = {
             **known,
             **made.given_at_hits(),
+            "field": made.composer.safe_field(made.node, values, ZERO_CELL),
             "number": Read("number", INT),
             "target": functions.target(),
             "cells": functions.cells(),
