@@ -83,6 +83,7 @@ class ViewOptions:
             ValueError: An option for paths was given in mode "direct", or contradicts another.
         """
         given = {n: getattr(self, n) for n in ("spp", "time_limit", "noise", "film")}
+        given["caustics"] = None if self.caustics else False
         if (self.mode or mode) != "path":
             for name, value in given.items():
                 if value is not None:
