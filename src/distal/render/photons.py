@@ -88,7 +88,7 @@ STARTS: Final = Buffer([0])
 
 
 @struct
-class Cells:
+class PhotonCells:
     """The grid in which photons are sorted; a hash maps its cells to slots.
 
     Attributes:
@@ -170,7 +170,7 @@ def slot_of(cell: vec3, slots: int) -> int:
 def deposit(
     number: int,
     target: Bounds,
-    cells: Cells,
+    cells: PhotonCells,
     next_hit: Callable[[Ray, int, float, int], Hit],
     field: Field3,
     field_of: Callable[[vec3, int], float],
@@ -289,7 +289,7 @@ def gathered(
     places: Buffer[vec4],
     arrivals: Buffer[vec4],
     starts: Buffer[int],
-    cells: Cells,
+    cells: PhotonCells,
     vertex: Vertex,
     meeting: Meeting,
     stream: Stream,

@@ -29,7 +29,7 @@ _MOST: Final = 2**21
 
 
 @dataclass(frozen=True, slots=True)
-class Tables:
+class PhotonTables:
     """What the kernel of a pass reads of its photons.
 
     Attributes:
@@ -95,7 +95,7 @@ class PhotonPasses:
     plan: PhotonProgram
     deposits: PhotonProgram
 
-    def tables(self, first: int, count: int) -> Tables:
+    def tables(self, first: int, count: int) -> PhotonTables:
         """Return the photons of a pass.
 
         Args:
@@ -119,7 +119,7 @@ class PhotonPasses:
         }
         total = count * (slots + 1)
         if not all(a < b for a, b in zip(low, high, strict=True)):
-            return Tables(numbers, _sorted(np.zeros(0, np.int64), None, total))
+            return PhotonTables(numbers, _sorted(np.zeros(0, np.int64), None, total))
         size = tuple(map(float, options.size))
         of_pass = {photons.SEED: _signed(options.seed), photons.FRAME_INDEX: _signed(options.index)}
         asked = {**numbers, **begun, **of_pass, film.PICTURE_SIZE: size}
@@ -132,7 +132,9 @@ class PhotonPasses:
         kept = np.concatenate([kept, kept[slot[kept] == 0]])
         of_slot = kept // of_map * (slots + 1) + slot[kept]
         of_slot[len(kept) - np.count_nonzero(slot[kept] == 0) // 2 :] += slots
-        return Tables(numbers, _sorted(of_slot, (place[kept], arrival[kept], power[kept]), total))
+        return PhotonTables(
+            numbers, _sorted(of_slot, (place[kept], arrival[kept], power[kept]), total)
+        )
 
 
 def _signed(value: int) -> int:

@@ -110,7 +110,7 @@ class PhotonFunctions:
             self._number(photons.MAPS, INT, 1),
             self._number(photons.SHARE, FLOAT, 0.0),
         )
-        return Construct(parts, self._composer.assembly.struct(photons.Cells))
+        return Construct(parts, self._composer.assembly.struct(photons.PhotonCells))
 
     def given(self, *, has_photons: bool) -> dict[str, Expr]:
         """Return what a path takes, by name of ``paths.path_light``."""

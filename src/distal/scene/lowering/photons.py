@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from distal.scene.scene import Scene
 
 
-class PhotonPlan(Composed):
+class PlanFunction(Composed):
     """What the photons of a pass depend on, as a function of the frame."""
 
     kind: ClassVar[EntryKind] = EntryKind.FUNCTION
@@ -65,7 +65,7 @@ class PhotonPlan(Composed):
         return self._scene.functions()
 
 
-class PhotonDeposits(Composed):
+class DepositFunction(Composed):
     """The function from the number of a photon to where it ends."""
 
     kind: ClassVar[EntryKind] = EntryKind.FUNCTION
@@ -107,11 +107,11 @@ class PhotonDeposits(Composed):
         return self._scene.functions()
 
 
-def scene_photons(scene: Scene, *, steered: bool) -> tuple[PhotonPlan, PhotonDeposits]:
+def scene_photons(scene: Scene, *, steered: bool) -> tuple[PlanFunction, DepositFunction]:
     """Return the programs of a scene's photons.
 
     Args:
         scene: The scene.
         steered: Whether the camera is moved by the numbers of a ``Steering``.
     """
-    return PhotonPlan(scene, steered=steered), PhotonDeposits(scene, steered=steered)
+    return PlanFunction(scene, steered=steered), DepositFunction(scene, steered=steered)
