@@ -60,7 +60,7 @@ PI = 3.14159265358979
 # The first radius in pixels at the middle of the target, and its limits as parts of the target.
 FIRST_PIXELS = 1.25
 LEAST_PART = 0.0005
-LARGEST_PART = 0.03
+LARGEST_PART = 0.015
 # The radius of pass i: its square falls with this power of the number of samples before it. The
 # error by the radius, and the noise, then fall alike.
 SHRINKING = -0.3333333333
