@@ -227,6 +227,7 @@ def test_slow_disks_are_written_to_less_often(tmp_path, monkeypatch):
     [
         ({"mode": "paths"}, "there is no mode 'paths'; modes: direct, path"),
         ({"spp": 4}, "spp is for mode 'path'"),
+        ({"caustics": False}, "caustics is for mode 'path'"),
         ({"mode": "direct", "noise": 0.1}, "noise is for mode 'path'"),
         ({"mode": "path", "spp": 0}, "a pixel has 1 to 65536 samples, not 0"),
         ({"mode": "path", "spp": 4, "samples": 8}, "spp=4 and samples=8 are the same: give one"),

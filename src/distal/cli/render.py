@@ -55,6 +55,7 @@ class PathArguments:
         denoise: Whether noise is removed in the end.
         film: The file that keeps the samples so far.
         goes_on: Whether the samples that it keeps already are used, and those of this run kept.
+        caustics: Whether photons find caustics.
     """
 
     mode: str | None
@@ -67,6 +68,7 @@ class PathArguments:
     film: Path
     goes_on: bool
     preview: Callable[[Picture], Any]
+    caustics: bool = True
 
     def view_options(self, scene_mode: str) -> dict[str, Any]:
         """Return the arguments of ``ViewOptions``.
@@ -80,7 +82,9 @@ class PathArguments:
         names = ("mode", "time_limit", "noise", "filter", "shutter", "clamp", "denoise")
         given: dict[str, Any] = {name: getattr(self, name) for name in names}
         if (self.mode or scene_mode) == "path":
-            return {**given, "film": self.film, "preview": self.preview}
+            return {**given, "film": self.film, "preview": self.preview, "caustics": self.caustics}
+        if not self.caustics:
+            raise UsageError("--no-caustics is for --mode path")
         if self.goes_on:
             raise UsageError("--continue is for --mode path")
         return given
@@ -181,6 +185,13 @@ def render(
             help="In mode path: use the samples of a run that was broken off, and keep them.",
         ),
     ] = False,
+    caustics: Annotated[
+        bool,
+        typer.Option(
+            "--caustics/--no-caustics",
+            help="In mode path: whether photons find the light that glass and mirrors bundle.",
+        ),
+    ] = True,
     view: Annotated[
         str | None,
         typer.Option(
@@ -237,7 +248,7 @@ def render(
     progress = ProgressBar()
     preview = PreviewFile(output, bits, film, progress)
     paths = PathArguments(
-        mode, time_limit, noise, filter, shutter, clamp, denoise, film, goes_on, preview
+        mode, time_limit, noise, filter, shutter, clamp, denoise, film, goes_on, preview, caustics
     )
     arguments = replace(read_view(view, plane, transparent, exposure, tone_map), paths=paths)
     device_name = chosen_device(device, adapter)

@@ -34,6 +34,8 @@ class Composed(Immutable, ABC):
             ``runtime.sampling``.
         refined: Whether it is a picture of linear light that gets ever more samples
             (``runtime.accumulation``).
+        photons: For a refined picture: the programs of its photons (``runtime.photons``); None if
+            it has none.
         glow: For a picture with linear light: how much of the halo of ``runtime.glow`` is added.
     """
 
@@ -44,6 +46,7 @@ class Composed(Immutable, ABC):
     display: Composed | None = None
     adaptive: bool = False
     refined: bool = False
+    photons: tuple[Composed, Composed] | None = None
     glow: float = 0.0
 
     @abstractmethod

@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from distal.fields.guarantees import UNBOUNDED
+from distal.fields.guarantees import UNBOUNDED, Bounds
 from distal.lang import (
     abs,
     dot,
@@ -52,6 +52,7 @@ from distal.render.march import PASSED, Hit, March
 from distal.render.material import Surface, brightest
 from distal.render.media import Interface, interface_at
 from distal.render.normals import EXACT
+from distal.render.photon_aim import bundles, is_followed, is_followed_from_afar
 from distal.render.sampling.points import Stream, single, triple
 from distal.render.scatter import Meeting, all_specular, emitted, meet, respond_to, sample_from
 from distal.render.segment import landing, leaving_slope
@@ -84,6 +85,8 @@ def met_lights(
     lights: Callable[[int, vec3], LightSample],
     light_count: int,
     chance: float,
+    target: Bounds,
+    bundled: bool,
 ) -> vec3:
     """Return the light of all discs that a ray meets before a surface, weighted.
 
@@ -95,11 +98,15 @@ def met_lights(
         lights: The light with a given index at a point.
         light_count: How many lights there are.
         chance: The probability with which a surface chooses each of them.
+        target: The box that photons cross.
+        bundled: Whether the light that photons follow is left out.
     """
     total = vec3(0.0)
     for i in range(light_count):
-        seen = seen_light(lights(i, ray.origin), ray.direction)
-        if seen.density > 0.0 and seen.distance < length:
+        light = lights(i, ray.origin)
+        seen = seen_light(light, ray.direction)
+        followed = bundled and is_followed(target, ray, seen.distance, light)
+        if seen.density > 0.0 and seen.distance < length and not followed:
             total += seen.radiance * power_share(sampled, seen.density * chance)
     return total
 
@@ -209,6 +216,7 @@ class AimedLight:
             radiance is that of the surface which the direction meets.
         density: Density by solid angle; 0 for a point, which no ray meets by chance.
         is_shape: Whether the light is a shape.
+        is_followed: Whether photons follow the light in this direction.
     """
 
     direction: vec3
@@ -216,6 +224,7 @@ class AimedLight:
     weight: vec3
     density: float
     is_shape: bool
+    is_followed: bool = False
 
 
 @func
@@ -231,6 +240,7 @@ def aim_at_light(
     chance: float,
     u: vec3,
     which: float,
+    target: Bounds,
 ) -> AimedLight:
     """Return a random direction to one of the lights, chosen at random.
 
@@ -246,12 +256,16 @@ def aim_at_light(
         chance: The probability with which each light is chosen.
         u: Random numbers for the place on the light.
         which: A random number that chooses the light.
+        target: The box that photons cross.
     """
     index = int(which / chance)
     if index < light_count:
-        light = sample_light(lights(index, vertex.p), u.xy)
+        known = lights(index, vertex.p)
+        light = sample_light(known, u.xy)
         density = light.density * chance
-        return AimedLight(light.direction, light.distance, light.weight / chance, density, False)
+        followed = is_followed(target, Ray(vertex.p, light.direction), light.distance, known)
+        weight = light.weight / chance
+        return AimedLight(light.direction, light.distance, weight, density, False, followed)
     if index < light_count + lamp_count:
         direction = aim_at_lamp(lamps(index - light_count), vertex.p, u)
         density = chance * lamps_density(vertex.p, direction, lamps, lamp_count)
@@ -261,7 +275,8 @@ def aim_at_light(
         far = directions(u)
         density = far.density * chance
         weight = around(far.direction) / max(density, 1e-30)
-        return AimedLight(far.direction, UNBOUNDED, weight, density, False)
+        followed = is_followed_from_afar(target, Ray(vertex.p, far.direction), far.density)
+        return AimedLight(far.direction, UNBOUNDED, weight, density, False, followed)
     return AimedLight(vertex.n, UNBOUNDED, vec3(0.0), 0.0, False)
 
 
@@ -327,6 +342,9 @@ def path_light(
     bodies: int,
     common: int,
     stream: Stream,
+    caustics: Callable[[Vertex, Meeting, Stream], vec3],
+    target: Bounds,
+    has_photons: bool,
     normals: int = EXACT,
     normal_step: float = 1e-3,
     cone: Cone = THIN,
@@ -357,6 +375,9 @@ def path_light(
         bodies: How many bodies the scene has (``media``); a constant.
         common: The body of shapes without a priority; a constant.
         stream: The random numbers of the path.
+        caustics: The light of photons that a surface sends to the eye (``photons.gathered``).
+        target: The box that photons cross (``photon_aim``).
+        has_photons: Whether there are photons; a constant.
         normals: The method for normals; a constant of ``normals``.
         normal_step: Step of the normals' differences, in scene units at distance 1.
         cone: The cone of the ray.
@@ -378,6 +399,8 @@ def path_light(
     width = cone
     seen = True  # only mirrors and clear glass are between the camera and the ray
     chosen = 0.0  # the density of the ray's direction; 0 if it was the only possible one
+    scattered = False  # a surface that photons light lies behind
+    bundled = False  # and after it surfaces alone that photons follow
     for i in range(MOST_SEGMENTS):
         decision = CAMERA_DECISIONS + DECISIONS * i
         here = start.ray
@@ -387,12 +410,17 @@ def path_light(
         lost = merged(lost, merged(reason(hit.lost), select(i == 0 and inside, INSIDE, 0)))
         if not seen and not inside:
             length = hit.t if hit.found else UNBOUNDED
-            color += throughput * met_lights(here, length, chosen, lights, light_count, chance)
+            color += throughput * met_lights(
+                here, length, chosen, lights, light_count, chance, target, bundled
+            )
         if not hit.found:
             if not inside:
                 far = background(here.direction) if seen else around(here.direction)
                 if has_directions and not seen:
-                    far = far * power_share(chosen, directions_density(here.direction) * chance)
+                    density = directions_density(here.direction)
+                    far = far * power_share(chosen, density * chance)
+                    if bundled and is_followed_from_afar(target, here, density):
+                        far = vec3(0.0)
                 color += throughput * far
             elif i == 0:
                 alpha = ALL_INSIDE
@@ -425,15 +453,19 @@ def path_light(
         if material.dispersion > 0.0 and not is_tinted:
             throughput = throughput * color_of(wavelength)
             is_tinted = True
+        bundling = has_photons and bundles(material)
+        if has_photons and not bundling:
+            color += throughput * caustics(vertex, meeting, stream)
         if choices > 0 and not all_specular(material):
             u = triple(stream, decision + PLACE_ON_LIGHT)
             which = single(stream, decision + WHICH_LIGHT)
             aim = aim_at_light(
                 vertex, lights, light_count, lamps, lamp_count, around, directions,
-                has_directions, chance, u, which,
+                has_directions, chance, u, which, target,
             )  # fmt: skip
             direct = light_from(aim, vertex, meeting, next_hit, surface, look, lamp_count > 0)
-            color += throughput * direct.color
+            left = scattered and bundling and aim.is_followed
+            color += throughput * select(left, vec3(0.0), direct.color)
             lost = merged(lost, select(direct.lost, SHADOWS, 0))
         onward = sample_from(meeting, triple(stream, decision + DIRECTION))
         throughput = throughput * onward.weight
@@ -445,6 +477,9 @@ def path_light(
         throughput = throughput / likely
         chosen = onward.density
         seen = seen and onward.specular
+        if has_photons:
+            bundled = scattered and (onward.specular or bundling)
+            scattered = scattered or not (onward.specular or bundling)
         start = start_from(vertex, onward.direction)
         width = continued(width, vertex.t)
     return vec4(color, marked(alpha, lost, counted))

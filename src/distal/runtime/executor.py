@@ -46,7 +46,9 @@ from distal.runtime.call_values import count, empty, is_double, is_many, single,
 from distal.runtime.device_names import AUTO, CPU, GPU_FRAGMENT, REFERENCE
 from distal.runtime.kernels import KernelCache, automatic_device
 from distal.runtime.lowered import Lowered, Types
-from distal.runtime.passes import Passes, moved_resources, over_picture
+from distal.runtime.moving import moved_resources
+from distal.runtime.passes import Passes, over_picture
+from distal.runtime.photons import PhotonPasses, PhotonProgram
 from distal.runtime.uniform_values import DeclaredUniforms, frame_values
 
 if TYPE_CHECKING:
@@ -146,6 +148,8 @@ class PythonExecutor:
         adaptive = isinstance(image, Composed) and image.adaptive
         refined = isinstance(image, Composed) and image.refined
         passes = self.passes(image, replace(options, device=device))
+        if isinstance(image, Composed) and image.photons is not None:
+            passes = replace(passes, photons=self._photons(image.photons, device, options))
         parts, kernels = passes.parts, passes.kernels
         values, others = passes.values
         contrast = self._contrast(device) if adaptive else None
@@ -218,6 +222,17 @@ class PythonExecutor:
             kernels = [self.kernels.kernel(part, options.device, 32) for part in parts]
         moved = moved_resources(parts[0].resources, values, options.time)
         return Passes(kernels, parts, run.declared, (values, others), options, moved)
+
+    def _photons(
+        self, programs: tuple[Composed, Composed], device: str, options: RenderOptions
+    ) -> PhotonPasses:
+        """Return the photons of a picture; they are traced on the CPU for other devices, too."""
+        plan, deposits = (self._lower(program, None) for program in programs)
+        on = device if device == REFERENCE else CPU
+        return PhotonPasses(
+            PhotonProgram(self.kernels.kernel(plan, REFERENCE, 32), plan, options),
+            PhotonProgram(self.kernels.kernel(deposits, on, 32), deposits, options),
+        )
 
     def _contrast(self, device: str) -> tuple[Kernel, Mapping[str, Any]]:
         """Return the kernel of ``film.contrast``, and its buffer by name."""

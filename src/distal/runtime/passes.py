@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from distal.devices.base import Kernel
 from distal.lang.render_options import Progress, Refinement, RenderOptions
-from distal.lang.resources import MovingBuffer
 from distal.lang.runtime_access import executor
 from distal.render import film, path_film
 from distal.runtime import accumulation, film_files, sampling
@@ -27,6 +26,8 @@ from distal.runtime.device_names import REFERENCE
 from distal.runtime.fingerprints import fingerprint
 from distal.runtime.lost_rays import LostRays
 from distal.runtime.lowered import Lowered
+from distal.runtime.moving import moved_resources
+from distal.runtime.photons import PhotonPasses
 from distal.runtime.uniform_values import DeclaredUniforms
 
 # Seconds between two previews; one that takes long is shown less often.
@@ -78,6 +79,7 @@ class Passes:
     options: RenderOptions
     resources: Mapping[str, Any]
     lost: LostRays = field(default_factory=LostRays)
+    photons: PhotonPasses | None = None
 
     def light(
         self,
@@ -154,19 +156,27 @@ class Passes:
             progress: Called with the finished share, from 0 to 1.
         """
         numbers: dict[str, Any] = {film.FIRST_SAMPLE: asked.first, film.SAMPLES: asked.count}
+        buffers: dict[Any, Any] = {}
+        width, height = self.options.size
         if refinement.shutter > 0.0:
             numbers["time"] = self._time_of(asked.first, refinement.shutter)
+        if self.photons is not None:
+            pixels = asked.pixels(width * height)
+            seconds = numbers.get("time", self.options.time)
+            found = self.photons.tables(asked.first, asked.count, pixels, seconds)
+            numbers |= found.numbers
+            buffers |= found.buffers
         if film.AGAIN not in self.declared.numbers:
             assert asked.places is None, "the program renders all pixels"
-            return self.light(self.options.size, numbers, {}, progress)
-        width, height = self.options.size
+            return self.light(self.options.size, numbers, buffers, progress)
         numbers |= {film.AGAIN: False, film.PICTURE_SIZE: (float(width), float(height))}
         if asked.places is None:
-            return self.light(self.options.size, numbers, {film.PLACES: _NO_PLACES}, progress)
-        places, grid = sampling.arranged(asked.places)
+            buffers[film.PLACES] = _NO_PLACES
+            return self.light(self.options.size, numbers, buffers, progress)
+        buffers[film.PLACES], grid = sampling.arranged(asked.places)
         numbers[film.AGAIN] = True
-        found = self.light(grid, numbers, {film.PLACES: places}, progress)
-        return sampling.listed(found)[: len(asked.places)]
+        light = self.light(grid, numbers, buffers, progress)
+        return sampling.listed(light)[: len(asked.places)]
 
     def _time_of(self, sample: int, shutter: float) -> float:
         """Return the time of a sample while the shutter is open, in seconds."""
@@ -199,16 +209,6 @@ class Passes:
         """Return the contrast of each pixel of display values with its neighbours."""
         height, width, _ = shown.shape
         return over_picture(kernel, resources, (width, height), {}, shown, self.options)[..., 0]
-
-
-def moved_resources(
-    resources: Mapping[str, Any], params: Mapping[str, Any], seconds: float
-) -> dict[str, Any]:
-    """Return resources in which buffers of what moves have the numbers of one picture."""
-    return {
-        name: source.at(params, seconds) if isinstance(source, MovingBuffer) else source
-        for name, source in resources.items()
-    }
 
 
 def over_picture(

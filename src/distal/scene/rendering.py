@@ -56,7 +56,12 @@ def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Pic
     steered = view.steering is not None
     shown = {"transparent": view.transparent, "steered": steered}
     image, sampled = scene.program(
-        view.view, options.samples, mode=view.mode, filter=view.filter, **shown
+        view.view,
+        options.samples,
+        mode=view.mode,
+        filter=view.filter,
+        caustics=view.caustics,
+        **shown,
     )
     settings = {**sampled, **sliced, **moved}
     if refinement is None and view.view == "color":

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Final
 
 from distal.devices.base import Cancelled
 from distal.images.png import quantise
-from distal.lang.runtime_access import executor
 from distal.lang.render_options import Refinement
+from distal.lang.runtime_access import executor
 from distal.runtime.accumulation import Film
 from distal.runtime.allocation import MOST_OF_A_PASS, Pass
 from distal.scene.steering import STILL
@@ -67,7 +67,7 @@ class FilmRenderer:
         film, passes = self._film, self._passes(viewable, shot, size, cancel)
         begin = time.perf_counter()
         assert viewable.scene is not None
-        refinement = Refinement(MOST_SAMPLES, shutter=viewable.scene.shutter)
+        refinement = Refinement(samples=MOST_SAMPLES, shutter=viewable.scene.shutter)
         try:
             while self._done < MOST_SAMPLES:
                 asked, started = self._next_pass(refinement), time.perf_counter()

@@ -57,6 +57,7 @@ from distal.scene.lowering.camera_functions import CameraFunctions
 from distal.scene.lowering.glass_shadows import colored_shadow, split_glass
 from distal.scene.lowering.light_functions import LightFunctions
 from distal.scene.lowering.parts.table import rolled_for, split_table
+from distal.scene.lowering.photon_functions import PhotonFunctions
 from distal.scene.lowering.ray_functions import RayFunctions, step_limit, united
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.lowering.thin_sheets import with_insides
@@ -128,6 +129,7 @@ class SceneLowering:
         self._rays = RayFunctions(self.composer, self.node, self._function, closed=closed)
         self._bodies = BodyFunctions(self.composer, bodies, self._function, closed=closed)
         self._view_numbers: dict[str, Expr] = {}
+        self._has_photons = False
         self._numbers = {
             name: expression_of(assembly, value, name) for name, value in scene.numbers.items()
         }
@@ -146,6 +148,7 @@ class SceneLowering:
         paths: bool = False,
         filter: str = filters.NAMES[0],
         kept: bool = False,
+        photons: bool = False,
     ) -> str:
         """Add the function that maps the frame to a pixel, and return its name.
 
@@ -159,7 +162,9 @@ class SceneLowering:
             paths: Whether the light is that of random paths.
             filter: The reconstruction filter of random paths.
             kept: Whether a pixel is that of a film, to which a pass by paths is added.
+            photons: Whether these paths leave caustics to photons.
         """
+        self._has_photons = photons
         frame = Read("frame", FRAME)
         body = StatementList(taken={"frame"})
         resolution = field(frame, "resolution")
@@ -448,12 +453,12 @@ class SceneLowering:
             known = self.given(body, given["resolution"], steered=steered, paths=follows)
             asked = {**known, **given}
             asked["counted"] = counted
+            if follows:
+                photons = PhotonFunctions(self.composer, self._function)
+                asked |= photons.given(has_photons=self._has_photons)
             if shines:
-                asked["surface"] = self._surface_of_hit(self.node)
-                asked["field_of"] = self._rays.field_of(hybrid=self._hybrid)
+                asked |= self.given_at_hits()
             if shines and self._bodies.are_many:
-                asked["surface"] = self._bodies.surface(self._surface_of_hit)
-                asked["field_of"] = self._bodies.field_of()
                 asked["first_hit"] = self._bodies.first_hit(body, asked)
             if shines and not self._hybrid:
                 values = self.composer.values.all(self.node)
@@ -547,6 +552,14 @@ class SceneLowering:
     def _site(self, node: Node, given: Mapping[str, Expr]) -> AttributePoint:
         values = self.composer.values.all(node)
         return AttributePoint(given["p"], ZERO_CELL, values, given.get("footprint"))
+
+    def given_at_hits(self) -> dict[str, Expr]:
+        """Return the functions of what a ray has hit, by name of ``paths.vertex_at``."""
+        if self._bodies.are_many:
+            surface = self._bodies.surface(self._surface_of_hit)
+            return {"surface": surface, "field_of": self._bodies.field_of()}
+        field = self._rays.field_of(hybrid=self._hybrid)
+        return {"surface": self._surface_of_hit(self.node), "field_of": field}
 
     def _surface_of_hit(self, node: Node) -> FunctionRef:
         """Return the function ``(p, footprint, part) -> Surface`` of a tree."""
