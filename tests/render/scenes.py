@@ -11,6 +11,7 @@ from distal.render import (
     lettering,
     march,
     material,
+    media,
     patterns,
     segment,
     shade,
@@ -99,7 +100,8 @@ def first_hit(ray: Ray) -> march.Hit:
 
 
 @func
-def next_hit(ray: Ray, side: float, slope: float, part: int) -> march.Hit:
+def next_hit(ray: Ray, within: int, slope: float, part: int) -> march.Hit:
+    side = 1.0 if within == 0 else -1.0
     return segment.segment(field, ray, side, slope, everywhere(), numbers(), STEPS)
 
 
@@ -134,8 +136,8 @@ def mirrored(frame: Frame) -> vec4:
 @image
 def refracted(frame: Frame) -> vec4:
     seen = bounce.seen_refracted(
-        ray_of(frame), first_hit, next_hit, field, field_of, surface, occlusion, lights, ambient,
-        background, haze, shadow, numbers(), shade.Shading(0.0, 0.0), 2, 6,
+        ray_of(frame), first_hit, media.in_air_or_body, next_hit, field_of, surface, occlusion,
+        lights, ambient, background, haze, shadow, numbers(), shade.Shading(0.0, 0.0), 2, 6,
     )  # fmt: skip
     return tonemap.display(vec4(seen.xyz, 1.0), 1.0, tonemap.ACES)
 

@@ -65,7 +65,8 @@ class Case:
     fixed: tuple[str, ...] = ()
 
 
-SITES = {"p": PLACES, "n": DIRECTIONS, "uv": SCREEN, "direction": DIRECTIONS}
+COSINES = np.linspace(0.01, 1.0, len(PLACES))
+SITES = {"facing": COSINES, "p": PLACES, "n": DIRECTIONS, "uv": SCREEN, "direction": DIRECTIONS}
 
 
 # Lights
@@ -281,7 +282,7 @@ CAMERAS = [
 PLAIN: dict[str, Any] = {
     **{"color": (1.0, 1.0, 1.0), "diffuse": 1.0, "specular": 0.0, "transmission": 0.0},
     **{"ior": 1.5, "roughness": 0.0, "metal": 0.0, "emission": (0.0,) * 3},
-    **{"absorption": (0.0,) * 3, "fresnel": 0.0},
+    **{"absorption": (0.0,) * 3, "fresnel": 0.0, "dispersion": 0.0},
 }
 
 
@@ -296,7 +297,7 @@ def surface(**given: Any) -> dict[str, Any]:
 
 ALL_NUMBERS = {"color": COLOR, "diffuse": 0.2, "specular": 0.15, "transmission": 0.3, "ior": 1.3}
 ALL_NUMBERS |= {"roughness": 0.4, "metal": 0.35, "emission": (1.2, 0.3, 2.0)}
-ALL_NUMBERS |= {"absorption": (0.1, 0.8, 0.5), "fresnel": True}
+ALL_NUMBERS |= {"absorption": (0.1, 0.8, 0.5), "fresnel": True, "dispersion": 0.3}
 CLEAR = {"diffuse": 0.0, "transmission": 1.0, "fresnel": 1.0}
 MATERIALS = [
     Case("Material", ALL_NUMBERS, surface),
@@ -312,8 +313,10 @@ MATERIALS = [
     ),
     Case(
         "glass",
-        {"ior": 1.3, "color": COLOR},
-        lambda ior, color: surface(ior=ior, absorption=-np.log(arr(color)), **CLEAR),
+        {"ior": 1.3, "color": COLOR, "dispersion": 0.4},
+        lambda ior, color, dispersion: surface(
+            ior=ior, absorption=-np.log(arr(color)), dispersion=dispersion, **CLEAR
+        ),
     ),
     Case("glass", {"ior": 1.3, "absorption": OTHER}, lambda **k: surface(**CLEAR, **k)),
     Case(
@@ -431,6 +434,12 @@ PATTERNS = [
         ),
     ),
     Case(
+        "facing",
+        SIDES | {"power": 1.7},
+        lambda a, b, power: between(a, b, 1.0 - COSINES**power),
+        site="facing",
+    ),
+    Case(
         "noise",
         SIDES | {"size": 0.9, "octaves": 2},
         # Noise has no closed form: the library's own, its arguments by name.
@@ -464,7 +473,10 @@ PATTERNS = [
     ),
 ]
 # Without a formula here; other tests of this folder look at them.
+# ``tests/paths/test_lens_and_shutter`` looks through lenses.
+LENS = {"aperture", "focus_distance"}
 ELSEWHERE_ARGUMENTS = {"Sky": {"light"}, "pattern": {"function"}}
+ELSEWHERE_ARGUMENTS |= {camera: LENS for camera in ("Camera", "OrbitCamera", "TurnedCamera")}
 # ``test_named_materials`` looks at those that vary over a surface.
 ELSEWHERE = {"by_cell", "cube_map", "image_pattern", "Environment", "granite", "marble", "wood"}
 

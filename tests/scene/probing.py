@@ -9,11 +9,11 @@ import numpy as np
 
 from distal.ir.build import field
 from distal.ir.nodes import Param, Read, Return
-from distal.ir.types import VEC2, VEC3
+from distal.ir.types import FLOAT, VEC2, VEC3
 from distal.lang.composed import Composed
 from distal.lang.runtime_access import executor
 
-TYPES = {"uv": VEC2}
+TYPES = {"uv": VEC2, "facing": FLOAT}
 
 
 class Probe(Composed):

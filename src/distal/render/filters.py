@@ -41,7 +41,7 @@ HALVINGS = 24
 
 
 @struct
-class Placed:
+class SamplePlace:
     """A sample of a pixel.
 
     Attributes:
@@ -135,7 +135,7 @@ def mitchell(x: float) -> float:
 
 
 @func
-def place_by_filter(u: vec2, filter: int) -> Placed:
+def place_by_filter(u: vec2, filter: int) -> SamplePlace:
     """Return the place of a sample.
 
     Args:
@@ -144,13 +144,13 @@ def place_by_filter(u: vec2, filter: int) -> Placed:
     """
     uniform = 2.0 * u - 1.0
     if filter == TENT:
-        return Placed(vec2(tent(uniform.x), tent(uniform.y)), 1.0)
+        return SamplePlace(vec2(tent(uniform.x), tent(uniform.y)), 1.0)
     if filter == BOX:
-        return Placed(u - 0.5, 1.0)
+        return SamplePlace(u - 0.5, 1.0)
     if filter == GAUSSIAN:
-        return Placed(gaussian(u), 1.0)
+        return SamplePlace(gaussian(u), 1.0)
     if filter == BLACKMAN_HARRIS:
-        return Placed(vec2(blackman_harris(uniform.x), blackman_harris(uniform.y)), 1.0)
+        return SamplePlace(vec2(blackman_harris(uniform.x), blackman_harris(uniform.y)), 1.0)
     offset = vec2(mitchell(uniform.x), mitchell(uniform.y))
     outside = (abs(offset.x) > LOBE_END) != (abs(offset.y) > LOBE_END)
-    return Placed(offset, select(outside, -4.0, 4.0) * WHOLE * WHOLE)
+    return SamplePlace(offset, select(outside, -4.0, 4.0) * WHOLE * WHOLE)

@@ -4,9 +4,10 @@ Input: in which bodies a ray runs, the body whose surface it met, the material t
 ``Interface``: whether there is a boundary of two media, its material with the index relative to the
 medium on its other side, and what the ray's way absorbed.
 
-The solids of a scene with one priority are one body: where they overlap they merge. Bodies are
-numbered from the lowest priority up; where they overlap, the higher displaces the lower, whose
-surfaces are not there. A set of bodies is a sum of powers of two, 0 in the air.
+The solids of a scene with one priority are one body: where they overlap they merge. For paths,
+those of glass and opaque ones are two. Bodies are numbered from the lowest priority up; where they
+overlap, the higher displaces the lower, whose surfaces are not there. A set of bodies is a sum of
+powers of two, 0 in the air.
 
 Source: Charles M. Schmidt and Brian Budge, "Simple Nested Dielectrics in Ray Traced Images" (2002).
 """
@@ -24,6 +25,8 @@ from distal.render.march import PASSED, Hit
 from distal.render.material import Surface
 
 NONE = -1
+# The numbers of a body's own parts are above minus this.
+SPAN = 32
 
 
 @struct
@@ -66,15 +69,26 @@ def highest(within: int, bodies: int) -> int:
 
 
 @func
+def offset_of(body: int, common: int) -> int:
+    """Return how far the parts (``Hit.part``) of a body are below its own numbers.
+
+    Args:
+        body: The body.
+        common: The body that may have a table, whose parts are its own numbers.
+    """
+    return select(body == common, 0, SPAN * (body + select(body > common, 0, 1)))
+
+
+@func
 def body_of(part: int, common: int) -> int:
     """Return the body that a surface belongs to.
 
     Args:
-        part: ``Hit.part``: -2 and below for the other bodies, from the lowest priority up.
-        common: The body of shapes without a priority.
+        part: ``Hit.part``.
+        common: The body that may have a table.
     """
-    other = -2 - part
-    return select(part > -2, common, other + select(other >= common, 1, 0))
+    other = -part // SPAN - 1
+    return select(part > -SPAN, common, other + select(other >= common, 1, 0))
 
 
 @func
@@ -83,9 +97,9 @@ def part_of(body: int, common: int) -> int:
 
     Args:
         body: The body.
-        common: The body of shapes without a priority.
+        common: The body that may have a table.
     """
-    return select(body == common, -1, -2 - (body - select(body > common, 1, 0)))
+    return -1 - offset_of(body, common)
 
 
 @func
@@ -117,7 +131,7 @@ def interface_at(
         within: The bodies in which the ray runs.
         surface: The material at a point of a part, averaged over a footprint.
         bodies: How many bodies the scene has; a constant.
-        common: The body of shapes without a priority; a constant.
+        common: The body that may have a table; a constant.
         wavelength: The wavelength of the ray's light, in nanometers.
     """
     own = at_wavelength(own, wavelength)
@@ -144,8 +158,8 @@ def interface_at(
 
 
 @func
-def in_air_or_body(hit: Hit) -> int:
-    """Return the set of a ray's first side in a scene of one body: that in which it began."""
+def in_air_or_body(ray: Ray, hit: Hit) -> int:
+    """Return in which bodies a camera's ray starts, in a scene of one body."""
     return select(hit.side < 0.0, 1, 0)
 
 
@@ -158,10 +172,10 @@ def first_of_body(own: Callable[[Ray], Hit], ray: Ray, body: int, bodies: int, c
         ray: The ray.
         body: The body; a constant.
         bodies: How many bodies the scene has; a constant.
-        common: The body of shapes without a priority; a constant.
+        common: The body that may have a table; a constant.
     """
     hit = own(ray)
-    part = select(body == common, hit.part, part_of(body, common))
+    part = hit.part - offset_of(body, common)
     return Hit(hit.t, hit.found, hit.steps, hit.side, hit.lost, part)
 
 
@@ -187,16 +201,15 @@ def next_of_body(
         part: The part that has this surface.
         body: The body; a constant.
         bodies: How many bodies the scene has; a constant.
-        common: The body of shapes without a priority; a constant.
+        common: The body that may have a table; a constant.
     """
     if bodies == 1:
         return own(ray, select(within == 0, 1.0, -1.0), slope, part)
     starts = body_of(part, common) == body
     side = select(has(within, bit_of(body)), -1.0, 1.0)
-    row = select(starts and body == common, part, -1)
-    hit = own(ray, side, select(starts, slope, 0.0), row)
-    met = select(body == common, hit.part, part_of(body, common))
-    return Hit(hit.t, hit.found, hit.steps, hit.side, hit.lost, met)
+    below = offset_of(body, common)
+    hit = own(ray, side, select(starts, slope, 0.0), select(starts, part + below, -1))
+    return Hit(hit.t, hit.found, hit.steps, hit.side, hit.lost, hit.part - below)
 
 
 @func

@@ -35,7 +35,7 @@ MOST_SPECULAR: Final = 12
 
 
 @struct
-class Seen:
+class SeenSurface:
     """The first surface along a path that scatters light.
 
     Attributes:
@@ -64,7 +64,7 @@ def first_scattering(
     cone: Cone,
     normals: int = EXACT,
     normal_step: float = 1e-3,
-) -> Seen:
+) -> SeenSurface:
     """Return the first surface along a path that is neither a mirror nor clear glass.
 
     Args:
@@ -117,7 +117,7 @@ def first_scattering(
         throughput = throughput * onward.weight
         start = start_from(vertex, onward.direction)
         width = continued(width, vertex.t)
-    return Seen(found, color, normal)
+    return SeenSurface(found, color, normal)
 
 
 @func

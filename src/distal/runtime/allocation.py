@@ -32,7 +32,7 @@ FEWEST_SAMPLES: Final = 64
 _SQUARE_PX: Final = 8
 
 
-class Measured(Protocol):
+class MeasuredFilm(Protocol):
     """The film, as far as passes depend on it; see ``accumulation.Film``."""
 
     samples: NDArray[np.int32]
@@ -79,7 +79,7 @@ def pass_size(first: int, refinement: Refinement) -> int:
     return min(size, refinement.samples - first)
 
 
-def next_pass(film: Measured, refinement: Refinement) -> Pass | None:
+def next_pass(film: MeasuredFilm, refinement: Refinement) -> Pass | None:
     """Return the next pass; None if the picture is finished.
 
     Of the tiles that need more samples those with the fewest come first, so all pixels of a pass
@@ -101,7 +101,7 @@ def next_pass(film: Measured, refinement: Refinement) -> Pass | None:
     return Pass(first, count, _listed(by_pixel(chosen, width, height)))
 
 
-def wanted(film: Measured, refinement: Refinement) -> NDArray[np.float64]:
+def wanted(film: MeasuredFilm, refinement: Refinement) -> NDArray[np.float64]:
     """Return the number of samples that the pixels of each tile need for the wanted error."""
     tiles = film.samples[::TILE_PX, ::TILE_PX]
     if refinement.noise is None:
@@ -114,7 +114,7 @@ def wanted(film: Measured, refinement: Refinement) -> NDArray[np.float64]:
     return np.maximum(needed, float(FEWEST_SAMPLES))
 
 
-def share_done(film: Measured, refinement: Refinement) -> float:
+def share_done(film: MeasuredFilm, refinement: Refinement) -> float:
     """Return the share of the samples that the film already has."""
     if refinement.noise is None or int(film.samples.min()) < FEWEST_SAMPLES:
         return float(film.samples.mean()) / refinement.samples

@@ -8,7 +8,7 @@ bodies' trees; functions of the whole scene for rays that know in which bodies t
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Final
+from typing import Any, Final
 
 from distal.diagnostics import CompileError
 from distal.fields.combine.joins import UNION
@@ -21,6 +21,7 @@ from distal.render.camera import Ray
 from distal.render.footprint import Footprint
 from distal.render.march import Hit
 from distal.scene.lowering.captures import capturing
+from distal.scene.lowering.parts.flatten import member_count
 from distal.scene.lowering.ray_functions import Define, Params, RayFunctions, united
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.tree.node import Node
@@ -30,27 +31,40 @@ from distal.scene.tree.values import StatementList
 MOST: Final = 8
 
 
-def bodies_of(root: Node) -> dict[int, Node]:
-    """Return the tree of each body by its priority, from the lowest up; one body is at 0.
+def bodies_of(root: Node, material: Any, *, apart: bool) -> list[Node]:
+    """Return the tree of each body, from the lowest priority up.
+
+    Args:
+        root: The tree of the scene.
+        material: The material of shapes that have none.
+        apart: Whether opaque solids and those of glass are different bodies. Then a solid inside of
+            glass is seen, and glass that stands on a floor has a lower face.
 
     Raises:
         CompileError: There are too many priorities, or a blend or cut joins several.
     """
-    members: dict[int, list[Node]] = {}
+    members: dict[tuple[int, bool], list[Node]] = {}
     for member in members_of(root):
-        members.setdefault(_priority(member), []).append(member)
-    for priority, nodes in members.items():
-        for node in nodes:
-            _check(node, priority)
-    if len(members) == 1:
-        return {0: root}
-    if len(members) > MOST:
+        is_opaque = apart and not is_clear(member, material)
+        members.setdefault((_priority(member), is_opaque), []).append(member)
+    priorities = {priority for priority, _ in members}
+    if len(priorities) > MOST:
         raise CompileError.at(
-            f"the shapes have {len(members)} different priorities; {MOST} are possible",
+            f"the shapes have {len(priorities)} different priorities; {MOST} are possible",
             root.place,
             "give the same priority to shapes that do not overlap",
         )
-    return {priority: united(root, members[priority]) for priority in sorted(members)}
+    for (priority, _), nodes in members.items():
+        for node in nodes:
+            _check(node, priority)
+    if len(members) == 1:
+        return [root]
+    return [united(root, members[key]) for key in sorted(members)]
+
+
+def largest_of(bodies: Sequence[Node]) -> int:
+    """Return which body has the most parts: the one that may have a table."""
+    return max(range(len(bodies)), key=lambda k: member_count(bodies[k]))
 
 
 def members_of(root: Node) -> Iterator[Node]:
@@ -62,6 +76,23 @@ def members_of(root: Node) -> Iterator[Node]:
             stack.extend(reversed(node.children))
         else:
             yield node
+
+
+def is_clear(member: Node, material: Any) -> bool:
+    """Return whether light may pass through some shape of a member.
+
+    Args:
+        member: The member.
+        material: The material of shapes that have none.
+    """
+    stack = [member]
+    while stack:
+        node = stack.pop()
+        if node.material is None and node.children:
+            stack.extend(node.children)
+        elif (node.material or material).refracts:
+            return True
+    return False
 
 
 def _priority(node: Node) -> int:
@@ -99,28 +130,29 @@ class BodyFunctions:
 
     Args:
         composer: Makes the functions of the program's shapes.
-        bodies: The tree of each body by its priority, from the lowest up.
+        bodies: The tree of each body, from the lowest priority up.
+        common: The body that may have a table.
         define: Adds a function.
-        closed: As for ``RayFunctions``; for one body alone.
+        closed: As for ``RayFunctions``.
     """
 
     def __init__(
         self,
         composer: ShapeComposer,
-        bodies: Mapping[int, Node],
+        bodies: Sequence[Node],
+        common: int,
         define: Define,
         *,
         closed: bool = False,
     ) -> None:
         self._composer = composer
-        self._nodes = list(bodies.values())
-        self._rays = [RayFunctions(composer, node, define, closed=closed) for node in self._nodes]
-        priorities = list(bodies)
-        self._common = priorities.index(0) if 0 in bodies else 0
+        self._nodes = bodies
+        self._rays = [RayFunctions(composer, node, define, closed=closed) for node in bodies]
+        self._common = common
         self._define = define
         self.constants: Mapping[str, Expr] = {
             "bodies": integer(len(bodies)),
-            "common": integer(self._common),
+            "common": integer(common),
         }
 
     @property
@@ -246,13 +278,17 @@ class BodyFunctions:
         result = signature.result
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            args = tuple(given[n] for n, _ in params)
-            others = [f for k, f in enumerate(own) if k != self._common]
-            for j, each in enumerate(others):
-                is_own = compare(CompareOp.EQ, given["part"], integer(-2 - j))
+            known = {**given, "common": integer(self._common)}
+            of = body.let("of", self._composer.call(media.body_of, known))
+            for k, each in enumerate(own):
+                below = {"body": integer(k), "common": integer(self._common)}
+                part = add(given["part"], self._composer.call(media.offset_of, below))
+                args = tuple(part if n == "part" else given[n] for n, _ in params)
                 call = Call(each.name, (*args, *each.captures), result)
+                if k == len(own) - 1:
+                    return call
+                is_own = compare(CompareOp.EQ, of, integer(k))
                 body.statements.append(If(is_own, (Return(call),), ()))
-            common = own[self._common]
-            return Call(common.name, (*args, *common.captures), result)
+            raise AssertionError("there is no body")
 
         return self._define(name, params, make, [])

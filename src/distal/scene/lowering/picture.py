@@ -52,11 +52,11 @@ from distal.scene.lowering.attributes import (
     attribute,
     of_part,
 )
-from distal.scene.lowering.bodies import BodyFunctions, bodies_of, members_of
+from distal.scene.lowering.bodies import BodyFunctions, bodies_of, largest_of, members_of
 from distal.scene.lowering.camera_functions import CameraFunctions
 from distal.scene.lowering.glass_shadows import colored_shadow, split_glass
 from distal.scene.lowering.light_functions import LightFunctions
-from distal.scene.lowering.parts.table import rolled_for, split_table
+from distal.scene.lowering.parts.table import has_table, rolled_for, split_table
 from distal.scene.lowering.photon_functions import PhotonFunctions
 from distal.scene.lowering.ray_functions import RayFunctions, step_limit, united
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
@@ -109,25 +109,24 @@ class SceneLowering:
         self._scene = scene
         rolls = scene.acceleration and not self._hybrid
         node = scene.shape.node
-        bodies = {0: node}
+        bodies, common = [node], 0
         if paths or scene.renderer == "refracted":
             node = with_insides(node)
-            bodies = bodies_of(node)
-        if rolls and 0 in bodies:
-            bodies[0] = rolled_for(assembly, bodies[0])
+            apart = paths and not (rolls and has_table(assembly, node))
+            bodies = bodies_of(node, scene.material, apart=apart)
+            common = largest_of(bodies)
+        if rolls:
+            bodies[common] = rolled_for(assembly, bodies[common])
         # A table is the first member of the union.
-        common = list(members_of(bodies[0])) if 0 in bodies else []
-        others = [body for priority, body in bodies.items() if priority]
-        self.node = united(node, [*common, *others]) if others else bodies[0]
-        # Views show the author's values; rays need only bounds far from surfaces.
+        members = [*members_of(bodies[common]), *bodies[:common], *bodies[common + 1 :]]
+        self.node = united(node, members) if len(bodies) > 1 else bodies[0]
         self._shown_node = self.node
         if rolls:
             self._shown_node = rolled_for(assembly, scene.shape.node, exact=True)
         self.composer = ShapeComposer(assembly, [self.node])
-        # Numbers of solids would be those of bodies: with several bodies, rays are marched.
-        closed = paths and len(bodies) == 1 and not self._hybrid
+        closed = paths and not self._hybrid
         self._rays = RayFunctions(self.composer, self.node, self._function, closed=closed)
-        self._bodies = BodyFunctions(self.composer, bodies, self._function, closed=closed)
+        self._bodies = BodyFunctions(self.composer, bodies, common, self._function, closed=closed)
         self._view_numbers: dict[str, Expr] = {}
         self._has_photons = False
         self._numbers = {

@@ -51,6 +51,8 @@ SHADOW_STEPS: Final = 2
 LEAST_SHADOW_STEPS: Final = 64
 # The most solids with chords that are met in closed form; more of them are marched.
 MOST_SOLIDS: Final = 15
+# The same for paths, which number them (``media.SPAN``).
+MOST_SHAPES: Final = 15
 
 # The number of the first shape that paths meet in closed form; that of each other one is one lower.
 # Parts of a table have numbers from 0 on, and -1 is not known.
@@ -149,8 +151,9 @@ class RayFunctions:
         self._table = composer.table(tables[0]) if tables else None
         # All shapes, if paths meet them in closed form; a hit has the number of its shape.
         self._closed: list[Node] = []
-        if closed and self._table is None and is_closed and all(map(has_chord, self._planes)):
-            self._closed = [*self._solids, *self._planes]
+        shapes = [*self._others, *self._planes]
+        if closed and self._table is None and len(shapes) <= MOST_SHAPES:
+            self._closed = shapes if all(map(has_chord, shapes)) else []
 
     def first_hit(
         self, body: StatementList, given: Mapping[str, Expr], *, hybrid: bool

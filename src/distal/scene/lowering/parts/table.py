@@ -161,7 +161,7 @@ def rolled_for(assembly: Assembly, root: Node, *, exact: bool = False) -> Node:
     """
     root = celled_for(assembly.table_from, root, exact=exact)
     if assembly.table_from is not None:
-        return rolled(root).node if member_count(root) >= assembly.table_from else root
+        return rolled(root).node if has_table(assembly, root) else root
     if root.parts > MOST_WITHOUT:
         raise CompileError.at(
             f"{root.parts:,} parts of '{root.name}' need a table, and this target has no buffers",
@@ -169,6 +169,11 @@ def rolled_for(assembly: Assembly, root: Node, *, exact: bool = False) -> Node:
             f"take a target with buffers; {MOST_WITHOUT:,} parts are possible without",
         )
     return root
+
+
+def has_table(assembly: Assembly, root: Node) -> bool:
+    """Return whether ``rolled_for`` may make a table of a tree."""
+    return assembly.table_from is not None and member_count(root) >= assembly.table_from
 
 
 def split_table(root: Node) -> tuple[TableNode | None, Node | None]:
