@@ -27,6 +27,8 @@ PAGE: Final = ROOT / "docs/gallery.md"
 PICTURES: Final = ROOT / "docs/pictures"
 SIZE: Final = (480, 360)
 SAMPLES: Final = 4
+# Samples of paths.
+SPP: Final = 256
 MOST_BYTES: Final = 150_000
 # The time at which a moving example is drawn, in seconds; 0 for the others.
 SECONDS: Final = {"melting": 1.0, "sdfray_glass": 0.6, "course_5_animation": 0.7}
@@ -36,6 +38,7 @@ GROUPS: Final = {
         *("city", "castle", "still_life", "room_door", "gyroid_part", "enclosure", "catalogue"),
         *("bunny", "sea", "beach", "forest", "bricks", "molecule"),
     ),
+    "True optics": ("wine", "caustics", "prism", "cornell_box", "depth_of_field"),
     "The first pictures": ("raymarcher", "melting"),
     "After sdfray": ("sdfray_",),
     "A course in ray marching": ("course_",),
@@ -81,6 +84,8 @@ def _entry(name: str) -> str:
     what = told.split("\n\n")[0].replace("\n", " ").replace("``", "`")
     at = f" --time {SECONDS[name]:g}" if name in SECONDS else ""
     samples = f" --samples {SAMPLES}"
+    if _is_traced(distal.load(f"example:{name}")):
+        samples = f" --spp {SPP}"
     command = f"distal render example:{name} -o {name}.png{at}{samples}"
     size = f"{SIZE[0]}x{SIZE[1]}"
     return (
@@ -89,13 +94,18 @@ def _entry(name: str) -> str:
     )
 
 
+def _is_traced(image: Any) -> bool:
+    return isinstance(image, Scene) and image.mode == "path"
+
+
 def draw(name: str) -> None:
     """Draw an example's picture, as small as it may be."""
     begin = time.perf_counter()
     image: Any = distal.load(f"example:{name}")
     seconds = SECONDS.get(name, 0.0)
     if isinstance(image, Scene):
-        pixels = image.render(size=SIZE, time=seconds, samples=SAMPLES).array
+        samples = SPP if _is_traced(image) else SAMPLES
+        pixels = image.render(size=SIZE, time=seconds, samples=samples).array
     else:  # a shader has no samples of its own: four pixels for one
         large = image.render(size=(2 * SIZE[0], 2 * SIZE[1]), time=seconds).array
         pixels = large.reshape(SIZE[1], 2, SIZE[0], 2, -1).mean(axis=(1, 3))
