@@ -22,13 +22,11 @@ from distal.render.paths import (
     DECISIONS,
     DIRECTION,
     WAVELENGTH,
-    Start,
-    start_from,
-    vertex_at,
 )
 from distal.render.sampling.points import Stream, single, triple
 from distal.render.scatter import all_specular, meet, sample_from
 from distal.render.segment import leaving_slope
+from distal.render.vertices import Start, start_from, vertex_at
 
 # Mirrors and sheets of clear glass that are looked through.
 MOST_SPECULAR: Final = 12

@@ -48,13 +48,14 @@ from distal.render.lights import LightSample
 from distal.render.march import Hit, March
 from distal.render.material import Surface, brightest
 from distal.render.normals import EXACT
-from distal.render.paths import LIKELIEST, MOST_SEGMENTS, SURE, Start, Vertex, start_from, vertex_at
+from distal.render.paths import LIKELIEST, MOST_SEGMENTS, SURE
 from distal.render.photon_aim import TARGET_DECISIONS, WAVELENGTH, bundles, departure
 from distal.render.sampling.points import Stream, reversed_bits, single, triple
 from distal.render.scatter import Meeting, meet, respond_to, sample_from
 from distal.render.segment import leaving_slope
 from distal.render.shade import Shading
 from distal.render.surroundings import DirectionSample
+from distal.render.vertices import Start, Vertex, start_from, vertex_at
 
 PI = 3.14159265358979
 # The first radius in pixels at the middle of the target, and its limits as parts of the target.

@@ -16,9 +16,9 @@ from distal.ir.types import FLOAT, INT, VEC3
 from distal.render import photon_aim, photons
 from distal.render.material import glass, metal, mirror
 from distal.render.named_materials import CLEAR, METALS
-from distal.render.paths import Vertex
 from distal.render.sampling.points import Stream
 from distal.render.scatter import SHARPEST, Meeting
+from distal.render.vertices import Vertex
 from distal.scene.lowering.ray_functions import Define
 from distal.scene.lowering.shapes import ShapeComposer
 from distal.scene.lowering.union_parts import parts_of

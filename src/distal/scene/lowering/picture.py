@@ -553,7 +553,7 @@ class SceneLowering:
         return AttributePoint(given["p"], ZERO_CELL, values, given.get("footprint"))
 
     def given_at_hits(self) -> dict[str, Expr]:
-        """Return the functions of what a ray has hit, by name of ``paths.vertex_at``."""
+        """Return the functions of what a ray has hit, by name of ``vertices.vertex_at``."""
         if self._bodies.are_many:
             surface = self._bodies.surface(self._surface_of_hit)
             return {"surface": surface, "field_of": self._bodies.field_of()}
