@@ -129,9 +129,9 @@ def powers(scene: Scene, count: int) -> Any:
     """The power of each photon of a scene, in the unit of its lights; 0 of those that are lost."""
     view = scene.view("color", paths=True, caustics=True)
     photons = executor()._photons(view.photons, "cpu", RenderOptions(size=(64, 64)))
-    tables = photons.tables(0, 1)
+    tables = photons.tables(0, 1, 64 * 64, 0.0)
     numbers = {**tables.numbers, "First_sample": 0}
-    found = photons.deposits.run(np.arange(count, dtype=np.int32), numbers)
+    found = photons.deposits.run(np.arange(count, dtype=np.int32), numbers, 0.0)
     return found[2][:, 1].astype(float) * (found[3] >= 0)
 
 

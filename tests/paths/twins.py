@@ -179,6 +179,11 @@ class Lamp:
     color: Color = WHITE
     radius: float = 0.0
 
+    @property
+    def has_size(self) -> bool:
+        """Whether random rays meet it."""
+        return self.radius > 0.0 or self.kind in ("everywhere", "environment")
+
     def ours(self) -> Any:
         """The light here."""
         if self.kind == "point":

@@ -84,8 +84,9 @@ def program(**changed):
 
 def test_every_argument_is_changed_here():
     named = set(inspect.signature(Scene).parameters)
-    # With and without acceleration the picture is the same (``tests/parts``).
-    assert named == set(OTHERS) | STRIDES | HALO | {"name", "acceleration"}
+    # With and without acceleration the picture is the same (``tests/parts``); the shutter is
+    # open in mode "path" (``tests/paths/test_lens_and_shutter``).
+    assert named == set(OTHERS) | STRIDES | HALO | {"name", "acceleration", "shutter"}
     assert Scene(SHAPE, name="pool").name == "pool"
 
 

@@ -43,7 +43,12 @@ def split_glass(root: Node, material: Any) -> tuple[list[Node], list[Node]]:
 
 
 def _is_clear(member: Node, material: Any) -> bool:
-    """Return whether light may pass through each shape of a member."""
+    """Return whether light passes through each shape of a member.
+
+    Args:
+        member: The member.
+        material: The material of shapes that have none.
+    """
     if isinstance(member, TableNode):
         return False
     stack = [member]
@@ -51,9 +56,19 @@ def _is_clear(member: Node, material: Any) -> bool:
         node = stack.pop()
         if node.material is None and node.children:
             stack.extend(node.children)
-        elif not (node.material or material).refracts:
+        elif not _is_glass(node.material or material):
             return False
     return True
+
+
+def _is_glass(material: Any) -> bool:
+    """Return whether a material lets light through; not if an author's function decides that."""
+    if not material.refracts:
+        return False
+    inner = [v for v in material.call.values.values() if hasattr(v, "refracts")]
+    if inner:
+        return all(map(_is_glass, inner))
+    return bool(material.call.func.python_function.__module__.startswith("distal."))
 
 
 def colored_shadow(

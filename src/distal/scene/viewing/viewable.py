@@ -184,9 +184,10 @@ class Viewable:
                 view, options.samples, steered=steering is not None, mode=self.mode
             )
             settings = {**moved, **sampled}
-            chosen = ViewOptions(view=view, steering=steering)
-            refinement = chosen.refinement(self.mode, options.samples, self.scene.shutter)
-            options = replace(options, refinement=refinement)
+            if options.refinement is None:
+                chosen = ViewOptions(view=view, steering=steering)
+                refinement = chosen.refinement(self.mode, options.samples, self.scene.shutter)
+                options = replace(options, refinement=refinement)
         picture = executor().render(image, with_range(image, replace(options, settings=settings)))
         numbers = steering.numbers if steering is not None and self.steers else None
         staged = None if self.scene is None else self.scene.staged
