@@ -27,6 +27,7 @@ scene = Scene(
         focus_distance=focus,
     ),
     background=Sky(sun=SUN, light=True),
+    fog_density=0.07,
     mode="path",
     tone_map="agx",
 )

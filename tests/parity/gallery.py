@@ -92,6 +92,11 @@ def image(example: str) -> Any:
     return distal.load(f"example:{example}")
 
 
+def direct(example: str) -> dict[str, Any]:
+    """The options by which an example shows what shader texts do, direct light."""
+    return {"mode": "direct"} if isinstance(image(example), distal.Scene) else {}
+
+
 def is_function_of_a_pixel(example: str) -> bool:
     """Whether it is an ``@image``: quick on every way of drawing."""
     return not isinstance(image(example), distal.Scene)
@@ -117,7 +122,9 @@ def is_moving(example: str) -> bool:
 @cache
 def cpu_picture(example: str, size: tuple[int, int], seconds: float) -> NDArray[Any]:
     """The middle that all ways are held against."""
-    picture: NDArray[Any] = image(example).render(size=size, samples=1, time=seconds).array
+    picture: NDArray[Any] = (
+        image(example).render(size=size, samples=1, time=seconds, **direct(example)).array
+    )
     return picture
 
 
@@ -127,7 +134,7 @@ def by_device(device: str) -> Callable[[str, tuple[int, int], float], NDArray[An
     def draw(example: str, size: tuple[int, int], seconds: float) -> NDArray[Any]:
         picture: NDArray[Any]
         options: dict[str, Any] = {"samples": 1, "time": seconds, "device": device}
-        picture = image(example).render(size=size, **options).array
+        picture = image(example).render(size=size, **options, **direct(example)).array
         return picture
 
     return draw

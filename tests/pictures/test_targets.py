@@ -26,15 +26,19 @@ LONG_BY_REFERENCE = (
     "bricks",
     "castle",
     "catalogue",
+    "caustics",
+    "cornell_box",
     "enclosure",
     "forest",
     "gyroid_part",
     "molecule",
+    "prism",
     "ripples",
     "sdfray_csg_on_checker",
     "sdfray_glass",
     "sdfray_refraction",
     "still_life",
+    "wine",
 )
 
 
@@ -69,6 +73,11 @@ def image(example):
     return distal.load(f"example:{example}")
 
 
+def direct(example):
+    """The options by which an example shows what shader texts do, direct light."""
+    return {"mode": "direct"} if isinstance(image(example), distal.Scene) else {}
+
+
 @cache
 def artifact(example, target):
     return text_of(image(example), target)
@@ -76,7 +85,7 @@ def artifact(example, target):
 
 @cache
 def cpu_picture(example, time):
-    return image(example).render(size=SIZE, samples=1, time=time).array
+    return image(example).render(size=SIZE, samples=1, time=time, **direct(example)).array
 
 
 @cache
@@ -114,7 +123,9 @@ BY_REFERENCE = [n for n in sorted(distal.gallery()) if ALL or n not in LONG_BY_R
 def test_reference_draws_the_cpu_picture(example):
     size = SIZE if is_small(example) else (64, 48)
     cpu, reference = (
-        image(example).render(size=size, samples=1, time=2.9, device=device).array
+        image(example)
+        .render(size=size, samples=1, time=2.9, device=device, **direct(example))
+        .array
         for device in ("cpu", "reference")
     )
     found = difference(reference, cpu)
