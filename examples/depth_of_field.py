@@ -28,6 +28,7 @@ scene = Scene(
     ),
     background=Sky(sun=SUN, light=True),
     fog_density=0.07,
+    steps=400,
     mode="path",
     tone_map="agx",
 )
