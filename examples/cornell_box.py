@@ -13,7 +13,7 @@ ceiling = Box((2.0, 0.1, 2.0)).translate(y=2.05).paint(white)
 back = Box((2.0, 2.2, 0.1)).translate(y=1.0, z=-1.05).paint(white)
 left = Box((0.1, 2.2, 2.1)).translate(x=-1.05, y=1.0, z=-0.05).paint(red)
 right = Box((0.1, 2.2, 2.1)).translate(x=1.05, y=1.0, z=-0.05).paint(green)
-lamp = Box((0.6, 0.02, 0.5)).translate(y=1.985).paint(emissive((1.0, 0.83, 0.6), 13.0))
+lamp = Box((0.6, 0.02, 0.5)).translate(y=1.985).paint(emissive((1.0, 0.83, 0.6), 26.0))
 
 tall = Box((0.58, 1.2, 0.58)).rotate(y=0.3).translate(-0.36, 0.6, -0.35).paint(white)
 ball = Sphere(0.34).translate(0.42, 0.34, 0.3).paint(glass(1.5))

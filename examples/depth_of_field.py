@@ -27,7 +27,7 @@ scene = Scene(
         focus_distance=focus,
     ),
     background=Sky(sun=SUN, light=True),
-    fog_density=0.07,
+    fog_density=0.03,
     steps=400,
     mode="path",
     tone_map="agx",
