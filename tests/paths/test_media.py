@@ -145,3 +145,12 @@ def test_too_many_priorities():
 def test_a_priority_is_a_whole_number():
     with pytest.raises(TypeError, match="priority"):
         Sphere().paint(glass(), priority=0.5)
+
+
+def test_glass_that_stands_on_a_floor_shows_the_floor():
+    """At most the two faces of a gap that rounding may find are lost, with all reflections."""
+    floor = Plane().paint(emissive(WHITE, 0.5))
+    block = Box((2, 1, 2)).translate(y=0.5).paint(glass())
+    mean, sigma = estimate(block | floor, (0.1, 3, 0.2), (0.1, 0, 0.2), 64)
+    assert 0.5 * layers((1.5,), (0,), (1.0,)) - 4 * sigma.max() <= mean.min()
+    assert mean.max() <= 0.5 * 0.96 + 4 * sigma.max()
