@@ -25,8 +25,7 @@ from distal.render.paths import (
 )
 from distal.render.sampling.points import Stream, single, triple
 from distal.render.scatter import all_specular, meet, sample_from
-from distal.render.segment import leaving_slope
-from distal.render.vertices import Start, start_from, vertex_at
+from distal.render.vertices import Start, start_from, straight_on, vertex_at
 
 # Mirrors and sheets of clear glass that are looked through.
 MOST_SPECULAR: Final = 12
@@ -101,8 +100,7 @@ def first_scattering(
         if within != 0:
             throughput = throughput * exp(-met.absorption * vertex.t)
         if bodies > 1 and not met.is_boundary:
-            slope = leaving_slope(vertex.slope, vertex.n, here.direction)
-            start = Start(Ray(vertex.p, here.direction), met.within, slope, vertex.part)
+            start = straight_on(vertex, here.direction)
             continue
         meeting = meet(met.surface, -here.direction, vertex.n, met.inside)
         u = triple(stream, CAMERA_DECISIONS + DECISIONS * i + DIRECTION)

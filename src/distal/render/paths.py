@@ -51,10 +51,9 @@ from distal.render.path_lights import aim_at_light, light_from, met_lights
 from distal.render.photon_aim import bundles, is_followed_from_afar
 from distal.render.sampling.points import Stream, single, triple
 from distal.render.scatter import Meeting, all_specular, emitted, meet, sample_from
-from distal.render.segment import leaving_slope
 from distal.render.shade import Shading
 from distal.render.surroundings import DirectionSample
-from distal.render.vertices import Start, Vertex, start_from, vertex_at
+from distal.render.vertices import Start, Vertex, start_from, straight_on, vertex_at
 
 # The first segments of a path are always followed; later ones with this probability at most.
 SURE: Final = 4
@@ -200,8 +199,7 @@ def path_light(
             color += throughput * mix(fog(here.direction), emission, clear)
             throughput = throughput * clear
         if bodies > 1 and not met.is_boundary:
-            slope = leaving_slope(vertex.slope, vertex.n, here.direction)
-            start = Start(Ray(vertex.p, here.direction), met.within, slope, vertex.part)
+            start = straight_on(vertex, here.direction)
             continue
         meeting = meet(material, -here.direction, vertex.n, met.inside)
         # From where a path meets glass with dispersion its light has one wavelength.

@@ -52,10 +52,9 @@ from distal.render.paths import LIKELIEST, MOST_SEGMENTS, SURE
 from distal.render.photon_aim import TARGET_DECISIONS, WAVELENGTH, bundles, departure
 from distal.render.sampling.points import Stream, reversed_bits, single, triple
 from distal.render.scatter import Meeting, meet, respond_to, sample_from
-from distal.render.segment import leaving_slope
 from distal.render.shade import Shading
 from distal.render.surroundings import DirectionSample
-from distal.render.vertices import Start, Vertex, start_from, vertex_at
+from distal.render.vertices import Start, Vertex, start_from, straight_on, vertex_at
 
 PI = 3.14159265358979
 # The first radius in pixels at the middle of the target, and its limits as parts of the target.
@@ -248,8 +247,7 @@ def deposit(
         elif bundled:
             power = power * exp(-look.fog_density * vertex.t)
         if bodies > 1 and not met.is_boundary:
-            slope = leaving_slope(vertex.slope, vertex.n, here.direction)
-            start = Start(Ray(vertex.p, here.direction), met.within, slope, vertex.part)
+            start = straight_on(vertex, here.direction)
             continue
         meeting = meet(material, -here.direction, vertex.n, met.inside)
         if material.dispersion > 0.0 and not is_tinted:

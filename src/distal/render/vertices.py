@@ -121,3 +121,10 @@ def start_from(vertex: Vertex, direction: vec3) -> Start:
     within = select(rise > 0.0, vertex.within, vertex.interface.within)
     slope = leaving_slope(vertex.slope, vertex.n, direction)
     return Start(Ray(vertex.p, direction), within, slope, vertex.part)
+
+
+@func
+def straight_on(vertex: Vertex, direction: vec3) -> Start:
+    """Return the ray that goes on in its direction, because no media meet at the surface."""
+    slope = leaving_slope(vertex.slope, vertex.n, direction)
+    return Start(Ray(vertex.p, direction), vertex.interface.within, slope, vertex.part)

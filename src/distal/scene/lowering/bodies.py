@@ -85,14 +85,23 @@ def is_clear(member: Node, material: Any) -> bool:
         member: The member.
         material: The material of shapes that have none.
     """
+    return any(found.refracts for found in materials_of(member, material))
+
+
+def materials_of(member: Node, material: Any) -> Iterator[Any]:
+    """Yield the materials of the shapes of a member; the outermost paint counts.
+
+    Args:
+        member: The member.
+        material: The material of shapes that have none.
+    """
     stack = [member]
     while stack:
         node = stack.pop()
         if node.material is None and node.children:
             stack.extend(node.children)
-        elif (node.material or material).refracts:
-            return True
-    return False
+        else:
+            yield node.material or material
 
 
 def _priority(node: Node) -> int:

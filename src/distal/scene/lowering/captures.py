@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from distal.ir.nodes import Expr, FunctionRef
+from distal.scene.tree.conversion import NO_VALUES
 from distal.scene.tree.values import StatementList
 
 Make = Callable[[StatementList, Mapping[str, Any]], Expr]
@@ -20,27 +21,31 @@ def capturing(
     params: Any,
     functions: Mapping[str, FunctionRef],
     make: Make,
+    values: Mapping[str, Expr] = NO_VALUES,
 ) -> FunctionRef:
-    """Return a function of some parameters that calls others.
+    """Return a function of some parameters that calls others, and captures what they capture.
 
     Args:
         define: Adds a function.
         name: Its name.
         params: Name and type of each parameter.
         functions: The functions that it calls, by name.
-        make: Returns its result from its parameters and these functions.
+        make: Returns its result from its parameters, these functions and the values.
+        values: Other values of its caller that it captures, by name.
     """
-    captured = {f"{n}_{i}": v for n, f in functions.items() for i, v in enumerate(f.captures)}
+    captured = dict(values)
+    for n, function in functions.items():
+        captured |= {f"{n}_{i}": value for i, value in enumerate(function.captures)}
 
     def made(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-        here = {n: with_captures(f, n, given) for n, f in functions.items()}
+        here = {n: _with_captures(f, n, given) for n, f in functions.items()}
         return make(body, {**given, **here})
 
     every = [*params, *((n, value.type) for n, value in captured.items())]
     return define(name, every, made, list(captured.values()))
 
 
-def with_captures(function: FunctionRef, name: str, given: Mapping[str, Expr]) -> FunctionRef:
+def _with_captures(function: FunctionRef, name: str, given: Mapping[str, Expr]) -> FunctionRef:
     """Return a function that captures values of its caller, which are parameters here.
 
     Args:

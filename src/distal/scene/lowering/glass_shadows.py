@@ -15,7 +15,7 @@ from distal.ir.types import FLOAT, INT, VEC3
 from distal.render import glass_shadows, settings
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
-from distal.scene.lowering.bodies import members_of
+from distal.scene.lowering.bodies import materials_of, members_of
 from distal.scene.lowering.captures import capturing
 from distal.scene.lowering.chords import chord_of, has_chord
 from distal.scene.lowering.parts.table import TableNode
@@ -51,14 +51,7 @@ def _is_clear(member: Node, material: Any) -> bool:
     """
     if isinstance(member, TableNode):
         return False
-    stack = [member]
-    while stack:
-        node = stack.pop()
-        if node.material is None and node.children:
-            stack.extend(node.children)
-        elif not _is_glass(node.material or material):
-            return False
-    return True
+    return all(map(_is_glass, materials_of(member, material)))
 
 
 def _is_glass(material: Any) -> bool:

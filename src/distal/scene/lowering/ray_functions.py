@@ -35,6 +35,7 @@ from distal.render import (
 )
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
+from distal.scene.lowering.captures import capturing
 from distal.scene.lowering.chords import chord_of, has_chord
 from distal.scene.lowering.parts.table import TableNode
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
@@ -500,18 +501,8 @@ class RayFunctions:
         captured = {n: values[n] for n in _TAKEN if n in values and n not in constants}
         if self._table is not None:
             constants |= self._table.given
-        for name, passed in functions.items():
-            captured |= {f"{name}_{i}": value for i, value in enumerate(passed.captures)}
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            here = {name: _with_captures(f, name, given) for name, f in functions.items()}
-            return self._composer.call(function, {**constants, **here, **given})
+            return self._composer.call(function, {**constants, **given})
 
-        every = [*params, *((name, value.type) for name, value in captured.items())]
-        return self._define(function.name, every, make, list(captured.values()))
-
-
-def _with_captures(function: FunctionRef, name: str, given: Mapping[str, Expr]) -> FunctionRef:
-    """Return a function that captures values of its caller, which are parameters here."""
-    captures = tuple(given[f"{name}_{i}"] for i in range(len(function.captures)))
-    return FunctionRef(function.name, captures, function.type)
+        return capturing(self._define, function.name, params, functions, make, captured)
