@@ -258,6 +258,7 @@ class Gpu:
 
     Attributes:
         adapter: The GPU.
+        wgpu: The package; ``wgpu_module`` takes 30 µs each time.
         device: wgpu's device.
         lock: Held while commands are submitted: a window and a video may share the device.
         is_lost: Whether the device was lost; kernels then open a new one.
@@ -266,6 +267,7 @@ class Gpu:
 
     def __init__(self, adapter: Adapter, handle: Any) -> None:
         self.adapter = adapter
+        self.wgpu = wgpu_module()
         self.lock = threading.RLock()
         self.is_lost = False
         self.filters_floats = "float32-filterable" in handle.features
@@ -290,18 +292,17 @@ class Gpu:
         Raises:
             DeviceError: The GPU was lost, has too little memory, or rejects a command.
         """
-        wgpu = wgpu_module()
         with self.lock:
             if self.is_lost:
                 raise DeviceError(self._lost(doing))
             try:
                 yield self.device
-            except wgpu.GPUOutOfMemoryError as error:
+            except self.wgpu.GPUOutOfMemoryError as error:
                 raise DeviceError(
                     f"{self.adapter.name} has not enough memory; a smaller picture, or --device cpu"
                 ) from error
             except Exception as error:
-                is_ours = not isinstance(error, wgpu.GPUError | RuntimeError)
+                is_ours = not isinstance(error, self.wgpu.GPUError | RuntimeError)
                 if is_ours and not raised_in(error, "wgpu"):
                     raise
                 if _tells_of_loss(error):

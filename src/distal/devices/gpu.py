@@ -23,7 +23,7 @@ from distal.backends.llvm.layout import kinds_in, shape_of
 from distal.backends.wgsl.functions import leaf_count
 from distal.compiler.driver import run_passes
 from distal.devices import cpu_memory
-from distal.devices.adapters import Adapter, Gpu, chosen, opened, wgpu_module
+from distal.devices.adapters import Adapter, Gpu, chosen, opened
 from distal.devices.base import Cancel, Cancelled, DeviceError, Progress, Values, cancel_test
 from distal.devices.driver_errors import rough_names, uses_rough
 from distal.devices.gpu_program import LARGEST_DISPATCH, GpuProgram
@@ -210,7 +210,7 @@ class GpuKernel:
             with program.gpu.commands() as device:
                 encoder = device.create_command_encoder()
                 if count == 0:
-                    program.encode_frame(encoder)
+                    program.start_frame()
                 run(encoder, tile)
             self.tile_sizer.measured(tile, time.perf_counter() - begin)
             done, count = done + tile.pixels, count + 1
@@ -260,11 +260,11 @@ class GpuKernel:
     # Memory, reused between runs
 
     def _output(self, program: GpuProgram, size: int) -> Any:
-        usage = wgpu_module().BufferUsage
+        usage = program.gpu.wgpu.BufferUsage
         return self._buffer(program, "output", size, usage.STORAGE | usage.COPY_SRC)
 
     def _staging(self, program: GpuProgram, size: int) -> Any:
-        usage = wgpu_module().BufferUsage
+        usage = program.gpu.wgpu.BufferUsage
         return self._buffer(program, "staging", size, usage.COPY_DST | usage.MAP_READ)
 
     def _buffer(self, program: GpuProgram, name: str, size: int, usage: int) -> Any:
@@ -286,7 +286,7 @@ class GpuKernel:
             width, height = tile.width, tile.height
             if known is not None:
                 width, height = max(width, known[2]), max(height, known[3])
-            usage = wgpu_module().TextureUsage
+            usage = program.gpu.wgpu.TextureUsage
             self._memory.pop("texture", None)
             texture = program.gpu.device.create_texture(
                 size=(width, height, 1),
@@ -304,7 +304,7 @@ class GpuKernel:
     def _mapped(self, program: GpuProgram, encoder: Any, staging: Any, size: int) -> Any:
         """Submit the commands, wait, and return the mapped bytes; the caller unmaps them."""
         program.gpu.device.queue.submit([encoder.finish()])
-        staging.map_async(wgpu_module().MapMode.READ, 0, size).sync_wait()
+        staging.map_async(program.gpu.wgpu.MapMode.READ, 0, size).sync_wait()
         return staging.read_mapped(0, size, copy=False)
 
     # Functions
@@ -406,7 +406,7 @@ class GpuKernel:
     def _call(self, given: NDArray[Any] | None, size: int, count: int) -> NDArray[np.float32]:
         """Call the function for some points, and return a copy of the words that it wrote."""
         program = self._ready()
-        usage, interface = wgpu_module().BufferUsage, program.interface
+        usage, interface = program.gpu.wgpu.BufferUsage, program.interface
         output = self._output(program, size)
         extra = {interface["output"]["binding"]: (output, size)}
         if given is not None and "input" in interface:
@@ -416,7 +416,7 @@ class GpuKernel:
         groups = -(-count // interface["workgroup"][0])
         across = min(groups, LARGEST_DISPATCH)
         encoder = program.gpu.device.create_command_encoder()
-        program.encode_frame(encoder)
+        program.start_frame()
         program.encode_compute(encoder, (across, -(-groups // across)), extra)
         words = np.frombuffer(self._read(program, encoder, output, size), np.float32).copy()
         self._memory["staging"].unmap()

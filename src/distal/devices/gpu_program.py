@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from distal.backends.base import Artifact
 from distal.backends.messages import map_message
-from distal.devices.adapters import Gpu, wgpu_module
+from distal.devices.adapters import Gpu
 from distal.devices.base import DeviceError
 from distal.devices.gpu_memory import Resources, UniformBytes, view_dimension
 from distal.ir.types import Type
@@ -36,12 +36,12 @@ class GpuProgram:
 
     def __init__(self, gpu: Gpu, artifact: Artifact, types: Mapping[str, Type]) -> None:
         self.gpu = gpu
+        self._wgpu = gpu.wgpu
         self.interface = artifact.interface
         self.made = 0
         self._artifact = artifact
         self._device = device = gpu.device
-        self._usage = usage = wgpu_module().BufferUsage
-        self._stages = wgpu_module().ShaderStage
+        usage = self._wgpu.BufferUsage
         self._uniform_bytes = UniformBytes(self.interface)
         size = self.interface["uniform_buffer"]["size"]
         if size > gpu.limit("max-uniform-buffer-binding-size"):
@@ -51,6 +51,7 @@ class GpuProgram:
         self._uniforms = device.create_buffer(size=size, usage=usage.UNIFORM | usage.COPY_DST)
         self._written: bytes = b""
         self._frame_buffer = None
+        self._is_frame_due = False
         if frame := self.interface.get("frame"):
             self._frame_buffer = device.create_buffer(
                 size=frame["size"], usage=usage.UNIFORM | usage.STORAGE
@@ -63,10 +64,9 @@ class GpuProgram:
         self._module = self._compiled()
 
     def _compiled(self) -> Any:
-        wgpu = wgpu_module()
         try:
             return self._device.create_shader_module(code=self._artifact.text)
-        except wgpu.GPUValidationError as error:
+        except self._wgpu.GPUValidationError as error:
             if "device is lost" in str(error).lower():
                 raise
             raise DeviceError(self._refused(error)) from error
@@ -92,10 +92,9 @@ class GpuProgram:
     def _pipeline(self, entry: str, format: str) -> Any:
         pipeline = self._pipelines.get((entry, format))
         if pipeline is None:
-            wgpu = wgpu_module()
             try:
                 pipeline = self._made(entry, format)
-            except (wgpu.GPUValidationError, wgpu.GPUPipelineError) as error:
+            except (self._wgpu.GPUValidationError, self._wgpu.GPUPipelineError) as error:
                 if "device is lost" in str(error).lower():
                     raise
                 raise DeviceError(self._refused(error)) from error
@@ -105,7 +104,7 @@ class GpuProgram:
 
     def _made(self, entry: str, format: str) -> Any:
         sort = "frame" if entry == "frame_main" else "draw" if format else "compute"
-        layouts = [self._layout(sort, group) for group in (_SHARED, _READ)]
+        layouts = [self._layout(sort, group) for group in self._used_groups]
         layout = self._device.create_pipeline_layout(bind_group_layouts=layouts)
         if not format:
             stage = {"module": self._module, "entry_point": entry}
@@ -118,6 +117,12 @@ class GpuProgram:
         )
 
     # Bindings
+
+    @property
+    def _used_groups(self) -> tuple[int, ...]:
+        """The groups of the text; setting an empty one costs as much as a full one."""
+        has_inputs = self.interface["textures"] or self.interface["buffers"]
+        return (_SHARED, _READ) if has_inputs else (_SHARED,)
 
     def _kinds(self, sort: str, group: int) -> dict[int, dict[str, Any]]:
         """Return the layout entry of each binding, even if the text does not use it."""
@@ -147,7 +152,7 @@ class GpuProgram:
     def _layout(self, sort: str, group: int) -> Any:
         layout = self._layouts.get((sort, group))
         if layout is None:
-            stages = self._stages
+            stages = self._wgpu.ShaderStage
             seen = stages.FRAGMENT | stages.VERTEX if sort == "draw" else stages.COMPUTE
             kinds = self._kinds(sort, group)
             entries = [{"binding": b, "visibility": seen, **kind} for b, kind in kinds.items()]
@@ -193,10 +198,9 @@ class GpuProgram:
             self._device.queue.write_buffer(self._uniforms, 0, message)
             self._written = message
 
-    def encode_frame(self, encoder: Any) -> None:
-        """Encode the computation of the per-frame values."""
-        if self._frame_buffer is not None:
-            self._dispatch(encoder, "frame_main", "frame", {}, (1, 1))
+    def start_frame(self) -> None:
+        """Let the next commands begin with the computation of the per-frame values."""
+        self._is_frame_due = self._frame_buffer is not None
 
     def encode_compute(
         self, encoder: Any, groups: tuple[int, int], extra: Mapping[int, tuple[Any, int]]
@@ -208,23 +212,30 @@ class GpuProgram:
             groups: The number of workgroups in x and y.
             extra: Buffer and size in bytes of the output and the input, by binding.
         """
+        step = encoder.begin_compute_pass()
+        self._dispatch_frame(step)
         entry = self.interface["stages"]["compute"]
-        self._dispatch(encoder, entry, "compute", extra, groups)
+        self._dispatch(step, entry, "compute", extra, groups)
+        step.end()
+
+    def _dispatch_frame(self, step: Any) -> None:
+        """Compute the per-frame values, if they are due."""
+        if self._is_frame_due:
+            self._is_frame_due = False
+            self._dispatch(step, "frame_main", "frame", {}, (1, 1))
 
     def _dispatch(
         self,
-        encoder: Any,
+        step: Any,
         entry: str,
         sort: str,
         extra: Mapping[int, tuple[Any, int]],
         groups: tuple[int, int],
     ) -> None:
-        step = encoder.begin_compute_pass()
         step.set_pipeline(self.compute(entry))
-        for group in (_SHARED, _READ):
+        for group in self._used_groups:
             step.set_bind_group(group, self._group(sort, group, extra))
         step.dispatch_workgroups(*groups)
-        step.end()
 
     def encode_draw(
         self,
@@ -244,11 +255,15 @@ class GpuProgram:
             place: The part: its corner from the top left, its width and height, in pixels.
             keeps: Whether the rest of the texture keeps its values; otherwise it is cleared.
         """
+        if self._is_frame_due:
+            before = encoder.begin_compute_pass()
+            self._dispatch_frame(before)
+            before.end()
         load = "load" if keeps else "clear"
         target = {"view": view, "load_op": load, "store_op": "store"}
         step = encoder.begin_render_pass(color_attachments=[target])
         step.set_pipeline(self.fragment(format))
-        for group in (_SHARED, _READ):
+        for group in self._used_groups:
             step.set_bind_group(group, self._group("draw", group, {}))
         step.set_scissor_rect(*place)
         step.draw(3)

@@ -8,7 +8,9 @@ is deleted.
 from __future__ import annotations
 
 import errno
+import math
 import mmap
+import os
 import threading
 import weakref
 
@@ -34,8 +36,10 @@ class _Lease:
 
 
 def _mapped(size: int) -> mmap.mmap:
+    # Shared memory, the default, gets no huge pages: 132 MB took 115 ms to fill instead of 22.
+    private = {} if os.name == "nt" else {"flags": mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS}
     try:
-        return mmap.mmap(-1, size)
+        return mmap.mmap(-1, size, **private)
     except OSError as error:
         if error.errno == errno.ENOMEM:
             raise MemoryError(f"no {size / 2**20:.0f} MiB of memory for a picture") from None
@@ -53,7 +57,7 @@ class Pool:
 
     def take(self, shape: tuple[int, ...]) -> NDArray[np.float32]:
         """Return an array with undefined content."""
-        size = int(np.prod(shape)) * 4
+        size = math.prod(shape) * 4
         if size < _SMALLEST:
             return np.empty(shape, np.float32)
         memory = self._reused(size)
