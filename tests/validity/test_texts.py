@@ -128,13 +128,22 @@ def drawn(artifact: Artifact) -> NDArray[np.float32]:
         pytest.skip(str(error))
 
 
+def most_mean(name: str, target: str) -> float:
+    """The largest mean difference; hardware filters textures with weights of 8 bits."""
+    if name != "textures":
+        return 1e-4
+    glsl, gpu = pytest.importorskip("tests.glsl"), pytest.importorskip("tests.gpu")
+    driver = gpu.adapter_name() if target.startswith("wgsl") else glsl.egl.renderer()
+    return 1e-4 if "llvmpipe" in driver else 1 / 512
+
+
 @pytest.mark.parametrize(("name", "target"), ALL)
 def test_draws_what_the_reference_draws(name: str, target: str) -> None:
     picture = drawn(compiled(name, target))
     difference = np.abs(picture - expected(name))
     # A pixel on an edge of the scene may fall on its other side; SEEDS allows 0.2 % of them.
     assert np.mean(difference.max(axis=-1) > 2 / 255) <= 0.002
-    assert difference.mean() < 1e-4
+    assert difference.mean() < most_mean(name, target)
     assert np.ptp(picture[..., :3]) > 0.05, "a picture of nothing agrees with anything"
 
 
