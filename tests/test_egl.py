@@ -117,7 +117,7 @@ def test_llvmpipe_takes_medium_precision_at_its_word(version: str) -> None:
 
 
 def test_mistakes_are_refused() -> None:
-    with pytest.raises(ShaderRejectedError, match="undeclared|undefined"):
+    with pytest.raises(ShaderRejectedError, match=r"undeclared|undefined"):
         EglShader("void main() { nothing = 1.0; }", "330")
     with pytest.raises(ValueError, match="no #version"):
         EglShader("void main() {}")

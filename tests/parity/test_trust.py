@@ -12,6 +12,7 @@ import pytest
 from distal.backends import get_target
 from distal.backends.numpy import interpreter as reference
 from distal.compiler.driver import compile, lower, run_passes
+from distal.devices.driver_errors import MOST
 from distal.lang import (
     Frame,
     acos,
@@ -28,11 +29,11 @@ from distal.lang import (
     vec3,
     vec4,
 )
-from tests.egl import EglUnavailableError
+from tests.egl import EglUnavailableError, renderer
 from tests.glsl import run_glsl
 from tests.parity.trusting import trusting
 
-NAMES = ("sin", "cos", "tan", "asin", "acos")
+NAMES = ("sin", "cos", "asin", "acos")
 MACROS = {name: f"TRUST_{name.upper()}" for name in NAMES}
 SIZE = (64, 24)
 
@@ -96,14 +97,18 @@ def picture(artifact):
 
 
 @pytest.mark.parametrize(
-    "names", [(), *((name,) for name in NAMES), ("sin", "cos", "tan"), NAMES], ids="-".join
+    "names", [(), *((name,) for name in NAMES), ("sin", "cos"), NAMES], ids="-".join
 )
 def test_the_text_means_the_same_with_each_macro_and_without(program, wanted, names):
     found = picture(trusting(program, names))
+    off = np.max(np.abs(found - wanted))
+    if names and "llvmpipe" not in renderer():  # hardware: what a page allows its own functions
+        assert off < MOST
+        return
     rough = {"asin", "acos"} & set(names)  # what Mesa's own are off by, here times up to 4
-    assert np.max(np.abs(found - wanted)) < (2e-3 if rough else 5e-6)
+    assert off < (2e-3 if rough else 5e-6)
     if rough:  # else the macro changes nothing
-        assert np.max(np.abs(found - wanted)) > 2e-5
+        assert off > 2e-5
 
 
 def test_the_interface_tells_the_macros_of_the_fragment_text(program):

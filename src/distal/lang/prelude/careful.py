@@ -1,4 +1,4 @@
-"""Accurate sine, cosine and tangent for drivers whose own functions are inaccurate.
+"""Accurate sine and cosine for drivers whose own functions are inaccurate.
 
 Works on any GLSL or WGSL, without access to a float's bits. Shading languages allow an error of
 2^-11 for the sine, and some drivers use that: SwiftShader's error is 1.9e-4 (measured over -10 to
@@ -10,8 +10,8 @@ turn to a quarter turn, which costs nothing on a GPU.
 
 from __future__ import annotations
 
-from distal.ir.limits import LARGEST_ANGLE, SMALLEST_COSINE
-from distal.lang import abs, clamp, floor, func, select
+from distal.ir.limits import LARGEST_ANGLE
+from distal.lang import abs, clamp, floor, func
 from distal.lang.prelude.elementary import HALF_PI, INVERSE_PI, PI_HIGH, PI_LOW, sine_near_zero
 
 TURNS = 0.5 * INVERSE_PI
@@ -42,10 +42,3 @@ def cosine(x: float) -> float:
     n = floor(held * TURNS + 0.5)
     rest = (held - n * TURN_HIGH) - n * TURN_LOW
     return sine_near_zero(HALF_PI - abs(rest))
-
-
-@func
-def tangent(x: float) -> float:
-    """Return the sine divided by the cosine; finite at the poles."""
-    across = cosine(x)
-    return sine(x) / select(abs(across) < SMALLEST_COSINE, SMALLEST_COSINE, across)

@@ -19,6 +19,7 @@ from __future__ import annotations
 from distal.ir.limits import LARGEST_POWER, SMALLEST, SMALLEST_COSINE
 from distal.lang import (
     abs,
+    cos,
     exp,
     exp2,
     float_bits_to_int,
@@ -27,6 +28,7 @@ from distal.lang import (
     max,
     min,
     select,
+    sin,
     sqrt,
 )
 from distal.lang.prelude.hidden import raw_atan2, raw_power
@@ -100,6 +102,13 @@ def tangent(x: float) -> float:
     t = r + r * s * p
     pole = select(abs(t) < SMALLEST_COSINE, SMALLEST_COSINE, t)
     return select((float_bits_to_int(shifted) & 1) == 0, t, -1.0 / pole)
+
+
+@func
+def tangent_by_quotient(x: float) -> float:
+    """Return the target's sine divided by its cosine; finite at the poles, unlike its tangent."""
+    across = cos(x)
+    return sin(x) / select(abs(across) < SMALLEST_COSINE, SMALLEST_COSINE, across)
 
 
 @func
