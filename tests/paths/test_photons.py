@@ -25,8 +25,11 @@ from distal import (
     mirror,
     plastic,
 )
+from distal.devices import adapters
+from distal.devices.base import DeviceError
 from distal.lang.render_options import RenderOptions
 from distal.lang.runtime_access import executor
+from distal.runtime.photons import _joined, _sorted
 from distal.scene.lowering.photon_functions import bundling_parts, casts_caustics
 from tests.paths.test_integrator import spotted
 
@@ -188,3 +191,38 @@ def test_a_wide_spot_light():
     found = np.mean([tiles(scene, 32, s, caustics=True).mean() for s in range(4)])
     plain = np.mean([tiles(scene, 256, s, caustics=False).mean() for s in range(4)])
     assert found == pytest.approx(plain, rel=0.02)
+
+
+def test_photons_stand_in_the_slots_of_their_cells():
+    generator = np.random.default_rng(4)
+    count, slots, maps = 500, 16, 3
+    place, arrival, power = generator.normal(size=(3, maps, count, 3)).astype(np.float32)
+    slot = generator.integers(-1, slots, (maps, count)).astype(np.int32)
+    power[:, ::7] = 0.0
+    power[:, 3::50] = np.nan
+    parts = zip(place, arrival, power, slot, strict=True)
+    places, arrivals, starts = _joined([_sorted(*part, slots) for part in parts]).values()
+    kept = np.isfinite(power).all(axis=2) & (power != 0.0).any(axis=2)
+    for m in range(maps):
+        for s in range(slots + 1):
+            i = m * (slots + 1) + s
+            found = slice(starts[i], starts[i + 1])
+            expected = (slot[m] == s % slots) & kept[m]
+            assert (places[found, :3] == place[m][expected]).all()
+            colors = arrivals.reshape(-1, 2, 4)[found, 1, :3] * places[found, 3:]
+            assert np.allclose(colors, power[m][expected], rtol=1e-6)
+    assert starts[-1] == len(places)
+
+
+def test_photons_fly_on_the_device_of_the_picture(monkeypatch):
+    try:
+        adapters.opened(adapters.chosen())
+    except DeviceError as error:
+        pytest.skip(str(error))
+    monkeypatch.setattr("distal.runtime.executor.is_software", lambda device: False)
+    scene = lit(FLOOR | BALL.paint(mirror()), LAMP)
+    asked = {"size": SIZE, "mode": "path", "spp": 16}
+    there, here = (scene.render(**asked, device=device).linear for device in ("gpu", "cpu"))
+    off = np.abs(there - here).max(axis=2)
+    assert there.mean() == pytest.approx(here.mean(), rel=1e-3)
+    assert (off > 0.02).mean() < 0.01

@@ -124,12 +124,12 @@ class Deposit:
 
 @struct
 class PhotonPlan:
-    """What the photons of one pass depend on.
+    """What the photons of a picture depend on.
 
     Attributes:
         low: The lower corner of the target.
         high: Its upper corner.
-        radius: The radius within which photons count.
+        radius: The radius within which photons of the first pass count.
     """
 
     low: vec3
@@ -138,16 +138,13 @@ class PhotonPlan:
 
 
 @func
-def photon_plan(
-    target: Bounds, camera: Callable[[vec2], Ray], resolution: vec2, first_sample: int
-) -> PhotonPlan:
-    """Return the plan of a pass.
+def photon_plan(target: Bounds, camera: Callable[[vec2], Ray], resolution: vec2) -> PhotonPlan:
+    """Return the plan of a picture.
 
     Args:
         target: The box around what bundles light.
         camera: Ray of a place in the picture.
         resolution: Size of the picture in pixels.
-        first_sample: The number of the first sample of the pass.
     """
     eye = camera(vec2(0.0))
     pixel = pixel_cone(camera, vec2(0.0), 2.0 / resolution.y)
@@ -155,8 +152,19 @@ def photon_plan(
     size = length(target.high - target.low)
     wide = FIRST_PIXELS * (pixel.width + pixel.spread * away)
     first = clamp(wide, LEAST_PART * size, LARGEST_PART * size)
-    shrunk = max(float(first_sample), 1.0) ** (0.5 * SHRINKING)
-    return PhotonPlan(target.low, target.high, first * shrunk)
+    return PhotonPlan(target.low, target.high, first)
+
+
+@func
+def shrunk(radius: float, first_sample: int) -> float:
+    """Return the radius of a pass.
+
+    Args:
+        radius: That of the first pass.
+        first_sample: The number of the first sample of the pass.
+    """
+    part: float = max(float(first_sample), 1.0) ** (0.5 * SHRINKING)
+    return radius * part
 
 
 @func

@@ -44,7 +44,7 @@ from distal.runtime import accumulation, glow, sampling
 from distal.runtime.call_arguments import call_arguments
 from distal.runtime.call_values import count, empty, is_double, is_many, single, with_names
 from distal.runtime.device_names import AUTO, CPU, GPU_FRAGMENT, REFERENCE
-from distal.runtime.kernels import KernelCache, automatic_device
+from distal.runtime.kernels import KernelCache, automatic_device, is_software
 from distal.runtime.lowered import Lowered, Types
 from distal.runtime.moving import moved_resources
 from distal.runtime.passes import Passes, over_picture
@@ -226,9 +226,12 @@ class PythonExecutor:
     def _photons(
         self, programs: tuple[Composed, Composed], device: str, options: RenderOptions
     ) -> PhotonPasses:
-        """Return the photons of a picture; they are traced on the CPU for other devices, too."""
+        """Return the photons of a picture.
+
+        They are traced on its device; drivers in software compile them too slowly (llvmpipe: 15 s).
+        """
         plan, deposits = (self._lower(program, None) for program in programs)
-        on = device if device == REFERENCE else CPU
+        on = CPU if is_software(device) else device
         return PhotonPasses(
             PhotonProgram(self.kernels.kernel(plan, REFERENCE, 32), plan, options),
             PhotonProgram(self.kernels.kernel(deposits, on, 32), deposits, options),

@@ -84,3 +84,9 @@ def automatic_device() -> str:
     """Return the device that "auto" selects on this machine."""
     found = adapters.resolve(AUTO)
     return f"{found.device}:{found.adapter}" if found.adapter else str(found.device)
+
+
+def is_software(device: str) -> bool:
+    """Return whether a device is a GPU's driver that runs on the CPU."""
+    name, _, adapter = device.partition(":")
+    return name.startswith(GPU) and adapters.chosen(adapter or None).is_software

@@ -7,17 +7,22 @@ sample and the seed. Does not depend on how photons fly.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from itertools import repeat
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from distal.devices.base import Kernel
+from distal.devices.threads import usable_threads
 from distal.lang.render_options import RenderOptions
 from distal.lang.resources import Buffer
+from distal.lang.runtime_access import executor
 from distal.render import film, photons
+from distal.runtime.device_names import REFERENCE
 from distal.runtime.lowered import Lowered
 from distal.runtime.moving import moved_resources
 from distal.runtime.uniform_values import DeclaredUniforms, frame_values
@@ -85,16 +90,34 @@ class PhotonProgram:
 
 
 @dataclass(frozen=True, slots=True)
+class MapTable:
+    """The photons of one map, in the order of their slots.
+
+    Attributes:
+        places: Place and brightness of each, (n, 4).
+        arrivals: Two rows for each: the direction to where it came from; its color; (n, 2, 4).
+        starts: The first photon of each slot, and of one slot more, which repeats the first slot,
+            so that a run of two slots never wraps.
+    """
+
+    places: NDArray[np.float32]
+    arrivals: NDArray[np.float32]
+    starts: NDArray[np.int32]
+
+
+@dataclass(frozen=True, slots=True)
 class PhotonPasses:
     """The photons of a picture.
 
     Attributes:
-        plan: The program that returns what a pass depends on.
+        plan: The program that returns what the first pass depends on.
         deposits: The program that follows a photon.
+        plans: The plans of the times so far.
     """
 
     plan: PhotonProgram
     deposits: PhotonProgram
+    plans: dict[float, tuple[Any, ...]] = field(default_factory=dict)
 
     def tables(self, first: int, count: int, pixels: int, time: float) -> PhotonTables:
         """Return the photons of a pass.
@@ -106,38 +129,37 @@ class PhotonPasses:
             time: Its time in seconds.
         """
         options = self.deposits.options
-        begun = {film.FIRST_SAMPLE: first}
-        found = self.plan.run(np.zeros((1, 2), np.float32), begun, time)
-        low, high, radius = (np.asarray(part, np.float64)[0].tolist() for part in found)
+        if time not in self.plans:
+            self.plans[time] = self.plan.run(np.zeros((1, 2), np.float32), {}, time)
+        low, high, widest = (np.asarray(part, np.float64)[0].tolist() for part in self.plans[time])
+        radius = executor().call(photons.shrunk, (widest, first), {}, device=REFERENCE)
         of_sample = _OF_A_SAMPLE * pixels
         of_map = int(min(max(of_sample, _FEWEST / count), _MOST / count))
         slots = 1 << max(of_map.bit_length() - 1, 4)
         numbers: dict[str, Any] = {
             photons.LOW: tuple(low),
             photons.HIGH: tuple(high),
-            photons.RADIUS: radius,
+            photons.RADIUS: float(radius),
             photons.SLOTS: slots,
             photons.MAPS: count,
             photons.SHARE: 1.0 / of_map,
         }
-        total = count * (slots + 1)
         if not all(a < b for a, b in zip(low, high, strict=True)):
-            return PhotonTables(numbers, _sorted(np.zeros(0, np.int64), None, total))
-        size = tuple(map(float, options.size))
-        of_pass = {photons.SEED: _signed(options.seed), photons.FRAME_INDEX: _signed(options.index)}
-        asked = {**numbers, **begun, **of_pass, film.PICTURE_SIZE: size}
-        place, arrival, power, slot = self.deposits.run(
-            np.arange(of_map * count, dtype=np.int32), asked, time
+            return PhotonTables(numbers, _joined([_no_photons(slots)] * count))
+        asked = {
+            **numbers,
+            film.FIRST_SAMPLE: first,
+            film.PICTURE_SIZE: tuple(map(float, options.size)),
+            photons.SEED: _signed(options.seed),
+            photons.FRAME_INDEX: _signed(options.index),
+        }
+        found = self.deposits.run(np.arange(of_map * count, dtype=np.int32), asked, time)
+        place, arrival, power, slot = (
+            part.reshape(count, of_map, *part.shape[1:]) for part in found
         )
-        whole = np.isfinite(power).all(axis=1) & (np.abs(power).max(axis=1) > 0.0)
-        kept = np.flatnonzero((slot >= 0) & whole)
-        # Each map has one slot more, which repeats the first: a run of two slots never wraps.
-        kept = np.concatenate([kept, kept[slot[kept] == 0]])
-        of_slot = kept // of_map * (slots + 1) + slot[kept]
-        of_slot[len(kept) - np.count_nonzero(slot[kept] == 0) // 2 :] += slots
-        return PhotonTables(
-            numbers, _sorted(of_slot, (place[kept], arrival[kept], power[kept]), total)
-        )
+        with ThreadPoolExecutor(options.threads or usable_threads()) as pool:
+            tables = pool.map(_sorted, place, arrival, power, slot, repeat(slots))
+            return PhotonTables(numbers, _joined(list(tables)))
 
 
 def _signed(value: int) -> int:
@@ -145,28 +167,56 @@ def _signed(value: int) -> int:
     return (value + 2**31) % 2**32 - 2**31
 
 
+def _no_photons(slots: int) -> MapTable:
+    """Return a map without photons."""
+    nothing = np.zeros((0, 4), np.float32)
+    return MapTable(nothing, nothing.reshape(0, 2, 4), np.zeros(slots + 1, np.int32))
+
+
 def _sorted(
-    of_slot: NDArray[np.int64],
-    columns: tuple[NDArray[np.float32], ...] | None,
-    total: int,
-) -> dict[Buffer, NDArray[Any]]:
-    """Return the tables of photons, in the order of their slots.
+    place: NDArray[np.float32],
+    arrival: NDArray[np.float32],
+    power: NDArray[np.float32],
+    slot: NDArray[np.int32],
+    slots: int,
+) -> MapTable:
+    """Return the photons of a map, in the order of their slots.
 
     Args:
-        of_slot: The slot of each photon, counted through all maps.
-        columns: Place, direction and power of each; None if there is none.
-        total: How many slots there are.
+        place: The place of each.
+        arrival: The direction to where it came from.
+        power: Its power.
+        slot: Its slot; -1 if it met nothing.
+        slots: How many slots there are.
     """
-    starts = np.zeros(total + 1, np.int32)
-    places, arrivals = np.zeros((1, 4), np.float32), np.zeros((2, 4), np.float32)
-    if columns is not None and len(of_slot):
-        order = np.argsort(of_slot, kind="stable")
-        np.cumsum(np.bincount(of_slot, minlength=total), out=starts[1:])
-        place, arrival, power = (column[order] for column in columns)
-        bright = np.abs(power).max(axis=1, keepdims=True)
-        places = np.hstack([place, bright])
-        arrivals = np.zeros((len(order), 2, 4), np.float32)
-        arrivals[:, 0, :3], arrivals[:, 1, :3] = arrival, power / bright
+    bright = np.abs(power).max(axis=1)
+    kept = np.flatnonzero((slot >= 0) & np.isfinite(bright) & (bright > 0.0))
+    # Keys of 16 bits are sorted in linear time.
+    of_slot = slot[kept].astype(np.uint16 if slots <= 2**16 else np.int32)
+    counts = np.bincount(of_slot, minlength=slots)
+    order = kept[np.argsort(of_slot, kind="stable")]
+    order = np.concatenate([order, order[: counts[0]]])
+    starts = np.zeros(slots + 1, np.int32)
+    np.cumsum(counts, out=starts[1:])
+    places = np.empty((len(order), 4), np.float32)
+    places[:, :3], places[:, 3] = place[order], bright[order]
+    arrivals = np.zeros((len(order), 2, 4), np.float32)
+    arrivals[:, 0, :3] = arrival[order]
+    arrivals[:, 1, :3] = power[order] / places[:, 3:]
+    return MapTable(places, arrivals, starts)
+
+
+def _joined(maps: Sequence[MapTable]) -> dict[Buffer, NDArray[Any]]:
+    """Return the tables of all maps as one; at least one photon stands in them, if of no slot."""
+    ends = np.cumsum([len(table.places) for table in maps])
+    begins = [0, *ends[:-1].tolist()]
+    starts = [table.starts + np.int32(b) for table, b in zip(maps, begins, strict=True)]
+    last = np.full(1, ends[-1], np.int32)
+    places = np.concatenate([table.places for table in maps])
+    arrivals = np.concatenate([table.arrivals for table in maps])
+    if not len(places):
+        places, arrivals = np.zeros((1, 4), np.float32), np.zeros((1, 2, 4), np.float32)
     # Stubs describe a buffer by the type of its elements.
     declared: list[Any] = [photons.PLACES, photons.ARRIVALS, photons.STARTS]
-    return dict(zip(declared, (places, arrivals.reshape(-1, 4), starts), strict=True))
+    values = (places, arrivals.reshape(-1, 4), np.concatenate([*starts, last]))
+    return dict(zip(declared, values, strict=True))

@@ -1,7 +1,7 @@
 """The programs of a scene's photons, which run before each pass of a picture by paths.
 
 Input: a scene. Output: a function from the number of a photon to where it ends, and one that
-returns what the photons of a pass depend on.
+returns what they all depend on.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class PlanFunction(Composed):
-    """What the photons of a pass depend on, as a function of the frame."""
+    """What the photons of a picture depend on, as a function of the frame."""
 
     kind: ClassVar[EntryKind] = EntryKind.FUNCTION
     signature = (("frame", FRAME),)
@@ -52,7 +52,6 @@ class PlanFunction(Composed):
             "target": body.let("target", target),
             "camera": made.camera.ray(resolution, steered=self._steered),
             "resolution": resolution,
-            "first_sample": assembly.number(film.FIRST_SAMPLE, INT, 0),
         }
         plan = composer.call(photons.photon_plan, given)
         self.result = plan.type
