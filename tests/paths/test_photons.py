@@ -173,6 +173,9 @@ def test_what_bundles_light():
     assert parts(BALL.paint(glass()), BALL.paint(mirror()), BALL.paint(metal(roughness=0.1))) == 3
     assert parts(BALL.paint(metal(roughness=0.5)), BALL.paint(plastic("red", 0.1))) == 0
     assert parts(BALL.paint(plastic("red", 0.0))) == 1
+    # The outermost paint counts, of unions too.
+    assert parts(FLOOR, (BALL | BALL.translate(x=1.5)).paint(glass())) == 2
+    assert parts(FLOOR, (BALL.paint(glass()) | FLOOR).paint(matte(WHITE))) == 0
     assert not casts_caustics(lit(BALL.paint(glass()), LAMP, shadows=False))
 
 

@@ -21,7 +21,7 @@ from distal.render.scatter import SHARPEST, Meeting
 from distal.render.vertices import Vertex
 from distal.scene.lowering.ray_functions import Define
 from distal.scene.lowering.shapes import ShapeComposer
-from distal.scene.lowering.union_parts import parts_of
+from distal.scene.lowering.union_parts import painted_parts_of
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
@@ -42,13 +42,20 @@ def casts_caustics(scene: Scene) -> bool:
 
 def bundling_parts(scene: Scene) -> list[Node]:
     """Return the members of the scene's union whose material may bundle light."""
-    found = [n for n in parts_of(scene.shape.node) if _may_bundle(n, scene.material)]
+    parts = painted_parts_of(scene.shape.node)
+    found = [node for node, outer in parts if _may_bundle(node, outer, scene.material)]
     return [scene.shape.node] if len(found) > MOST_MEMBERS else found
 
 
-def _may_bundle(root: Node, default: Any) -> bool:
-    """Return whether a subtree has a material that may bundle light."""
-    stack: list[tuple[Node, Any]] = [(root, None)]
+def _may_bundle(root: Node, around: Any, default: Any) -> bool:
+    """Return whether a subtree has a material that may bundle light.
+
+    Args:
+        root: The subtree.
+        around: The paint around it; None if there is none.
+        default: The material of shapes without one.
+    """
+    stack: list[tuple[Node, Any]] = [(root, around)]
     while stack:
         node, outer = stack.pop()
         painted = node.material if outer is None else outer

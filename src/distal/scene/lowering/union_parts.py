@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 from distal.fields.combine.joins import UNION
 from distal.scene.tree.node import Node
@@ -10,10 +11,16 @@ from distal.scene.tree.node import Node
 
 def parts_of(root: Node) -> Iterator[Node]:
     """Yield the members of the unions at the root of a tree."""
-    stack = [root]
+    return (node for node, _ in painted_parts_of(root))
+
+
+def painted_parts_of(root: Node) -> Iterator[tuple[Node, Any]]:
+    """Yield these members, each with the paint of the unions around it; None if there is none."""
+    stack: list[tuple[Node, Any]] = [(root, None)]
     while stack:
-        node = stack.pop()
+        node, outer = stack.pop()
         if node.rule is UNION:
-            stack.extend(reversed(node.children))
+            paint = node.material if outer is None else outer
+            stack.extend((child, paint) for child in reversed(node.children))
         else:
-            yield node
+            yield node, outer
