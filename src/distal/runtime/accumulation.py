@@ -20,11 +20,22 @@ from distal.runtime.allocation import Pass, next_pass, share_done
 
 # No error is estimated from fewer passes.
 FEWEST_PASSES: Final = 4
-_LUMA: Final = np.array([0.2126, 0.7152, 0.0722])  # Rec. 709
+_BLOCK: Final = 2**12  # pixels that are added together: their numbers stay in the cache
 
 # Renders a pass, with a callback for progress: the means of its samples, of the pixels in the order
 # of ``Pass.places``, or of all as (height, width, 4).
 Rendered = Callable[[Pass, Progress | None], NDArray[np.float32]]
+
+
+def _luma_of(light: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the luma of light, by Rec. 709.
+
+    Not as a product of matrices: for one, OpenBLAS wakes threads, which then turn idle for as long
+    as a pass takes.
+    """
+    red, green, blue = light[..., 0], light[..., 1], light[..., 2]
+    found: NDArray[np.float64] = 0.2126 * red + 0.7152 * green + 0.0722 * blue
+    return found
 
 
 @dataclass(slots=True)
@@ -62,16 +73,22 @@ class Film:
             count: The number of its samples in each pixel.
             places: The indices of its pixels, from the top row on; None for all.
         """
-        where: Any = slice(None) if places is None else places
+        of_pass = light.reshape(-1, 4)
+        for begin in range(0, len(of_pass), _BLOCK):
+            block = slice(begin, begin + _BLOCK)
+            self._add_block(of_pass[block], count, block if places is None else places[block])
+
+    def _add_block(self, light: NDArray[np.float32], count: int, where: Any) -> None:
+        """Add some pixels of a pass: their light, at these indices."""
         sums, spread = self.sums.reshape(-1, 4), self.spread.reshape(-1)
         samples, passes = self.samples.reshape(-1), self.passes.reshape(-1)
-        added = light.reshape(-1, 4).astype(np.float64)
+        added = light.astype(np.float64)
         before, known = samples[where], sums[where]
         # The difference of the pass from what was there, by Welford's and Chan's formula.
         mean = known / np.maximum(before, 1)[:, None]
         if self.signed:  # alpha is the weight, by which the light is divided in the end
             mean *= (added[:, 3] / np.where(mean[:, 3] > 0.0, mean[:, 3], 1.0))[:, None]
-        apart = (added - mean)[:, :3] @ _LUMA
+        apart = _luma_of(added - mean)
         spread[where] += before * count / (before + count) * apart * apart
         sums[where] = known + added * count
         samples[where] = before + count
@@ -89,7 +106,7 @@ class Film:
     @property
     def luma(self) -> NDArray[np.float64]:
         """The luma of each pixel."""
-        found: NDArray[np.float64] = self.sums[..., :3] @ _LUMA / np.maximum(self.samples, 1)
+        found: NDArray[np.float64] = _luma_of(self.sums) / np.maximum(self.samples, 1)
         return found
 
     @property
