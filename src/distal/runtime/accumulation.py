@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.lang.render_options import Progress, Refinement
+from distal.runtime import settling
 from distal.runtime.allocation import Pass, next_pass, share_done
 
 # No error is estimated from fewer passes.
@@ -48,6 +49,7 @@ class Film:
         spread: Sum over the samples of the squared difference of luma from its mean, float64.
         samples: The number of samples of each pixel, int32.
         passes: The number of passes that each pixel was in, int32.
+        steps: How the luma of each pixel settles (``settling``), float64, (3, height, width).
         signed: Whether samples may have negative weights. Alpha is then 0 or 1.
     """
 
@@ -55,13 +57,15 @@ class Film:
     spread: NDArray[np.float64]
     samples: NDArray[np.int32]
     passes: NDArray[np.int32]
+    steps: NDArray[np.float64]
     signed: bool = False
 
     @classmethod
     def empty(cls, width: int, height: int, *, signed: bool = False) -> Film:
         """Return a film without samples."""
         samples, passes = np.zeros((2, height, width), np.int32)
-        return cls(np.zeros((height, width, 4)), np.zeros((height, width)), samples, passes, signed)
+        sums, spread = np.zeros((height, width, 4)), np.zeros((height, width))
+        return cls(sums, spread, samples, passes, np.zeros((3, height, width)), signed)
 
     def add(
         self, light: NDArray[np.float32], count: int, places: NDArray[np.int32] | None = None
@@ -91,8 +95,11 @@ class Film:
         apart = _luma_of(added - mean)
         spread[where] += before * count / (before + count) * apart * apart
         sums[where] = known + added * count
-        samples[where] = before + count
+        samples[where] = now = before + count
         passes[where] += 1
+        if int(now[0]) & (int(now[0]) - 1) == 0:  # all pixels of a pass have the same number
+            alpha = np.maximum(sums[where][:, 3], 1e-30) if self.signed else now
+            settling.advance(self.steps.reshape(3, -1), where, _luma_of(sums[where]) / alpha)
 
     @property
     def light(self) -> NDArray[np.float32]:
@@ -111,21 +118,32 @@ class Film:
 
     @property
     def sample_variance(self) -> NDArray[np.float64]:
-        """The variance of the luma of one sample, from the differences between passes."""
+        """The variance of the luma of one sample, as if samples were independent.
+
+        From the differences between passes. The variance of a pixel is this, divided by the number
+        of its samples, if its samples have nothing in common; they are better distributed than
+        that, so that smooth surfaces settle faster.
+        """
         unknown = np.where(self.passes < 2, np.inf, 0.0)
         found: NDArray[np.float64] = self.spread / np.maximum(self.passes - 1, 1) + unknown
         return found
 
     @property
+    def effective_variance(self) -> NDArray[np.float64]:
+        """The variance of a pixel's luma times the number of its samples."""
+        found = self.sample_variance
+        return found * settling.share_that_is_left(self.steps, self.samples, found)
+
+    @property
     def variance(self) -> NDArray[np.float64]:
         """The variance of each pixel's luma: its squared standard error."""
-        found: NDArray[np.float64] = self.sample_variance / np.maximum(self.samples, 1)
+        found: NDArray[np.float64] = self.effective_variance / np.maximum(self.samples, 1)
         return found
 
     @property
     def relative_variance(self) -> NDArray[np.float64]:
-        """The variance of a sample's luma; of a pixel brighter than white, relative to it."""
-        found: NDArray[np.float64] = self.sample_variance / np.maximum(self.luma, 1.0) ** 2
+        """``effective_variance``; of a pixel brighter than white, relative to its luma."""
+        found: NDArray[np.float64] = self.effective_variance / np.maximum(self.luma, 1.0) ** 2
         return found
 
     @property

@@ -15,7 +15,7 @@ Source: Jerzy Neyman, "On the Two Different Aspects of the Representative Method
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, Protocol
+from typing import Any, Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -133,9 +133,9 @@ def over_tiles(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return found
 
 
-def by_pixel(tiles: NDArray[np.bool_], width: int, height: int) -> NDArray[np.bool_]:
+def by_pixel(tiles: NDArray[Any], width: int, height: int) -> NDArray[Any]:
     """Return the value of each pixel's tile."""
-    whole: NDArray[np.bool_] = np.repeat(np.repeat(tiles, TILE_PX, axis=0), TILE_PX, axis=1)
+    whole = np.repeat(np.repeat(tiles, TILE_PX, axis=0), TILE_PX, axis=1)
     return whole[:height, :width]
 
 
@@ -145,12 +145,17 @@ def _tile_sizes(shape: tuple[int, ...]) -> NDArray[np.int64]:
     return np.asarray(down[:, None] * across[None, :], np.int64)
 
 
-def _with_neighbors(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return each tile's value, but at least a quarter of the mean with its eight neighbors."""
-    padded = np.pad(values, 1, mode="edge")
-    height, width = values.shape
+def over_neighbors(tiles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the mean of each tile and its eight neighbors."""
+    padded = np.pad(tiles, 1, mode="edge")
+    height, width = tiles.shape
     around = sum(padded[i : i + height, j : j + width] for i in range(3) for j in range(3))
-    return np.maximum(values, np.asarray(around) / 36.0)
+    return np.asarray(around) / 9.0
+
+
+def _with_neighbors(tiles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return each tile's value, but at least a quarter of the mean with its eight neighbors."""
+    return np.maximum(tiles, 0.25 * over_neighbors(tiles))
 
 
 def _listed(chosen: NDArray[np.bool_]) -> NDArray[np.int32]:

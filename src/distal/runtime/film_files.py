@@ -20,6 +20,8 @@ from distal.runtime.accumulation import Film
 # Seconds between two writes; a slow disk is written to less often.
 _INTERVAL_S: Final = 10.0
 _INTERVAL_WRITES: Final = 20.0
+# The attributes of a film that are kept.
+_ARRAYS: Final = ("sums", "spread", "samples", "passes", "steps")
 
 
 class FilmFile:
@@ -54,15 +56,15 @@ class FilmFile:
             return Film.empty(width, height, signed=signed)
         try:
             with np.load(self._path, allow_pickle=False) as found:
-                key, samples, passes = str(found["key"]), found["samples"], found["passes"]
-                sums, spread = found["sums"], found["spread"]
+                key = str(found["key"])
+                arrays = {name: found[name] for name in _ARRAYS}
         except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
             raise ValueError(f"{self._path} is not a film: delete it or name another") from None
-        if key != self._key or sums.shape != (height, width, 4):
+        if key != self._key or arrays["sums"].shape != (height, width, 4):
             raise ValueError(
                 f"{self._path} keeps the samples of another picture: delete it or name another"
             )
-        return Film(sums, spread, samples, passes, signed)
+        return Film(**arrays, signed=signed)
 
     def keep(self, film: Film) -> None:
         """Write the film, if the last time was long ago."""
@@ -76,9 +78,7 @@ class FilmFile:
             SaveError: The file cannot be written.
         """
         begin = time.monotonic()
-        arrays: dict[str, Any] = {
-            name: getattr(film, name) for name in ("sums", "spread", "samples", "passes")
-        }
+        arrays: dict[str, Any] = {name: getattr(film, name) for name in _ARRAYS}
         try:
             with replacement(self._path) as file:
                 np.savez(file, key=self._key, **arrays)
