@@ -29,7 +29,7 @@ from distal.runtime.moving import moved_resources
 from distal.runtime.uniform_values import DeclaredUniforms, frame_values
 
 # Photons for each pixel and sample, and the least and most of them in a pass.
-_OF_A_SAMPLE: Final = 0.5
+_OF_A_SAMPLE: Final = 0.3
 _FEWEST: Final = 2**14
 _MOST: Final = 2**21
 # Photons are followed in stages of so many segments: most meet nothing that bundles light and end
