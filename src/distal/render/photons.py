@@ -41,6 +41,7 @@ from distal.lang import (
     vec3,
     vec4,
 )
+from distal.lang.functions import apart
 from distal.render.camera import Ray
 from distal.render.dispersion import color_of, wavelength_of
 from distal.render.footprint import THIN, Footprint, pixel_cone
@@ -179,6 +180,7 @@ def slot_of(cell: vec3, slots: int) -> int:
     return int((row + uint(int(cell.x))) & uint(slots - 1))
 
 
+@apart
 @func
 def deposit(
     number: int,
