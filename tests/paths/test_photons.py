@@ -168,7 +168,9 @@ def test_the_same_bits_with_any_threads_and_after_a_break(tmp_path):
 
 
 def test_stages_follow_every_photon_to_its_end(monkeypatch):
-    scene = lit(FLOOR | BALL.paint(glass()) | Box(0.5).translate(0.0, 1.0, 0.0).paint(glass()), LAMP)
+    scene = lit(
+        FLOOR | BALL.paint(glass()) | Box(0.5).translate(0.0, 1.0, 0.0).paint(glass()), LAMP
+    )
     asked = {"size": SIZE, "mode": "path", "spp": 4}
     staged = scene.render(**asked).linear
     monkeypatch.setattr(photon_passes, "_STAGES", (MOST_SEGMENTS,))
