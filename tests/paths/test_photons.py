@@ -29,6 +29,8 @@ from distal.devices import adapters
 from distal.devices.base import DeviceError
 from distal.lang.render_options import RenderOptions
 from distal.lang.runtime_access import executor
+from distal.render.paths import MOST_SEGMENTS
+from distal.runtime import photons as photon_passes
 from distal.runtime.photons import _joined, _sorted
 from distal.scene.lowering.photon_functions import bundling_parts, casts_caustics
 from tests.paths.test_integrator import spotted
@@ -163,6 +165,24 @@ def test_the_same_bits_with_any_threads_and_after_a_break(tmp_path):
     scene.render(**asked, spp=4, film=kept)
     assert (scene.render(**asked, spp=12, film=kept).linear == one).all()
     assert (scene.render(**asked, spp=12, seed=1).linear != one).any()
+
+
+def test_stages_follow_every_photon_to_its_end(monkeypatch):
+    scene = lit(
+        FLOOR | BALL.paint(glass()) | Box(0.5).translate(0.0, 1.0, 0.0).paint(glass()), LAMP
+    )
+    asked = {"size": SIZE, "mode": "path", "spp": 4}
+    staged = scene.render(**asked).linear
+    monkeypatch.setattr(photon_passes, "_STAGES", (MOST_SEGMENTS,))
+    assert (scene.render(**asked).linear == staged).all()
+    monkeypatch.setattr(photon_passes, "_STAGES", (2,))
+    assert (scene.render(**asked).linear != staged).any()
+
+
+def test_photons_start_where_a_lamp_shines():
+    # All cross the top of the box around the ball; its shadow covers 0.625 of that.
+    scene = lit(FLOOR | BALL.paint(glass()), PointLight((0.0, 5.0, 0.0), intensity=1.0))
+    assert 0.55 < (powers(scene, 2**14) > 0.0).mean() < 0.63
 
 
 def test_what_bundles_light():

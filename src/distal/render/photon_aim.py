@@ -28,9 +28,8 @@ PI = 3.14159265358979
 WIDEST = 0.07
 # Directions of an environment that are so many times as dense as even ones count as lamps.
 BRIGHT = 30.0
-# The share of faces that turn away from a light, and how it grows if the light is near.
-BACK = 0.02
-NEARBY = 0.5
+# What is added to the cosine of a light to a face, so that rounding errors hide no face.
+GRAZING = 1e-3
 # The sphere about a lamp in the box, on which its photons are chosen, in radii of the lamp; of a
 # lamp without a radius it is this part of the box.
 ABOUT = 2.0
@@ -144,7 +143,7 @@ def is_followed_from_afar(target: Bounds, ray: Ray, density: float) -> bool:
 
 @func
 def place_on_box(target: Bounds, light: LightSample, u: vec3) -> Crossing:
-    """Return a random place on the box, mostly on the faces that are turned to a light.
+    """Return a random place on the box, on a face that a light shines on from outside.
 
     Args:
         target: The box.
@@ -154,9 +153,12 @@ def place_on_box(target: Bounds, light: LightSample, u: vec3) -> Crossing:
     middle = 0.5 * (target.low + target.high)
     half = max(0.5 * (target.high - target.low), vec3(1e-6))
     area = 4.0 * vec3(half.y * half.z, half.z * half.x, half.x * half.y)
-    away = BACK + NEARBY * min(length(half) / light.distance, 1.0)
-    up = area * (max(light.direction, vec3(0.0)) + away)
-    down = area * (max(-light.direction, vec3(0.0)) + away)
+    # A face gets light from what stands above its plane: the cosine of the highest place of the
+    # lamp, less the height of the plane over the middle.
+    near = select(light.distance < FAR_AWAY, half / light.distance, vec3(0.0))
+    above = vec3(light.radius + GRAZING) - near
+    up = area * max(light.direction + above, vec3(0.0))
+    down = area * max(above - light.direction, vec3(0.0))
     both = up + down
     total = both.x + both.y + both.z
     at = u.z * total

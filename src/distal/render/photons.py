@@ -41,6 +41,7 @@ from distal.lang import (
     vec3,
     vec4,
 )
+from distal.lang.functions import apart
 from distal.render.camera import Ray
 from distal.render.dispersion import color_of, wavelength_of
 from distal.render.footprint import THIN, Footprint, pixel_cone
@@ -72,6 +73,9 @@ DIRECTION = 0
 ENDING = 1
 ROULETTE = 2
 WHICH_PHOTON: Final = 2**20
+# The slot of a photon that met no surface on which it ends, and of one that goes on.
+NOWHERE: Final = -1
+UNFINISHED: Final = -2
 # The uniforms of a pass, which the runtime sets.
 LOW: Final = "Photons_low"
 HIGH: Final = "Photons_high"
@@ -80,6 +84,7 @@ SLOTS: Final = "Photons_slots"
 MAPS: Final = "Photons_maps"
 SHARE: Final = "Photons_share"
 SEED: Final = "Photons_seed"
+MOST: Final = "Photons_most"
 FRAME_INDEX: Final = "Photons_index"
 # The data of these buffers is replaced for each pass.
 PLACES: Final = Buffer([vec4(0.0)])
@@ -113,7 +118,8 @@ class Deposit:
         place: The place.
         arrival: Unit direction to where it came from.
         power: Its power, times the number of photons.
-        slot: The slot of its cell; -1 if it met no such surface.
+        slot: The slot of its cell; ``NOWHERE`` if it met no such surface, ``UNFINISHED`` if it
+            goes on after the segments that were asked for.
     """
 
     place: vec3
@@ -174,6 +180,7 @@ def slot_of(cell: vec3, slots: int) -> int:
     return int((row + uint(int(cell.x))) & uint(slots - 1))
 
 
+@apart
 @func
 def deposit(
     number: int,
@@ -196,6 +203,7 @@ def deposit(
     seed: int,
     index: int,
     first_sample: int,
+    most: int,
     normals: int = EXACT,
     normal_step: float = 1e-3,
 ) -> Deposit:
@@ -222,6 +230,7 @@ def deposit(
         seed: Selects one of many sets of random numbers.
         index: The number of the frame, whose random numbers are others.
         first_sample: The number of the first sample of the pass.
+        most: How many segments are followed; a photon that goes on is ``UNFINISHED``.
         normals: The method for normals; a constant of ``normals``.
         normal_step: Step of the normals' differences, in scene units at distance 1.
     """
@@ -236,10 +245,13 @@ def deposit(
     is_tinted = False  # whether the power has the color of the wavelength
     bundled = False  # whether a surface that bundles light lies behind
     start = Start(begin.ray, 0, 0.0, -1)
-    found = Deposit(vec3(0.0), vec3(0.0), vec3(0.0), -1)
+    found = Deposit(vec3(0.0), vec3(0.0), vec3(0.0), NOWHERE)
     if brightest(power) <= 0.0 or field(begin.ray.origin) < 0.0:
         return found
     for i in range(MOST_SEGMENTS):
+        if i >= most:
+            found.slot = UNFINISHED
+            break
         here = start.ray
         hit = next_hit(here, start.within, start.slope, start.part)
         if not hit.found:

@@ -22,15 +22,19 @@ from distal.lang.render_options import RenderOptions
 from distal.lang.resources import Buffer
 from distal.lang.runtime_access import executor
 from distal.render import film, photons
+from distal.render.paths import MOST_SEGMENTS
 from distal.runtime.device_names import REFERENCE
 from distal.runtime.lowered import Lowered
 from distal.runtime.moving import moved_resources
 from distal.runtime.uniform_values import DeclaredUniforms, frame_values
 
 # Photons for each pixel and sample, and the least and most of them in a pass.
-_OF_A_SAMPLE: Final = 0.5
+_OF_A_SAMPLE: Final = 0.3
 _FEWEST: Final = 2**14
 _MOST: Final = 2**21
+# Photons are followed in stages of so many segments: most meet nothing that bundles light and end
+# at once, a few are caught in glass for long. What goes on is computed together, from its start.
+_STAGES: Final = (1, 4, MOST_SEGMENTS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,13 +157,37 @@ class PhotonPasses:
             photons.SEED: _signed(options.seed),
             photons.FRAME_INDEX: _signed(options.index),
         }
-        found = self.deposits.run(np.arange(of_map * count, dtype=np.int32), asked, time)
         place, arrival, power, slot = (
-            part.reshape(count, of_map, *part.shape[1:]) for part in found
+            part.reshape(count, of_map, *part.shape[1:])
+            for part in self._deposited(of_map * count, asked, time)
         )
         with ThreadPoolExecutor(options.threads or usable_threads()) as pool:
             tables = pool.map(_sorted, place, arrival, power, slot, repeat(slots))
             return PhotonTables(numbers, _joined(list(tables)))
+
+    def _deposited(
+        self, count: int, numbers: Mapping[str, Any], time: float
+    ) -> tuple[NDArray[Any], ...]:
+        """Return where the photons of a pass end, as arrays by field of ``photons.Deposit``.
+
+        Args:
+            count: How many there are.
+            numbers: Values of the program's numbers.
+            time: The time of the pass, in seconds.
+        """
+        followed = np.arange(count, dtype=np.int32)
+        found: tuple[NDArray[Any], ...] = ()
+        for most in _STAGES:
+            part = self.deposits.run(followed, {**numbers, photons.MOST: most}, time)
+            if not found:
+                found = tuple(np.array(values) for values in part)
+            else:
+                for whole, values in zip(found, part, strict=True):
+                    whole[followed] = values
+            followed = np.flatnonzero(found[-1] == photons.UNFINISHED).astype(np.int32)
+            if not len(followed):
+                break
+        return found
 
 
 def _signed(value: int) -> int:
@@ -186,7 +214,7 @@ def _sorted(
         place: The place of each.
         arrival: The direction to where it came from.
         power: Its power.
-        slot: Its slot; -1 if it met nothing.
+        slot: Its slot; negative if it met nothing.
         slots: How many slots there are.
     """
     red, green, blue = np.abs(power).T

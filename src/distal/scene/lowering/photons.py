@@ -17,6 +17,7 @@ from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.loading import copy_loaded_from
 from distal.render import film, photon_aim, photons
+from distal.render.paths import MOST_SEGMENTS
 from distal.scene.lowering.photon_functions import PhotonFunctions, bundling_parts
 from distal.scene.lowering.picture import SceneLowering
 from distal.scene.lowering.shapes import ZERO_CELL
@@ -94,6 +95,7 @@ class DepositFunction(Composed):
             "seed": assembly.number(photons.SEED, INT, 0),
             "index": assembly.number(photons.FRAME_INDEX, INT, 0),
             "first_sample": assembly.number(film.FIRST_SAMPLE, INT, 0),
+            "most": assembly.number(photons.MOST, INT, MOST_SEGMENTS),
         }
         found = made.composer.call(photons.deposit, given)
         self.result = found.type
