@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from itertools import repeat
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,11 +26,6 @@ from distal.runtime.device_names import REFERENCE
 from distal.runtime.lowered import Lowered
 from distal.runtime.moving import moved_resources
 from distal.runtime.uniform_values import DeclaredUniforms, frame_values
-
-# Photons for each pixel and sample, and the least and most of them in a pass.
-_OF_A_SAMPLE: Final = 0.5
-_FEWEST: Final = 2**14
-_MOST: Final = 2**21
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,8 +128,8 @@ class PhotonPasses:
             self.plans[time] = self.plan.run(np.zeros((1, 2), np.float32), {}, time)
         low, high, widest = (np.asarray(part, np.float64)[0].tolist() for part in self.plans[time])
         radius = executor().call(photons.shrunk, (widest, first), {}, device=REFERENCE)
-        of_sample = _OF_A_SAMPLE * pixels
-        of_map = int(min(max(of_sample, _FEWEST / count), _MOST / count))
+        of_sample = photons.OF_A_SAMPLE * pixels
+        of_map = int(min(max(of_sample, photons.FEWEST / count), photons.MOST / count))
         slots = 1 << max(of_map.bit_length() - 1, 4)
         numbers: dict[str, Any] = {
             photons.LOW: tuple(low),
