@@ -137,7 +137,9 @@ class Verifier:
         entry = functions[module.entry]
         if module.kind is EntryKind.IMAGE and stage in _NO_FRAME:
             assert [p.type for p in entry.params] == [VEC2], f"{entry.name} takes not just coord"
-            assert entry.result is VEC4 or is_targets(entry.result), f"{entry.name} returns {entry.result}"
+            assert entry.result is VEC4 or is_targets(entry.result), (
+                f"{entry.name} returns {entry.result}"
+            )
 
 
 @dataclass(frozen=True, slots=True)

@@ -132,7 +132,8 @@ def _output_lines(entry: Function) -> list[str]:
     if not isinstance(entry.result, Struct):
         return ["out vec4 fragment_color;"]
     return [
-        f"layout(location = {i}) out vec4 {target_name(i)};" for i in range(len(entry.result.fields))
+        f"layout(location = {i}) out vec4 {target_name(i)};"
+        for i in range(len(entry.result.fields))
     ]
 
 
