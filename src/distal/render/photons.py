@@ -67,8 +67,8 @@ LARGEST_PART = 0.015
 SHRINKING = -0.3333333333
 # Photons whose distance from the tangent plane is larger, in radii, are on another surface.
 FLATNESS = 0.25
-# Photons for each pixel and sample, and the least and most of them in a pass; in a page, whose photons
-# cross from the GPU to the host and back, the most are fewer.
+# Photons for each pixel and sample, and the least and most of them in a pass. Those of a page cross
+# from the GPU to the host and back: fewer at most.
 OF_A_SAMPLE: Final = 0.5
 FEWEST: Final = 2**14
 MOST: Final = 2**21
