@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, ClassVar
 from distal.frontend import Assembly
 from distal.ir.build import field, swizzle
 from distal.ir.nodes import EntryKind, Expr, Param, Read, Return
-from distal.ir.types import FRAME, INT, VEC2
+from distal.ir.types import FRAME, INT, VEC2, Type
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.loading import copy_loaded_from
@@ -72,7 +72,7 @@ class DepositFunction(Composed):
     """The function from the number of a photon to where it ends."""
 
     kind: ClassVar[EntryKind] = EntryKind.FUNCTION
-    signature = (("number", INT),)
+    signature: tuple[tuple[str, Type], ...] = (("number", INT),)
 
     def __init__(self, scene: Scene, *, steered: bool) -> None:
         copy_loaded_from(scene, self)
