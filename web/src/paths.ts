@@ -6,12 +6,14 @@
  * changes nothing. Only the script of pages with paths contains this.
  */
 
+import { drawBands } from "./bands";
 import type { Painter, Target } from "./painter";
 import type { FilmPrograms } from "./payload";
+import { Photons, type Reads } from "./photons";
 import type { Linked } from "./program";
 import { Resolution } from "./resolution";
-import type { Inputs } from "./uniforms";
-import { gpuDone } from "./waiting";
+import { dropSheet, newSheet, type Sheet } from "./sheets";
+import type { Given, Inputs } from "./uniforms";
 
 /** A film has enough: its error is 1/128 of that of one sample. */
 export const MOST_SAMPLES = 16384;
@@ -27,17 +29,10 @@ const COARSE = 0.25;
 const OF_COARSE = 8;
 /** Samples a second are those of the last passes. */
 const RATE_MS = 2000;
-/** The first bands measure what a pixel costs. */
-const FIRST_COLUMNS = 2;
-
-interface Sheet extends Target {
-  texture: WebGLTexture;
-}
 
 /** What a program reads of a film, and the target that it draws onto; see `Linked`. */
 export interface FilmUse {
-  name: string;
-  texture: WebGLTexture;
+  reads: Reads;
   onto?: Target;
 }
 
@@ -50,14 +45,16 @@ export class Paths {
   #film: { revision: number; size: [number, number] } | null = null;
   #sheets: [Sheet, Sheet] | null = null;
   #resolution = new Resolution();
-  #hasDrawn = false;
+  #photons: Photons | null;
   #isCoarse = true;
   #passes: [at: number, ms: number, samples: number][] = [];
 
   constructor(
     readonly painter: Painter,
     readonly source: FilmPrograms,
-  ) {}
+  ) {
+    this.#photons = source.photons ? new Photons(painter, source.photons) : null;
+  }
 
   get isReady(): boolean {
     return this.#isReady;
@@ -98,6 +95,7 @@ export class Paths {
     }
     this.#show = await painter.program(source.show);
     this.#trace = await painter.program(source.trace);
+    await this.#photons?.prepare();
     this.#isReady = true;
   }
 
@@ -109,7 +107,6 @@ export class Paths {
     floor: number,
     isStale: () => boolean,
   ): Promise<number | null> {
-    const { painter } = this;
     const [width, height] = size;
     this.#begin(revision, size);
     const cost = this.#resolution.cost;
@@ -118,19 +115,16 @@ export class Paths {
     this.#resolution.floor = floor;
     const begin = performance.now();
     const [from, onto] = this.#sheets!;
-    this.#trace.film = { name: this.source.name, texture: from.texture, onto };
-    inputs = this.#inputs(inputs, samples);
-    for (let column = 0; column < width; ) {
-      const isKnown = this.#resolution.cost !== null;
-      const fit = isKnown ? this.#resolution.columns(height * samples) : FIRST_COLUMNS;
-      const columns = Math.min(fit, width - column);
-      painter.draw(this.#trace, inputs, size, column, columns);
-      const ms = await gpuDone(painter.gl);
-      if (ms === null || isStale()) return null;
-      // What drivers put off until the first draw is not the cost of its pixels.
-      if (this.#hasDrawn) this.#resolution.measure(ms, columns * height * samples);
-      this.#hasDrawn = true;
-      column += columns;
+    const photons = await this.#photons?.of(inputs, this.samples, width * height, floor, isStale);
+    if (photons === null) return null;
+    this.#trace.film = {
+      reads: { [this.source.name]: [from.textures[0]!], ...photons?.reads },
+      onto,
+    };
+    inputs = this.#inputs(inputs, samples, photons?.numbers);
+    const { painter } = this;
+    if (!(await drawBands(painter, this.#trace, inputs, size, samples, this.#resolution, isStale))) {
+      return null;
     }
     this.#sheets = [onto, from];
     this.samples += samples;
@@ -143,13 +137,13 @@ export class Paths {
   /** Draws the film's picture, which is then to be presented. */
   show(inputs: Inputs): void {
     const { size } = this.#film!;
-    this.#show.film = { name: this.source.name, texture: this.#sheets![0].texture };
+    this.#show.film = { reads: { [this.source.name]: [this.#sheets![0].textures[0]!] } };
     this.painter.draw(this.#show, this.#inputs(inputs, 0), size, 0, size[0]);
   }
 
-  #inputs({ frame, parameter, number }: Inputs, samples: number): Inputs {
+  #inputs({ frame, parameter, number }: Inputs, samples: number, more: Given = {}): Inputs {
     const own = { Samples: samples, First_sample: this.samples, Film_offset: number["Frame_offset"] };
-    return { frame, parameter, number: { ...number, ...own } };
+    return { frame, parameter, number: { ...number, ...own, ...more } };
   }
 
   #begin(revision: number, size: [number, number]): void {
@@ -158,28 +152,11 @@ export class Paths {
     if (isSame && known.revision === revision) return;
     const { gl } = this.painter;
     if (!isSame) {
-      for (const { texture, frame } of this.#sheets ?? []) {
-        gl.deleteTexture(texture);
-        gl.deleteFramebuffer(frame);
-      }
+      for (const sheet of this.#sheets ?? []) dropSheet(gl, sheet);
       this.#sheets = [newSheet(gl, size), newSheet(gl, size)];
     }
     this.#film = { revision, size };
     this.samples = 0;
     this.#passes = [];
   }
-}
-
-function newSheet(gl: WebGL2RenderingContext, [width, height]: [number, number]): Sheet {
-  const texture = gl.createTexture()!;
-  const frame = gl.createFramebuffer()!;
-  gl.activeTexture(gl.TEXTURE0);
-  gl.bindTexture(gl.TEXTURE_2D, texture);
-  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA32F, width, height);
-  for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
-    gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST); // Floats are not filtered everywhere.
-  }
-  gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
-  return { texture, frame, pixels: null, width, height };
 }

@@ -66,6 +66,20 @@ export interface FilmPrograms {
   show: Program;
   /** The texture that is the film. */
   name: string;
+  /** Of a scene whose caustics photons find. */
+  photons?: PhotonPrograms;
+}
+
+/** The programs of photons: one says what a pass depends on, one traces them. */
+export interface PhotonPrograms {
+  plan: Program;
+  deposits: Program;
+  /** The buffers that the paths read: places, arrivals, starts. */
+  tables: string[];
+  /** Photons for each pixel, and the least and most of them. */
+  of_sample: number;
+  fewest: number;
+  most: number;
 }
 
 export type Format = "rgba8" | "float16" | "float32" | "int32" | "uint32";
@@ -83,7 +97,12 @@ export interface View {
   label: string;
   program: number;
   /** The numbers of the programs of its film, where its light is that of random paths. */
-  film?: { trace: number; show: number; name: string };
+  film?: {
+    trace: number;
+    show: number;
+    name: string;
+    photons?: Omit<PhotonPrograms, "plan" | "deposits"> & { plan: number; deposits: number };
+  };
 }
 
 /** How a scene's camera is written as Python. */

@@ -388,8 +388,16 @@ export class Player {
     const view = this.payload.views.find(({ name }) => name === this.#view)!;
     const program = this.#programs[view.program];
     if (PATHS && program && view.film) {
-      const { trace, show, name } = view.film;
-      const film = { trace: this.#programs[trace]!, show: this.#programs[show]!, name };
+      const { trace, show, name, photons } = view.film;
+      const at = (number: number) => this.#programs[number]!;
+      const film = {
+        trace: at(trace),
+        show: at(show),
+        name,
+        ...(photons && {
+          photons: { ...photons, plan: at(photons.plan), deposits: at(photons.deposits) },
+        }),
+      };
       program.film = this.isDirect ? undefined : film;
     }
     if (program) void this.#renderer.use(program);

@@ -11,7 +11,7 @@ import type { Linked } from "./program";
 type GL = WebGL2RenderingContext;
 type Numbers = Uint8Array | Uint16Array | Float32Array | Int32Array | Uint32Array;
 
-const BUFFER_WIDTH = 1024;
+export const BUFFER_WIDTH = 1024;
 const ARRAYS = {
   rgba8: Uint8Array,
   float16: Uint16Array,
@@ -34,14 +34,14 @@ export class Resources {
     const { textures, buffers } = program.source;
     [...textures, ...buffers].forEach((entry, unit) => {
       gl.activeTexture(gl.TEXTURE0 + unit);
-      const [target, texture] =
-        PATHS && entry.name === program.film?.name
-          ? ([gl.TEXTURE_2D, program.film.texture] as const)
-          : this.#texture(entry);
+      const read = PATHS && program.film?.reads[entry.name];
+      const [target, texture] = read
+        ? ([gl.TEXTURE_2D, read[0]] as const)
+        : this.#texture(entry);
       gl.bindTexture(target, texture);
       gl.uniform1i(gl.getUniformLocation(program.handle, entry.uniform), unit);
       if ("count" in entry) {
-        const count = this.sources[entry.name]?.size[0] ?? 0;
+        const count = (read && read[1]) || (this.sources[entry.name]?.size[0] ?? 0);
         gl.uniform1i(gl.getUniformLocation(program.handle, entry.count), count);
       }
     });

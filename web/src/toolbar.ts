@@ -88,6 +88,8 @@ function samples(player: Player): HTMLElement {
   button.style.cssText = "font-size:12px;font-variant-numeric:tabular-nums;white-space:nowrap";
   button.onclick = () => player.actions.mode(false);
   const show = (text: string) => (button.textContent = text);
+  const film = () => player.payload.views.find(({ name }) => name === player.view)?.film;
+  const caustics = () => (film()?.photons ? " · caustics" : "");
   const wait = () => show(player.isDirect ? "Direct light" : "Paths …");
   const name = () => {
     rename(button, `${player.isDirect ? "Trace paths" : "Show direct light"} (M)`);
@@ -96,11 +98,11 @@ function samples(player: Player): HTMLElement {
   };
   player.on("frame", ({ samples, rate }) => {
     if (rate === undefined) wait();
-    else show(`${samples} samples · ${rate.toFixed(rate < 10 ? 1 : 0)}/s`);
+    else show(`${samples} samples · ${rate.toFixed(rate < 10 ? 1 : 0)}/s${caustics()}`);
   });
   player.on("mode", name);
   const seen = () => {
-    button.hidden = !player.payload.views.find(({ name }) => name === player.view)?.film;
+    button.hidden = !film();
   };
   player.on("view", seen);
   seen();

@@ -76,7 +76,7 @@ def write(seen: Viewable, path: Path, options: PageOptions) -> Exported:
     """
     for name in (options.view, *(options.views or ())):
         seen.image(name)  # raises if there is no such view
-    seen = seen.in_mode(options.mode)
+    seen = seen.in_mode(options.mode, caustics=options.caustics)
     player = player_script(player_of(seen))
     omitted: dict[str, str] = {}
     content = payload(

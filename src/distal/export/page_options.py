@@ -42,6 +42,7 @@ class PageOptions(TextOptions):
         views: The views to include; None for all.
         device: The device that renders the poster, as for ``Scene.render``.
         mode: How light is computed: "direct" or "path"; None: as the scene says.
+        caustics: In mode "path": whether photons find caustics; None: if there are any.
 
     Raises:
         TypeError: A value has the wrong type.
@@ -57,6 +58,7 @@ class PageOptions(TextOptions):
     views: Sequence[str] | None = None
     device: str = "cpu"
     mode: str | None = None
+    caustics: bool | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "size", checked_size(self.size))

@@ -31,6 +31,7 @@ from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
 from distal.lang.parameters import Parameter
 from distal.passes.entry import FRAME_OFFSET
+from distal.render import photons
 from distal.render.live_film import FILM
 from distal.scene.viewing.guide import Guide
 from distal.scene.viewing.viewable import COLOR, Viewable, view_label
@@ -248,7 +249,27 @@ class PagePrograms:
         """
         trace, show = (self._added_program(image) for image in (added, shown))
         name = self._resource("Film", FILM, TEXTURE_2D)
-        return {"trace": trace, "show": show, "name": name}
+        made: dict[str, Any] = {"trace": trace, "show": show, "name": name}
+        if added.photons is not None:
+            made["photons"] = self._photons(added.photons)
+        return made
+
+    def _photons(self, programs: tuple[Composed, Composed]) -> dict[str, Any]:
+        """Add the programs of photons; return their indices, tables and numbers."""
+        plan, deposits = (self._added_program(image) for image in programs)
+        tables = (photons.PLACES, photons.ARRIVALS, photons.STARTS)
+        return {
+            "plan": plan,
+            "deposits": deposits,
+            "tables": [self._named(table) for table in tables],
+            "of_sample": photons.OF_A_SAMPLE,
+            "fewest": photons.FEWEST,
+            "most": photons.MOST_OF_A_PAGE,
+        }
+
+    def _named(self, source: Any) -> str:
+        """Return the name of a resource that a program already reads."""
+        return next(name for (key, _), name in self._names.items() if key == id(source))
 
     def add_guide(self, guide: Guide) -> int:
         """Add the program that guides the camera; -1 if WebGL 2 cannot run it."""

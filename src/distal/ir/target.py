@@ -47,6 +47,7 @@ class Target:
         largest_table: The largest number of scalars in an array of literals; larger arrays are kept
             in buffers, whose values are in the interface (see passes.tables). None: no limit, as
             the target has no buffers or arrays are fast on it.
+        targets: How many pictures an image can draw at once, as a struct of vec4.
     """
 
     name: str
@@ -66,3 +67,4 @@ class Target:
     outlined: bool = False
     one_way: bool = False
     largest_table: int | None = None
+    targets: int = 1

@@ -246,6 +246,11 @@ def is_static(type: Type) -> bool:
     return isinstance(type, Texture | Buffer | FunctionType)
 
 
+def is_targets(type: Type) -> bool:
+    """Return whether a value is a pixel of several pictures: a struct of vec4."""
+    return isinstance(type, Struct) and all(field is VEC4 for _, field in type.fields)
+
+
 def contained_structs(type: Type) -> Iterator[Struct]:
     """Yield every struct contained in ``type``, innermost first, possibly several times."""
     match type:

@@ -53,6 +53,7 @@ from distal.ir.types import (
     Type,
     index_count,
     is_static,
+    is_targets,
 )
 from distal.ir.verify_types import check_types
 from distal.ir.walk import children, expressions, nodes_in, per_frame_reads, root_of
@@ -136,7 +137,9 @@ class Verifier:
         entry = functions[module.entry]
         if module.kind is EntryKind.IMAGE and stage in _NO_FRAME:
             assert [p.type for p in entry.params] == [VEC2], f"{entry.name} takes not just coord"
-            assert entry.result is VEC4, f"{entry.name} returns {entry.result}"
+            assert entry.result is VEC4 or is_targets(entry.result), (
+                f"{entry.name} returns {entry.result}"
+            )
 
 
 @dataclass(frozen=True, slots=True)

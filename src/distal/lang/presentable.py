@@ -49,6 +49,7 @@ class ExportOptions(TypedDict, total=False):
     views: Sequence[str] | None
     device: str
     mode: str | None
+    caustics: bool | None
 
 
 class VideoOptions(TypedDict, total=False):

@@ -43,7 +43,7 @@ from distal.ir.nodes import (
     Var,
     span_in,
 )
-from distal.ir.types import FRAME, VEC2, VEC3, VEC4, FunctionType, Type
+from distal.ir.types import FRAME, VEC2, VEC3, VEC4, FunctionType, Struct, Type, is_targets
 from distal.ir.walk import children, map_statement, rebuild
 from distal.passes.context import Context
 from distal.passes.naming import FreshNames, local_names
@@ -72,7 +72,7 @@ def run(module: Module, context: Context) -> Module:
     functions = [_FrameReplacer(f, renamed, used).function() for f in module.functions]
     entry = module.entry
     if module.kind is EntryKind.IMAGE:
-        wrapper = _wrapper(functions, entry, module.uniforms)
+        wrapper = _wrapper(functions, entry, module.uniforms, context.target.targets)
         functions.append(wrapper)
         entry = wrapper.name
     frame = [u for name, u in _FRAME_UNIFORMS.items() if name in used]
@@ -99,7 +99,7 @@ def _rename(uniform: UniformDeclaration, renamed: dict[str, str]) -> UniformDecl
 
 
 def _wrapper(
-    functions: list[Function], entry: str, uniforms: Iterable[UniformDeclaration]
+    functions: list[Function], entry: str, uniforms: Iterable[UniformDeclaration], targets: int
 ) -> Function:
     image = next(f for f in functions if f.name == entry)
     coord: Expr = Read("coord", VEC2)
@@ -115,7 +115,7 @@ def _wrapper(
     color: Expr = Call(entry, args, image.result)
     if image.result is VEC3:
         color = Compose((color, number(1.0)), VEC4)
-    elif image.result is not VEC4:
+    elif image.result is not VEC4 and not _is_drawn(image.result, targets):
         raise CompileError.at(
             f"the image '{image.source_name}' returns {image.result}",
             image.span,
@@ -123,7 +123,12 @@ def _wrapper(
         )
     name = FreshNames(f.name for f in functions).fresh("main")
     body = (Return(color, span=image.span),)
-    return Function(name, (Param("coord", VEC2),), VEC4, body, "main", span=image.span)
+    return Function(name, (Param("coord", VEC2),), color.type, body, "main", span=image.span)
+
+
+def _is_drawn(type: Type, targets: int) -> bool:
+    """Return whether the target draws so many pictures at once."""
+    return isinstance(type, Struct) and is_targets(type) and len(type.fields) <= targets
 
 
 def _without_frame(type: Type) -> Type:

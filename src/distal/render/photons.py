@@ -67,6 +67,12 @@ LARGEST_PART = 0.015
 SHRINKING = -0.3333333333
 # Photons whose distance from the tangent plane is larger, in radii, are on another surface.
 FLATNESS = 0.25
+# Photons for each pixel and sample, and the least and most of them in a pass. Those of a page cross
+# from the GPU to the host and back: fewer at most.
+OF_A_SAMPLE: Final = 0.3
+FEWEST: Final = 2**14
+MOST: Final = 2**21
+MOST_OF_A_PAGE: Final = 2**18
 # Decisions of a segment of a photon, and the one that a path takes for a photon.
 DECISIONS = 3
 DIRECTION = 0
@@ -84,7 +90,7 @@ SLOTS: Final = "Photons_slots"
 MAPS: Final = "Photons_maps"
 SHARE: Final = "Photons_share"
 SEED: Final = "Photons_seed"
-MOST: Final = "Photons_most"
+MOST_FOLLOWED: Final = "Photons_most"
 FRAME_INDEX: Final = "Photons_index"
 # The data of these buffers is replaced for each pass.
 PLACES: Final = Buffer([vec4(0.0)])
@@ -126,6 +132,34 @@ class Deposit:
     arrival: vec3
     power: vec3
     slot: int
+
+
+@struct
+class DepositImage:
+    """A photon as a pixel of three pictures, which are drawn at once.
+
+    Attributes:
+        place: Its place, and its slot.
+        arrival: The direction to where it came from, and 0.
+        power: Its power, and 0.
+    """
+
+    place: vec4
+    arrival: vec4
+    power: vec4
+
+
+@struct
+class PlanImage:
+    """What the photons of a pass depend on, as a pixel of two pictures.
+
+    Attributes:
+        low: The lower corner of the target, and the radius of the pass.
+        high: Its upper corner, and 0.
+    """
+
+    low: vec4
+    high: vec4
 
 
 @struct
@@ -171,6 +205,41 @@ def shrunk(radius: float, first_sample: int) -> float:
     """
     part: float = max(float(first_sample), 1.0) ** (0.5 * SHRINKING)
     return radius * part
+
+
+@func
+def plan_image(plan: PhotonPlan, first_sample: int) -> PlanImage:
+    """Return what the photons of a pass depend on.
+
+    Args:
+        plan: The plan of the picture.
+        first_sample: The number of the first sample of the pass.
+    """
+    return PlanImage(
+        vec4(plan.low, shrunk(plan.radius, first_sample)),
+        vec4(plan.high, 0.0),
+    )
+
+
+@func
+def photon_at(coord: vec2, width: float) -> int:
+    """Return the number of the photon that a pixel follows.
+
+    Args:
+        coord: Middle of the pixel, in pixels.
+        width: Width of the picture in pixels.
+    """
+    return int(floor(coord.y)) * int(width) + int(floor(coord.x))
+
+
+@func
+def deposit_image(found: Deposit) -> DepositImage:
+    """Return a photon as a pixel; its slot is a whole number below 2 ** 24."""
+    return DepositImage(
+        vec4(found.place, float(found.slot)),
+        vec4(found.arrival, 0.0),
+        vec4(found.power, 0.0),
+    )
 
 
 @func

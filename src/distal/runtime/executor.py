@@ -148,8 +148,6 @@ class PythonExecutor:
         adaptive = isinstance(image, Composed) and image.adaptive
         refined = isinstance(image, Composed) and image.refined
         passes = self.passes(image, replace(options, device=device))
-        if isinstance(image, Composed) and image.photons is not None:
-            passes = replace(passes, photons=self._photons(image.photons, device, options))
         parts, kernels = passes.parts, passes.kernels
         values, others = passes.values
         contrast = self._contrast(device) if adaptive else None
@@ -221,7 +219,11 @@ class PythonExecutor:
                 parts = tuple(part.frozen(numbers, kept) for part in parts)
             kernels = [self.kernels.kernel(part, options.device, 32) for part in parts]
         moved = moved_resources(parts[0].resources, values, options.time)
-        return Passes(kernels, parts, run.declared, (values, others), options, moved)
+        photons = None
+        if isinstance(image, Composed) and image.photons is not None:
+            photons = self._photons(image.photons, options.device, options)
+        found = (values, others)
+        return Passes(kernels, parts, run.declared, found, options, moved, photons=photons)
 
     def _photons(
         self, programs: tuple[Composed, Composed], device: str, options: RenderOptions

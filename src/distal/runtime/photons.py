@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from itertools import repeat
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,10 +28,6 @@ from distal.runtime.lowered import Lowered
 from distal.runtime.moving import moved_resources
 from distal.runtime.uniform_values import DeclaredUniforms, frame_values
 
-# Photons for each pixel and sample, and the least and most of them in a pass.
-_OF_A_SAMPLE: Final = 0.3
-_FEWEST: Final = 2**14
-_MOST: Final = 2**21
 # Photons are followed in stages of so many segments: most meet nothing that bundles light and end
 # at once, a few are caught in glass for long. What goes on is computed together, from its start.
 _STAGES: Final = (1, 4, MOST_SEGMENTS)
@@ -137,8 +133,8 @@ class PhotonPasses:
             self.plans[time] = self.plan.run(np.zeros((1, 2), np.float32), {}, time)
         low, high, widest = (np.asarray(part, np.float64)[0].tolist() for part in self.plans[time])
         radius = executor().call(photons.shrunk, (widest, first), {}, device=REFERENCE)
-        of_sample = _OF_A_SAMPLE * pixels
-        of_map = int(min(max(of_sample, _FEWEST / count), _MOST / count))
+        of_sample = photons.OF_A_SAMPLE * pixels
+        of_map = int(min(max(of_sample, photons.FEWEST / count), photons.MOST / count))
         slots = 1 << max(of_map.bit_length() - 1, 4)
         numbers: dict[str, Any] = {
             photons.LOW: tuple(low),
@@ -178,7 +174,7 @@ class PhotonPasses:
         followed = np.arange(count, dtype=np.int32)
         found: tuple[NDArray[Any], ...] = ()
         for most in _STAGES:
-            part = self.deposits.run(followed, {**numbers, photons.MOST: most}, time)
+            part = self.deposits.run(followed, {**numbers, photons.MOST_FOLLOWED: most}, time)
             if not found:
                 found = tuple(np.array(values) for values in part)
             else:

@@ -109,7 +109,7 @@ class FilmRenderer:
         steering = STILL if shot.steering is None else shot.steering
         options = render_options(shot, size, self.device)
         options = replace(options, cancel=cancel, settings=viewable.settings(steering))
-        image = viewable.scene.view(shot.view, steered=True, paths=True)
+        image = viewable.scene.view(shot.view, steered=True, paths=True, caustics=viewable.caustics)
         return executor().passes(image, options)
 
     def _is_enough(self, seconds: float) -> bool:

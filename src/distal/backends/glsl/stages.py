@@ -19,7 +19,7 @@ from distal.backends.clike.module_text import uniform_comment
 from distal.backends.clike.packing import Packing, value_text, vector_texts
 from distal.backends.glsl.isf import IsfWriter, sampler_lines
 from distal.backends.glsl.resources import accessor_lines, resource_lines
-from distal.backends.glsl.targets import GlslTarget
+from distal.backends.glsl.targets import GlslTarget, target_name
 from distal.backends.glsl.uniforms import constant_line, constant_lines, default_text
 from distal.backends.glsl.writer import Glsl100Writer, GlslWriter
 from distal.backends.targets import Declares
@@ -81,7 +81,7 @@ def fragment_lines(program: GlslProgram) -> list[Line]:
     lines += _uniform_lines(program, used, frame)
     lines += _frame_lines(program, in_functions)
     if is_image and program.target.output == "fragment_color":
-        lines += [Line(""), Line("out vec4 fragment_color;")]
+        lines += [Line(""), *map(Line, _output_lines(entry))]
     lines += _type_lines(program, writer, used)
     lines += _table_lines(writer)
     return [*lines, Line(""), *body]
@@ -127,6 +127,16 @@ def vertex_lines(program: GlslProgram) -> list[Line]:
     return [*lines, Line(""), *writer.lines]
 
 
+def _output_lines(entry: Function) -> list[str]:
+    """Return the declarations of the pictures that are drawn; of several, each has a location."""
+    if not isinstance(entry.result, Struct):
+        return ["out vec4 fragment_color;"]
+    return [
+        f"layout(location = {i}) out vec4 {target_name(i)};"
+        for i in range(len(entry.result.fields))
+    ]
+
+
 def _write_functions(writer: GlslWriter, functions: Sequence[Function]) -> None:
     for function in functions:
         writer.function(function)
@@ -158,8 +168,10 @@ def _write_main(
     else:
         _unpack(program, writer, entry, in_functions)
     writer.output = target.output
+    if isinstance(entry.result, Struct):
+        writer.targets = entry.result
     writer.block(entry.body, tail=True)
-    writer.output = None
+    writer.output, writer.targets = None, None
     writer.depth = 0
     writer.span = None
     writer.line("}")

@@ -84,8 +84,14 @@ class GlslTarget(TextTarget):
     @property
     def written_names(self) -> frozenset[str]:
         """The names that its texts contain; the author's names must be different."""
-        texts = " ".join((self.output, self.coord, self.main, *self.texts.values()))
+        several = (target_name(i) for i in range(self.targets) if self.targets > 1)
+        texts = " ".join((self.output, *several, self.coord, self.main, *self.texts.values()))
         return frozenset(re.findall(r"(?<![.\w])[A-Za-z_]\w*", texts))
+
+
+def target_name(number: int) -> str:
+    """Return the variable of one of several pictures that are drawn at once."""
+    return f"fragment_target_{number}"
 
 
 def shadertoy_channels(resources: Resources) -> dict[str, str]:
@@ -234,6 +240,7 @@ _WEBGL_2 = GlslTarget(
     version="300 es",
     head=("#version 300 es", *_PRECISION),
     output="fragment_color",
+    targets=4,  # as many as each driver has
     sampler_precision="highp ",
 )
 

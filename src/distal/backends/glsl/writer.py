@@ -16,6 +16,7 @@ from distal.backends.clike.expense import EAGER_OPERATIONS, Expense
 from distal.backends.clike.functions import FunctionWriter
 from distal.backends.clike.literals import float_literal, int_literal
 from distal.backends.clike.module_names import ModuleNames
+from distal.backends.glsl.targets import target_name
 from distal.diagnostics import CompileError
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import (
@@ -75,6 +76,7 @@ class GlslWriter(FunctionWriter):
         expense: The costs of functions.
         uniform_texts: The texts of the uniforms that are not declared by name.
         output: The variable that ``main`` assigns instead of returning; None in other functions.
+        targets: The struct whose fields ``main`` assigns, each to a picture of its own.
         leaves_choice: Whether a macro of the host selects between the driver's built-ins and the
             careful functions.
     """
@@ -95,6 +97,7 @@ class GlslWriter(FunctionWriter):
         self.expense = expense
         self.uniform_texts = uniform_texts
         self.output: str | None = None
+        self.targets: Struct | None = None
         self.leaves_choice = False
 
     # Types
@@ -188,7 +191,13 @@ class GlslWriter(FunctionWriter):
         if self.output is None:
             super().write_return(value, tail=tail)
             return
-        self.line(f"{self.output} = {value.text};")
+        if self.targets is None:
+            self.line(f"{self.output} = {value.text};")
+        else:
+            made = self.temporary("targets", value, self.targets).text
+            for i, (name, _) in enumerate(self.targets.fields):
+                field = self.names.fields[self.targets, name]
+                self.line(f"{target_name(i)} = {made}.{field};")
         if not tail:
             self.line("return;")
 

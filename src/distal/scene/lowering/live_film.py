@@ -15,6 +15,8 @@ from distal.ir.types import FRAME, VEC4
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.loading import copy_loaded_from
+from distal.scene.lowering.photon_functions import casts_caustics
+from distal.scene.lowering.photons import photon_images
 from distal.scene.lowering.picture import SceneLowering
 
 if TYPE_CHECKING:
@@ -28,9 +30,17 @@ class FilmPass(Composed):
     signature = (("frame", FRAME),)
     result = VEC4
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, *, caustics: bool = True) -> None:
+        """Make the program.
+
+        Args:
+            scene: The scene.
+            caustics: Whether photons find the caustics, if the scene has any.
+        """
         copy_loaded_from(scene, self)
         self.name = f"{scene.name} (paths)"
+        if caustics and casts_caustics(scene):
+            self.photons = photon_images(scene)
         self._scene = scene
 
     def compose(self, assembly: Assembly) -> str:
@@ -43,6 +53,7 @@ class FilmPass(Composed):
             steered=True,
             paths=True,
             kept=True,
+            photons=self.photons is not None,
         )
 
     def functions(self) -> Iterable[Func]:

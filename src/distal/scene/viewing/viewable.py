@@ -48,6 +48,7 @@ class Viewable:
         scene: The scene; the default scene of a single shape; None for an ``@image``.
         views: The names of the views; "color" is the first.
         mode: How the light of the view "color" is computed: "direct" or "path".
+        caustics: Whether photons find the caustics of paths.
     """
 
     def __init__(self, name: str, source: Scene | Image) -> None:
@@ -55,13 +56,15 @@ class Viewable:
         self._source = source
         self.scene = source if isinstance(source, Scene) else None
         self.mode = "direct" if self.scene is None else self.scene.mode
+        self.caustics = True
         self._images: dict[str, Image | Composed] = {}
 
-    def in_mode(self, mode: str | None) -> Viewable:
+    def in_mode(self, mode: str | None, *, caustics: bool | None = None) -> Viewable:
         """Return the same object whose light is computed in another way.
 
         Args:
             mode: "direct" or "path"; None: as the scene says.
+            caustics: Whether photons find the caustics of paths; None keeps it.
 
         Raises:
             ValueError: There is no such mode.
@@ -69,12 +72,15 @@ class Viewable:
         """
         if mode is not None and mode not in MODES:
             raise ValueError(f"there is no mode '{mode!s:.40}'; modes: {', '.join(MODES)}")
-        if mode is None or mode == self.mode:
+        mode = self.mode if mode is None else mode
+        caustics = self.caustics if caustics is None else caustics
+        if (mode, caustics) == (self.mode, self.caustics):
             return self
-        if self.scene is None:
+        if self.scene is None and mode != self.mode:
             raise LoadError(f"modes are for scenes and shapes; '{self.name}' is an @image")
         made = copy.copy(self)
-        made.mode = mode
+        made.mode, made.caustics = mode, caustics
+        made.__dict__.pop("film", None)  # it depends on both
         return made
 
     @cached_property
@@ -156,7 +162,7 @@ class Viewable:
         """The programs of a live picture by paths; None in mode "direct"."""
         if self.scene is None or self.mode != "path":
             return None
-        return FilmPass(self.scene), ShownFilm(self.scene)
+        return FilmPass(self.scene, caustics=self.caustics), ShownFilm(self.scene)
 
     def is_sampled(self, view: str) -> bool:
         """Return whether a still of a view gets several samples in a pixel: a scene's colors."""
@@ -181,7 +187,11 @@ class Viewable:
             image, settings = self.image(view), {}
         else:
             image, sampled = self.scene.program(
-                view, options.samples, steered=steering is not None, mode=self.mode
+                view,
+                options.samples,
+                steered=steering is not None,
+                mode=self.mode,
+                caustics=self.caustics,
             )
             settings = {**moved, **sampled}
             if options.refinement is None:
