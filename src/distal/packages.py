@@ -9,6 +9,7 @@ an incomplete upgrade. Imports only the standard library.
 from __future__ import annotations
 
 import importlib
+import importlib.util
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -87,6 +88,14 @@ def imported(module: str) -> Any:
     """
     with loading(module.partition(".")[0]):
         return importlib.import_module(module)
+
+
+def is_installed(module: str) -> bool:
+    """Return whether a package is there, without importing it; it may still be broken."""
+    try:
+        return importlib.util.find_spec(module) is not None
+    except (ImportError, ValueError):
+        return False
 
 
 @contextmanager

@@ -14,7 +14,7 @@ import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import PurePath
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import distal
 from distal.backends import emit, get_target
@@ -22,19 +22,25 @@ from distal.backends.base import Artifact
 from distal.compiler.driver import run_passes
 from distal.diagnostics import CompileError
 from distal.export.page_options import PageOptions
-from distal.export.resources import resource, table
+from distal.export.tables import table
 from distal.frontend import lower
 from distal.ir.nodes import Module
 from distal.ir.types import TEXTURE_2D, Buffer, Texture
 from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
+from distal.lang.lazy_module import LazyModule
 from distal.lang.parameters import Parameter
 from distal.passes.entry import FRAME_OFFSET
 from distal.render.live_film import FILM
 from distal.scene.viewing.guide import Guide
 from distal.scene.viewing.viewable import COLOR, Viewable, view_label
 from distal.version import __version__
+
+if TYPE_CHECKING:
+    from distal.export import resources
+else:
+    resources = LazyModule("distal.export.resources")  # needs NumPy
 
 PACKAGE: Final = PurePath(distal.__file__).parent
 FORMAT: Final = 1
@@ -295,7 +301,7 @@ class PagePrograms:
         key = (id(source), str(type))
         if key not in self._names:
             assert isinstance(type, Texture | Buffer)
-            self._names[key] = self._added(name, resource(source, type))
+            self._names[key] = self._added(name, resources.resource(source, type))
         return self._names[key]
 
     def _table(self, entry: Mapping[str, Any]) -> str:
