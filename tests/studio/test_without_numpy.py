@@ -91,7 +91,7 @@ import json
 from distal import Circle, Sphere, time
 from distal.lang import slider
 from distal.scene.viewing.viewable import viewable
-radius = slider("Radius", 0.5)
+radius = slider("Radius", 0.5, low=0.1, high=3.0)
 flat = viewable(Circle(radius).translate(1.0, 0.0), {"Radius": 2.0})
 low, high = Sphere(0.5 + 0.25 * time).bounds(time=2.0)
 print(json.dumps([flat.elevation, list(flat.views[:1]), low, high, (2.0 * radius).value()]))
