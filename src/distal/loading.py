@@ -172,7 +172,7 @@ def _run(file: Path, text: str) -> tuple[types.ModuleType, list[Path]]:
     except SystemExit as error:
         raise LoadError(f"{file} left with sys.exit({error.code!r}) while it was loaded") from None
     except Exception as error:
-        raise LoadError(_failure(file, error)) from error
+        raise _failure(file, error) from error
     finally:
         sys.path.remove(folder)
         neighbours = _forget_neighbours(Path(folder), known)
@@ -241,28 +241,40 @@ def _syntax_error(error: SyntaxError, filename: str) -> CompileError:
     return CompileError([Diagnostic(f"this is not Python: {error.msg}", span)])
 
 
-def _failure(file: Path, error: Exception) -> str:
-    """Describe the error and the line of the author's files where it was raised."""
-    name, line = str(file), None
+def _failure(file: Path, error: Exception) -> LoadError:
+    """Return the report for an error, with the line of the author's files where it was raised."""
+    name, span = str(file), None
     folder = file.resolve().parent
     trace = error.__traceback__
     while trace is not None:
         code_file = trace.tb_frame.f_code.co_filename
         if code_file == str(file) or Path(code_file).parent == folder:
-            name, line = code_file, trace.tb_lineno
+            name, span = code_file, _place(trace)
         trace = trace.tb_next
+    shown = name
     if name != str(file):  # a module in the same folder: show its path in the form of the scene's
-        linecache.checkcache(name)
         shown = str(file.parent / Path(name).name)
-    else:
-        shown = name
-    lines = [
-        str(explained(error) or f"{type(error).__name__}: {error}"),
-        f"  --> {shown if line is None else f'{shown}:{line}'}",
-    ]
-    if line is not None:
-        lines.append(f"  {linecache.getline(name, line).strip()}")
-    return "\n".join(lines)
+    reason = str(explained(error) or f"{type(error).__name__}: {error}")
+    lines = [reason, f"  --> {shown if span is None else f'{shown}:{span.line}'}"]
+    if span is not None:
+        lines.append(f"  {span.text.strip()}")
+    return LoadError("\n".join(lines), span, reason)
+
+
+def _place(trace: types.TracebackType) -> Span:
+    """Return the expression that was evaluated when an error was raised."""
+    code = trace.tb_frame.f_code
+    linecache.checkcache(code.co_filename)
+    line, col, end_col = trace.tb_lineno, 0, 0
+    text = linecache.getline(code.co_filename, line).rstrip("\n")
+    for number, (first, last, start, end) in enumerate(code.co_positions()):
+        if number == trace.tb_lasti // 2 and start is not None and end is not None:
+            if first == line:  # positions count bytes of UTF-8
+                col = len(text.encode()[:start].decode("utf-8", "replace"))
+                end_col = len(text.encode()[:end].decode("utf-8", "replace"))
+            if last != line:
+                end_col = len(text)
+    return Span(code.co_filename, line, col, max(end_col, col) or len(text), text, line)
 
 
 def _pick(module: types.ModuleType, file: Path, name: str | None) -> SceneCode:

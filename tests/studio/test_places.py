@@ -28,4 +28,4 @@ def test_each_shape_has_lines_of_its_own(tmp_path) -> None:
         for line, place in zip(made.text.splitlines(), made.lines, strict=True)
         if place == (str(file), 4)
     ]
-    assert any("Box_size" in line for line in text), text
+    assert any(" box(" in line for line in text), text
