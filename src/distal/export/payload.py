@@ -52,10 +52,14 @@ _COMMENT: Final = re.compile(r"\s*//.*$")
 Places = tuple[tuple[str, int] | None, ...]
 
 
+Compile = Callable[[Func | Composed], tuple[Artifact, Module]]
+
+
 def payload(
     seen: Viewable,
     options: PageOptions,
     omit: Callable[[str, CompileError], None] | None = None,
+    compile: Compile | None = None,
 ) -> dict[str, Any]:
     """Return all data that the player needs.
 
@@ -63,12 +67,13 @@ def payload(
         seen: The object to show.
         options: The options of the page.
         omit: Called with the name and error of each view that WebGL 2 cannot show.
+        compile: Compiles each program; None: ``compiled``.
 
     Raises:
         CompileError: WebGL 2 cannot show the first view.
         ValueError: There is no such view or parameter, or a value is out of range.
     """
-    programs = PagePrograms(seen)
+    programs = PagePrograms(seen, compile)
     names = list(dict.fromkeys(options.views or seen.views))
     if options.view not in names:
         names.insert(0, options.view)
@@ -221,8 +226,9 @@ class PagePrograms:
         resources: Textures and buffers by name.
     """
 
-    def __init__(self, seen: Viewable) -> None:
+    def __init__(self, seen: Viewable, compile: Compile | None = None) -> None:
         self._seen = seen
+        self._compile = compile or compiled
         self.made: list[dict[str, Any]] = []
         self.files: list[str] = []
         self.resources: dict[str, Any] = {}
@@ -264,7 +270,7 @@ class PagePrograms:
             return -1
 
     def _added_program(self, image: Func | Composed) -> int:
-        artifact, module = _compiled(image)
+        artifact, module = self._compile(image)
         program = self._program(artifact, module)
         if program not in self.made:
             self.made.append(program)
@@ -350,13 +356,23 @@ def _is_library(file: str) -> bool:
     return path.is_relative_to(PACKAGE) and not path.is_relative_to(PACKAGE / "gallery")
 
 
-def _compiled(image: Func | Composed) -> tuple[Artifact, Module]:
+def compiled(image: Func | Composed) -> tuple[Artifact, Module]:
     """Return the compiled text of a picture, and its module, which has the data of textures."""
-    target = get_target(TARGET)
+    module = lowered(image)
+    return compiled_module(module), module
+
+
+def lowered(image: Func | Composed) -> Module:
+    """Return the IR of a picture for a page, before the passes."""
     module = lower(image.text() if isinstance(image, Composed) else image)
     # The picture fills the page, the author's frame the part of it that nothing covers.
-    module = replace(module, uniforms=(*module.uniforms, FRAME_OFFSET))
-    return emit(run_passes(module, target), target), module
+    return replace(module, uniforms=(*module.uniforms, FRAME_OFFSET))
+
+
+def compiled_module(module: Module) -> Artifact:
+    """Return the text of a picture's module."""
+    target = get_target(TARGET)
+    return emit(run_passes(module, target), target)
 
 
 def _uniform(entry: dict[str, Any]) -> dict[str, Any]:
