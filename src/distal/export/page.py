@@ -20,15 +20,14 @@ from typing import TYPE_CHECKING, Any, Final
 from distal.export.exported import Exported
 from distal.export.page_options import PageOptions
 from distal.export.payload import payload
+from distal.images.atomic_files import replacement
 from distal.lang.lazy_module import LazyModule
 from distal.scene.viewing.viewable import Viewable
 from distal.version import __version__
 
 if TYPE_CHECKING:
     from distal.export import poster
-    from distal.images import atomic_files
 else:
-    atomic_files = LazyModule("distal.images.atomic_files")
     poster = LazyModule("distal.export.poster")  # needs NumPy and Pillow
 
 PLAYER: Final = Path(__file__).with_name("player.js")
@@ -85,7 +84,7 @@ def write(seen: Viewable, path: Path, options: PageOptions) -> Exported:
     seen = seen.in_mode(options.mode)
     shown = poster.poster(seen, options) if options.poster else b""
     made = page(seen, options, shown)
-    with atomic_files.replacement(path) as file:
+    with replacement(path) as file:
         file.write(made.text.encode("utf-8"))
     return Exported(path, made.parts, (), made.omitted)
 

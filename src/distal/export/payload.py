@@ -60,6 +60,8 @@ def payload(
     options: PageOptions,
     omit: Callable[[str, CompileError], None] | None = None,
     compile: Compile | None = None,
+    *,
+    packed: bool = True,
 ) -> dict[str, Any]:
     """Return all data that the player needs.
 
@@ -68,6 +70,7 @@ def payload(
         options: The options of the page.
         omit: Called with the name and error of each view that WebGL 2 cannot show.
         compile: Compiles each program; None: ``compiled``.
+        packed: Whether to compress the programs.
 
     Raises:
         CompileError: WebGL 2 cannot show the first view.
@@ -105,13 +108,13 @@ def payload(
             "duration": options.duration,
             "animated": seen.animated,
         },
-        "parameters": [_parameter(p) for p in seen.parameters],
+        "parameters": [parameter_entry(p) for p in seen.parameters],
         "values": _start_values(seen.parameters, options.params),
         "views": shown,
         "view": options.view,
         "poster": None,
         "files": programs.files,
-        "programs": _packed(programs.made),
+        "programs": _packed(programs.made) if packed else _plain_programs(programs.made),
         "resources": programs.resources,
     }
 
@@ -167,7 +170,8 @@ def _start_values(
     return {name: _plain(v) for name, v in chosen.items() if v != defaults[name]}
 
 
-def _parameter(parameter: Parameter) -> dict[str, Any]:
+def parameter_entry(parameter: Parameter) -> dict[str, Any]:
+    """Return the declaration of a parameter."""
     return {
         "name": parameter.name,
         "default": _plain(parameter.default),
@@ -177,6 +181,10 @@ def _parameter(parameter: Parameter) -> dict[str, Any]:
 
 def _plain(value: Any) -> Any:
     return [_plain(v) for v in value] if isinstance(value, tuple | list) else value
+
+
+def _plain_programs(programs: list[dict[str, Any]]) -> dict[str, Any]:
+    return {"encoding": "plain", "data": programs}
 
 
 def _packed(programs: list[dict[str, Any]]) -> dict[str, Any]:
@@ -199,7 +207,7 @@ def _packed(programs: list[dict[str, Any]]) -> dict[str, Any]:
     packed = base64.b64encode(press.compress(text.encode()) + press.flush()).decode("ascii")
     if len(packed) < len(plain):
         return {"encoding": "deflate-raw", "data": packed}
-    return {"encoding": "plain", "data": programs}
+    return _plain_programs(programs)
 
 
 def _functions(text: str) -> Iterator[str]:

@@ -23,11 +23,7 @@ PROGRAMS_KEPT: Final = 64
 
 
 class Programs:
-    """The programs that were compiled last.
-
-    Attributes:
-        keys: The key of each program, by its picture.
-    """
+    """The programs that were compiled last."""
 
     def __init__(self) -> None:
         self._kept: OrderedDict[str, Artifact] = OrderedDict()
@@ -55,9 +51,8 @@ def key_of(module: Module) -> str:
     uniforms = tuple(
         replace(u, default=None) if u.origin is Origin.PARAMETER else u for u in module.uniforms
     )
-    resources = "\0".join(f"{r.name} {id(r.source)}" for r in module.resources)
     spans = "\0".join(f"{f.span.line}" for f in module.functions if f.span is not None)
-    text = f"{print_identity(replace(module, uniforms=uniforms))}\0{resources}\0{spans}"
+    text = f"{print_identity(replace(module, uniforms=uniforms))}\0{spans}"
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:32]
 
 
@@ -70,7 +65,7 @@ def with_numbers(artifact: Artifact, module: Module) -> Artifact:
     """Return an artifact whose uniforms have the defaults of a module."""
     defaults = {u.name: plain(u.default) for u in module.uniforms}
     uniforms = [
-        entry | {"default": defaults[entry["name"]]} if entry["name"] in defaults else entry
+        entry | {"default": defaults.get(entry.get("parameter", entry["name"]), entry["default"])}
         for entry in artifact.interface["uniforms"]
     ]
     return replace(artifact, interface={**artifact.interface, "uniforms": uniforms})
