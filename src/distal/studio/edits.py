@@ -7,10 +7,10 @@ they were, and the new texts. Reads the source by ``ast``; nothing is run.
 from __future__ import annotations
 
 import ast
-import re
 from collections.abc import Mapping, Sequence
 from typing import Final
 
+from distal.lang.parameters import parameter_name
 from distal.studio.literals import (
     LiteralError,
     Positions,
@@ -109,7 +109,7 @@ def _default_of(node: ast.AST, name: str) -> ast.expr | None:
     if called not in _DECLARES or not node.args or not isinstance(node.args[0], ast.Constant):
         return None
     label = str(node.args[0].value)
-    if name not in (label, re.sub(r"\W+", "_", label)):
+    if name not in (label, parameter_name(label)):
         return None
     for keyword in node.keywords:
         if keyword.arg == "default":

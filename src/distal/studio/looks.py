@@ -37,7 +37,7 @@ from distal.studio.messages import (
 from distal.studio.places import column, shapes_of
 from distal.studio.programs import Programs, key_of, numbers_of
 
-HELD: Final = "Held_value"
+HELD: Final = "held_value"
 # A held number has a slider from so many times below its size to as many above.
 _REACH: Final = 1000.0
 
