@@ -150,6 +150,11 @@ class LoadError(Exception):
     Attributes:
         span: The place in the author's files, where it is known.
         reason: The message without its place.
+
+    Args:
+        message: What is wrong, and where.
+        span: The place in the author's files; None if it is not known.
+        reason: The message without its place; None if they are the same.
     """
 
     def __init__(self, message: str, span: Span | None = None, reason: str | None = None) -> None:

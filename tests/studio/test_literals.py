@@ -91,7 +91,15 @@ def test_edits_are_refused_where_they_cannot_be_written() -> None:
         edits_of(files, "a.py", [Change(what="parameter", name="size", value=1.0)])
     with pytest.raises(EditError, match="there is no literal from 0 to 4"):
         edits_of(files, "a.py", [Change(what="literal", start=0, end=4, value=1.0)])
-    twice = [Change(what="literal", start=48, end=51, value=float(v)) for v in (1, 2)]
+    twice = [
+        Change(
+            what="literal",
+            start=files["a.py"].index("0.5"),
+            end=files["a.py"].index("0.5") + 3,
+            value=float(v),
+        )
+        for v in (1, 2)
+    ]
     with pytest.raises(EditError, match="two changes are at the same place"):
         edits_of(files, "a.py", twice)
     (edit,) = edits_of(files, "a.py", twice[:1])

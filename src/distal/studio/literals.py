@@ -89,7 +89,7 @@ def find_literals(file: str, text: str) -> tuple[SourceLiteral, ...]:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return ()
-    return tuple(_Finder(file, text).found(tree))
+    return tuple(sorted(_Finder(file, text).found(tree), key=lambda found: found.start))
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,9 +166,9 @@ class _Finder:
             case ast.JoinedStr() | ast.Lambda() | ast.Constant():
                 return
             case ast.ListComp() | ast.SetComp() | ast.GeneratorExp() | ast.DictComp():
-                for part in ast.walk(node):
-                    if isinstance(part, ast.comprehension):
-                        yield from self._expression(part.iter, _Around("", "", "compile", part))
+                for part in node.generators:
+                    for within in (part.iter, *part.ifs):
+                        yield from self._expression(within, _Around("", "", "compile", part))
                 for name in ("key", "elt", "value"):
                     result = getattr(node, name, None)
                     if result is not None:
