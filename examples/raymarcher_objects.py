@@ -6,7 +6,7 @@ same picture from the library's functions.
 Ported from the daslang tutorial "Signed-Distance-Field Raymarcher".
 """
 
-import numpy as np
+import math
 
 from distal import (
     Background,
@@ -21,7 +21,7 @@ from distal import (
     gradient,
     time,
 )
-from distal.lang import clamp, dot, func, max, mix, normalize, slider, vec3
+from distal.lang import clamp, cos, dot, func, max, mix, normalize, sin, slider, vec3
 
 softness = slider("Softness", 0.05, high=0.2, help="How far sphere and torus melt.")
 
@@ -40,12 +40,12 @@ def sky(direction: vec3, sun: vec3) -> vec3:
 
 
 palette = tuple(
-    (middle + 0.4 * np.cos(0.6 * time + phase)) ** 2.2
+    (middle + 0.4 * cos(0.6 * time + phase)) ** 2.2
     for middle, phase in ((0.6, 0.0), (0.45, 0.8), (0.4, 1.6))
 )
 shaded = tuple(0.7 * channel for channel in palette)
 
-sphere = Sphere(0.55).translate(y=0.2 * np.sin(1.5 * time))
+sphere = Sphere(0.55).translate(y=0.2 * sin(1.5 * time))
 torus = Torus(0.32, 0.12).translate(x=1.0).rotate(y=0.8 * time)
 blob = sphere.union(torus, smooth=softness, blend="cubic")
 floor = Plane(y=-0.5).paint(checker("#4d5761", "#f2ebd9"))
@@ -53,13 +53,13 @@ floor = Plane(y=-0.5).paint(checker("#4d5761", "#f2ebd9"))
 scene = Scene(
     blob.paint(gradient(shaded, palette, start=(0, -0.5, 0), end=(0, 0.5, 0))) | floor,
     lights=[
-        DistantLight(SUN, intensity=0.85, angle=2 * np.arctan(1 / 32)),
+        DistantLight(SUN, intensity=0.85, angle=2 * math.atan(1 / 32)),
         HemisphereLight(sky=(0.5,) * 3, ground=(0.25,) * 3, intensity=1.0),
     ],
     camera=Camera(
-        (3.0 * np.cos(0.4 * time), 0.8 + 0.2 * np.sin(0.3 * time), 3.0 * np.sin(0.4 * time)),
+        (3.0 * cos(0.4 * time), 0.8 + 0.2 * sin(0.3 * time), 3.0 * sin(0.4 * time)),
         target=(0, 0, 0),
-        fov=2 * np.arctan(1 / 1.6),
+        fov=2 * math.atan(1 / 1.6),
         mirror=True,
     ),
     background=Background(sky, sun=SUN),

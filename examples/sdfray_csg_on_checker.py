@@ -4,7 +4,7 @@ The cut-up rounded cube of ``sdfray_rounded_csg`` with 5 % diffuse and 85 % spec
 From the article "Raytracing and Raycasting with Signed Distance Functions" (sdfray).
 """
 
-import numpy as np
+import math
 
 from distal import Box, Camera, Cylinder, Material, Plane, PointLight, Scene, Sphere, checker, time
 from distal.lang import slider
@@ -13,7 +13,7 @@ specular = slider("Specular", 0.85, high=0.95, help="Share of light that the bod
 turn = slider("Turn", 0.5, low=-3.14, high=3.14, help="The body turned about the upright axis.")
 
 cut_y = Cylinder(radius=0.5, height=3.0)
-cuts = cut_y | cut_y.rotate(z=np.pi / 2) | cut_y.rotate(x=np.pi / 2)
+cuts = cut_y | cut_y.rotate(z=math.pi / 2) | cut_y.rotate(x=math.pi / 2)
 body = ((Box(2.0) & Sphere(1.2)) - cuts).rotate(y=turn + 0.2 * time)
 floor = Plane(y=-1.0).paint(checker((0.05,) * 3, (0.95,) * 3))
 

@@ -4,7 +4,7 @@ The first picture of the article "Raytracing and Raycasting with Signed Distance
 (sdfray): two point lights and a distant one; the camera is 10 units away and its lens narrow.
 """
 
-import numpy as np
+import math
 
 from distal import AmbientLight, Camera, DistantLight, PointLight, Scene, Sphere
 from distal.lang import slider
@@ -21,7 +21,7 @@ scene = Scene(
         AmbientLight(ambient),
     ],
     camera=Camera.yaw_pitch_roll(
-        (0.0, 0.0, -10.0), yaw=np.pi, screen_height=0.05, screen_distance=0.1, mirror=True
+        (0.0, 0.0, -10.0), yaw=math.pi, screen_height=0.05, screen_distance=0.1, mirror=True
     ),
     background="#000",
     default_material=(0.8, 0.8, 0.8),

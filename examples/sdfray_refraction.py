@@ -5,10 +5,8 @@ glass. The first interactive page of the article "Raytracing and Raycasting with
 Functions" (sdfray) showed such a scene.
 """
 
-import numpy as np
-
 from distal import Box, OrbitCamera, Plane, Scene, Sky, Sphere, checker, glass, matte, time
-from distal.lang import color, slider
+from distal.lang import color, max, slider
 
 ior = slider("Index of refraction", 1.5, low=1.0, high=2.4, help="Air 1, water 1.33, diamond 2.4.")
 hollow = slider("Hollow", 0.0, high=0.95, help="Radius of the hole inside, as a share.")
@@ -16,7 +14,7 @@ tint = color("Tint", "#cfeee6", help="What white light becomes on one unit of wa
 
 SUN = (-0.5, 0.9, 0.6)
 
-ball = Sphere(1.0) - Sphere(np.maximum(hollow, 0.001))
+ball = Sphere(1.0) - Sphere(max(hollow, 0.001))
 pillars = Box(0.6, 3.0, 0.6).translate(6.5, 0.5, 0.0).repeat_polar(11).paint(matte("#c9603f"))
 floor = Plane(y=-1.0).paint(checker("#e8e4da", "#3c4a57", size=0.5))
 

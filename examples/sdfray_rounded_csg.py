@@ -4,7 +4,7 @@ From the article "Raytracing and Raycasting with Signed Distance Functions" (sdf
 seen from the front; here a camera orbits it, and two sliders change the parts.
 """
 
-import numpy as np
+import math
 
 from distal import (
     AmbientLight,
@@ -23,8 +23,8 @@ rounding = slider("Sphere", 1.2, low=1.0, high=1.75, help="Radius of what rounds
 bore = slider("Bore", 0.5, low=0.1, high=0.8, help="Radius of the three holes.")
 
 cut_y = Cylinder(radius=bore, height=3.0)
-cut_x = cut_y.rotate(z=np.pi / 2)
-cut_z = cut_y.rotate(x=np.pi / 2)
+cut_x = cut_y.rotate(z=math.pi / 2)
+cut_z = cut_y.rotate(x=math.pi / 2)
 body = (Box(2.0) & Sphere(rounding)) - cut_x - cut_y - cut_z
 
 scene = Scene(
@@ -36,7 +36,7 @@ scene = Scene(
         AmbientLight(0.1),
     ],
     camera=OrbitCamera(
-        10.0, azimuth=np.pi + 0.6 + 0.3 * time, elevation=0.45, fov_deg=20.0, mirror=True
+        10.0, azimuth=math.pi + 0.6 + 0.3 * time, elevation=0.45, fov_deg=20.0, mirror=True
     ),
     background="#000",
     default_material=(0.8, 0.8, 0.8),

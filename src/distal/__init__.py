@@ -1,7 +1,7 @@
 """distal: 3D scenes written as ordinary Python, compiled to every target.
 
 Each name is imported when it is first used, so that ``import distal`` is fast and compiling needs
-only the standard library.
+only the standard library. A name that needs a missing package reports it when it is used.
 """
 
 from __future__ import annotations
@@ -52,7 +52,11 @@ def _unknown(name: str) -> str:
 def __getattr__(name: str) -> Any:
     if name not in _MODULE_OF:
         raise AttributeError(_unknown(name))
-    value = getattr(importlib.import_module(_MODULE_OF[name]), name)
+    try:
+        value = getattr(importlib.import_module(_MODULE_OF[name]), name)
+    except ModuleNotFoundError as error:
+        # So that ``from distal import *`` works wherever scenes compile.
+        return importlib.import_module("distal.packages").stand_in(name, error)
     globals()[name] = value
     return value
 

@@ -145,7 +145,19 @@ class CompileError(Exception):
 
 
 class LoadError(Exception):
-    """A scene file that cannot be found, read or run, or that defines no scene code."""
+    """A scene file that cannot be found, read or run, or that defines no scene code.
+
+    Attributes:
+        message: What is wrong, and where.
+        span: The place in the author's files, where it is known.
+        reason: The message without its place.
+    """
+
+    def __init__(self, message: str, span: Span | None = None, reason: str | None = None) -> None:
+        super().__init__(message)
+        self.message = message
+        self.span = span
+        self.reason = message if reason is None else reason
 
 
 class DeviceError(Exception):

@@ -89,13 +89,53 @@ def load(path: str | Path, name: str | None = None) -> SceneCode:
     text = _read(file)
     module, modules = _run(file, text)
     found = _pick(module, file, name)
+    _record(found, file, text, modules, path, name)
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedFile:
+    """A file that was run.
+
+    Attributes:
+        picture: The object that was asked for.
+        names: The names of all pictures in the file, or of all shapes if it has no pictures.
+    """
+
+    picture: SceneCode
+    names: tuple[str, ...]
+
+
+def load_text(
+    file: Path, text: str, name: str | None = None, given: Mapping[str, Any] | None = None
+) -> LoadedFile:
+    """Load a scene from a text as if it were the content of a file.
+
+    Args:
+        file: The file; its folder is where modules are imported from. It need not exist.
+        text: Its text.
+        name: As for ``load``.
+        given: Global names that the text may use without defining them.
+
+    Raises:
+        LoadError: There is no such name, or the text fails when run.
+        CompileError: The text is not valid Python.
+    """
+    module, modules = _run(file, text, given)
+    found = _pick(module, file, name)
+    _record(found, file, text, modules, file, name)
+    return LoadedFile(found, tuple(_offered(module)[0]))
+
+
+def _record(
+    found: SceneCode, file: Path, text: str, modules: list[Path], path: str | Path, name: str | None
+) -> None:
     given = str(path).replace(os.sep, "/")  # the same on every system
     source = given if name is None else f"{given}:{name}"
     folder = file.resolve().parent
     neighbours = tuple(path.relative_to(folder).as_posix() for path in modules)
     digest = _digest(text, folder, neighbours)
     _loaded[found] = LoadedFrom(source, (file, *modules), neighbours, digest)
-    return found
 
 
 def split_source(text: str) -> tuple[str, str | None]:
@@ -144,11 +184,14 @@ def _find(path: str) -> Path:
     return file
 
 
-def _run(file: Path, text: str) -> tuple[types.ModuleType, list[Path]]:
+def _run(
+    file: Path, text: str, given: Mapping[str, Any] | None = None
+) -> tuple[types.ModuleType, list[Path]]:
     """Run a file; return its module and the files of the modules in its folder that it imported."""
     name = "distal_scene_" + "".join(c if c.isalnum() else "_" for c in file.stem)
     module = types.ModuleType(name)
     module.__file__ = str(file)
+    module.__dict__.update(given or {})
     filename = str(file)
     linecache.cache[filename] = (len(text), None, text.splitlines(keepends=True), filename)
     try:
@@ -172,7 +215,7 @@ def _run(file: Path, text: str) -> tuple[types.ModuleType, list[Path]]:
     except SystemExit as error:
         raise LoadError(f"{file} left with sys.exit({error.code!r}) while it was loaded") from None
     except Exception as error:
-        raise LoadError(_failure(file, error)) from error
+        raise _failure(file, error) from error
     finally:
         sys.path.remove(folder)
         neighbours = _forget_neighbours(Path(folder), known)
@@ -241,28 +284,40 @@ def _syntax_error(error: SyntaxError, filename: str) -> CompileError:
     return CompileError([Diagnostic(f"this is not Python: {error.msg}", span)])
 
 
-def _failure(file: Path, error: Exception) -> str:
-    """Describe the error and the line of the author's files where it was raised."""
-    name, line = str(file), None
+def _failure(file: Path, error: Exception) -> LoadError:
+    """Return the report for an error, with the line of the author's files where it was raised."""
+    name, span = str(file), None
     folder = file.resolve().parent
     trace = error.__traceback__
     while trace is not None:
         code_file = trace.tb_frame.f_code.co_filename
         if code_file == str(file) or Path(code_file).parent == folder:
-            name, line = code_file, trace.tb_lineno
+            name, span = code_file, _place(trace)
         trace = trace.tb_next
+    shown = name
     if name != str(file):  # a module in the same folder: show its path in the form of the scene's
-        linecache.checkcache(name)
         shown = str(file.parent / Path(name).name)
-    else:
-        shown = name
-    lines = [
-        str(explained(error) or f"{type(error).__name__}: {error}"),
-        f"  --> {shown if line is None else f'{shown}:{line}'}",
-    ]
-    if line is not None:
-        lines.append(f"  {linecache.getline(name, line).strip()}")
-    return "\n".join(lines)
+    reason = str(explained(error) or f"{type(error).__name__}: {error}")
+    lines = [reason, f"  --> {shown if span is None else f'{shown}:{span.line}'}"]
+    if span is not None:
+        lines.append(f"  {span.text.strip()}")
+    return LoadError("\n".join(lines), span, reason)
+
+
+def _place(trace: types.TracebackType) -> Span:
+    """Return the expression that was evaluated when an error was raised."""
+    code = trace.tb_frame.f_code
+    linecache.checkcache(code.co_filename)
+    line, col, end_col = trace.tb_lineno, 0, 0
+    text = linecache.getline(code.co_filename, line).rstrip("\n")
+    for number, (first, last, start, end) in enumerate(code.co_positions()):
+        if number == trace.tb_lasti // 2 and start is not None and end is not None:
+            if first == line:  # positions count bytes of UTF-8
+                col = len(text.encode()[:start].decode("utf-8", "replace"))
+                end_col = len(text.encode()[:end].decode("utf-8", "replace"))
+            if last != line:
+                end_col = len(text)
+    return Span(code.co_filename, line, col, max(end_col, col) or len(text), text, line)
 
 
 def _pick(module: types.ModuleType, file: Path, name: str | None) -> SceneCode:
@@ -271,9 +326,7 @@ def _pick(module: types.ModuleType, file: Path, name: str | None) -> SceneCode:
         if name not in found:
             raise LoadError(f"{file} has no scene, @image or @func '{name}'; {_listed(found)}")
         return found[name]
-    pictures = {key: value for key, value in found.items() if _is_own_picture(value, module)}
-    shapes = {key: value for key, value in found.items() if isinstance(value, Composed)}
-    offered, what = (pictures, "pictures") if pictures else (shapes, "shapes")
+    offered, what = _offered(module)
     if len(set(map(id, offered.values()))) == 1:
         return next(iter(offered.values()))
     for wanted in _DEFAULT_NAMES:
@@ -282,6 +335,14 @@ def _pick(module: types.ModuleType, file: Path, name: str | None) -> SceneCode:
     if not offered:
         raise LoadError(f"{file} defines no scene and no @image; {_listed(found)}")
     raise LoadError(f"{file} defines several {what}; say which: {file}:NAME; {_listed(offered)}")
+
+
+def _offered(module: types.ModuleType) -> tuple[dict[str, SceneCode], str]:
+    """Return the objects that need no name to be shown, and what they are."""
+    found = {k: v for k, v in vars(module).items() if isinstance(v, Func | Composed)}
+    pictures = {key: value for key, value in found.items() if _is_own_picture(value, module)}
+    shapes: dict[str, SceneCode] = {k: v for k, v in found.items() if isinstance(v, Composed)}
+    return (pictures, "pictures") if pictures else (shapes, "shapes")
 
 
 def _is_own_picture(value: SceneCode, module: types.ModuleType) -> bool:

@@ -9,12 +9,13 @@ an incomplete upgrade. Imports only the standard library.
 from __future__ import annotations
 
 import importlib
+import importlib.util
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import PurePath
 from types import ModuleType, TracebackType
-from typing import Any, Final
+from typing import Any, Final, NoReturn
 
 from distal.diagnostics import printable
 
@@ -89,6 +90,14 @@ def imported(module: str) -> Any:
         return importlib.import_module(module)
 
 
+def is_installed(module: str) -> bool:
+    """Return whether a package is there, without importing it; it may still be broken."""
+    try:
+        return importlib.util.find_spec(module) is not None
+    except (ImportError, ValueError):
+        return False
+
+
 @contextmanager
 def loading(module: str) -> Iterator[None]:
     """Convert every error raised in the block into a report about a package.
@@ -123,6 +132,40 @@ def explained(error: BaseException) -> PackageError | MemoryError | None:
     if package is None and isinstance(error, AttributeError) and isinstance(error.obj, ModuleType):
         package = _BY_MODULE.get(error.obj.__name__.partition(".")[0])
     return None if package is None else _reported(error, package)
+
+
+class StandIn:
+    """A class or function whose package is missing: using it raises the report about that."""
+
+    def __init__(self, name: str, report: PackageError) -> None:
+        self._name = name
+        self._report = report
+
+    def __call__(self, *args: Any, **kwargs: Any) -> NoReturn:
+        """Raise the report."""
+        raise self._report
+
+    def __getattr__(self, attribute: str) -> NoReturn:
+        if attribute.startswith("__"):
+            raise AttributeError(attribute)
+        raise self._report
+
+    def __repr__(self) -> str:
+        return f"<{self._name}: {self._report}>"
+
+
+def stand_in(name: str, error: ModuleNotFoundError) -> StandIn:
+    """Return what takes the place of a name whose import failed.
+
+    Raises:
+        ModuleNotFoundError: The missing module is of no package in ``PACKAGES``.
+    """
+    package = _missing(error)
+    if package is None:
+        raise error
+    report = _reported(error, package)
+    assert isinstance(report, PackageError)
+    return StandIn(name, report)
 
 
 def raised_in(error: BaseException, module: str) -> bool:

@@ -15,15 +15,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from distal.export.exported import Exported
 from distal.export.page_options import PageOptions
 from distal.export.payload import payload
-from distal.export.poster import poster
 from distal.images.atomic_files import replacement
+from distal.lang.lazy_module import LazyModule
 from distal.scene.viewing.viewable import Viewable
 from distal.version import __version__
+
+if TYPE_CHECKING:
+    from distal.export import poster
+else:
+    poster = LazyModule("distal.export.poster")  # needs NumPy and Pillow
 
 PLAYER: Final = Path(__file__).with_name("player.js")
 # The same player, which also traces paths: 4 kB that other pages do not need.
@@ -77,23 +82,57 @@ def write(seen: Viewable, path: Path, options: PageOptions) -> Exported:
     for name in (options.view, *(options.views or ())):
         seen.image(name)  # raises if there is no such view
     seen = seen.in_mode(options.mode, caustics=options.caustics)
+    shown = poster.poster(seen, options) if options.poster else b""
+    made = page(seen, options, shown)
+    with replacement(path) as file:
+        file.write(made.text.encode("utf-8"))
+    return Exported(path, made.parts, (), made.omitted)
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """A page and what it is made of.
+
+    Attributes:
+        text: The HTML.
+        parts: Characters by the name of the part.
+        omitted: Views that WebGL 2 cannot show, and why.
+    """
+
+    text: str
+    parts: dict[str, int]
+    omitted: dict[str, str]
+
+
+def page(seen: Viewable, options: PageOptions, shown: bytes, media_type: str = "webp") -> Page:
+    """Return a page. Needs the standard library alone, if the scene has no textures.
+
+    Args:
+        seen: The object to show, in its mode.
+        options: The options of the page.
+        shown: The picture before the first frame; empty for none.
+        media_type: The format of that picture: "webp", "png" ...
+
+    Raises:
+        CompileError: WebGL 2 cannot show the first view.
+        ValueError: There is no such view or parameter, or a value is out of range.
+    """
     player = player_script(player_of(seen))
     omitted: dict[str, str] = {}
     content = payload(
         seen, options, lambda name, error: omitted.update({name: error.diagnostics[0].message})
     )
-    shown = poster(seen, options) if options.poster else b""
-    stage = _stage(content, shown)
+    encoded = base64.b64encode(shown).decode("ascii")
+    source = f"data:image/{media_type};base64,{encoded}" if shown else ""
+    stage = _stage(content, source)
     text = _fragment(stage, player) if options.embed else _document(stage, content, player)
-    with replacement(path) as file:
-        file.write(text.encode("utf-8"))
     parts = {
         "player": len(player.text),
         "shaders": len(json.dumps(content["programs"])),
         "textures": len(json.dumps(content["resources"])) if content["resources"] else 0,
-        "poster": len(base64.b64encode(shown)),
+        "poster": len(encoded),
     }
-    return Exported(path, parts, (), omitted)
+    return Page(text, parts, omitted)
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,16 +183,15 @@ def _escaped(text: str) -> str:
     return html.escape(text.encode("utf-8", "replace").decode("utf-8"), quote=True)
 
 
-def _stage(content: Mapping[str, Any], poster: bytes) -> str:
-    """Return the element in which the player draws, and its data."""
+def _stage(content: Mapping[str, Any], poster: str) -> str:
+    """Return the element in which the player draws, and its data; ``poster`` is a data URL."""
     width, height = content["size"]
     description = _escaped(content["description"])
     shown = ""
     if poster:
-        data = base64.b64encode(poster).decode("ascii")
         fill = ' style="display:block;width:100%;height:100%;object-fit:contain"'
         shown = (
-            f'<img src="data:image/webp;base64,{data}" width="{width}" height="{height}"'
+            f'<img src="{poster}" width="{width}" height="{height}"'
             f' alt="{description}"{fill if content["embed"] else ""}>'
         )
     own = unseen = ""

@@ -14,7 +14,7 @@ import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import PurePath
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import distal
 from distal.backends import emit, get_target
@@ -22,13 +22,14 @@ from distal.backends.base import Artifact
 from distal.compiler.driver import run_passes
 from distal.diagnostics import CompileError
 from distal.export.page_options import PageOptions
-from distal.export.resources import resource, table
+from distal.export.tables import table
 from distal.frontend import lower
 from distal.ir.nodes import Module
 from distal.ir.types import TEXTURE_2D, Buffer, Texture
 from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
+from distal.lang.lazy_module import LazyModule
 from distal.lang.parameters import Parameter
 from distal.passes.entry import FRAME_OFFSET
 from distal.render import photons
@@ -36,6 +37,11 @@ from distal.render.live_film import FILM
 from distal.scene.viewing.guide import Guide
 from distal.scene.viewing.viewable import COLOR, Viewable, view_label
 from distal.version import __version__
+
+if TYPE_CHECKING:
+    from distal.export import resources
+else:
+    resources = LazyModule("distal.export.resources")  # needs NumPy
 
 PACKAGE: Final = PurePath(distal.__file__).parent
 FORMAT: Final = 1
@@ -47,10 +53,16 @@ _COMMENT: Final = re.compile(r"\s*//.*$")
 Places = tuple[tuple[str, int] | None, ...]
 
 
+Compile = Callable[[Func | Composed], tuple[Artifact, Module]]
+
+
 def payload(
     seen: Viewable,
     options: PageOptions,
     omit: Callable[[str, CompileError], None] | None = None,
+    compile: Compile | None = None,
+    *,
+    packed: bool = True,
 ) -> dict[str, Any]:
     """Return all data that the player needs.
 
@@ -58,12 +70,14 @@ def payload(
         seen: The object to show.
         options: The options of the page.
         omit: Called with the name and error of each view that WebGL 2 cannot show.
+        compile: Compiles each program; None: ``compiled``.
+        packed: Whether to compress the programs.
 
     Raises:
         CompileError: WebGL 2 cannot show the first view.
         ValueError: There is no such view or parameter, or a value is out of range.
     """
-    programs = PagePrograms(seen)
+    programs = PagePrograms(seen, compile)
     names = list(dict.fromkeys(options.views or seen.views))
     if options.view not in names:
         names.insert(0, options.view)
@@ -95,13 +109,13 @@ def payload(
             "duration": options.duration,
             "animated": seen.animated,
         },
-        "parameters": [_parameter(p) for p in seen.parameters],
+        "parameters": [parameter_entry(p) for p in seen.parameters],
         "values": _start_values(seen.parameters, options.params),
         "views": shown,
         "view": options.view,
         "poster": None,
         "files": programs.files,
-        "programs": _packed(programs.made),
+        "programs": _packed(programs.made) if packed else _plain_programs(programs.made),
         "resources": programs.resources,
     }
 
@@ -157,7 +171,8 @@ def _start_values(
     return {name: _plain(v) for name, v in chosen.items() if v != defaults[name]}
 
 
-def _parameter(parameter: Parameter) -> dict[str, Any]:
+def parameter_entry(parameter: Parameter) -> dict[str, Any]:
+    """Return the declaration of a parameter."""
     return {
         "name": parameter.name,
         "default": _plain(parameter.default),
@@ -167,6 +182,10 @@ def _parameter(parameter: Parameter) -> dict[str, Any]:
 
 def _plain(value: Any) -> Any:
     return [_plain(v) for v in value] if isinstance(value, tuple | list) else value
+
+
+def _plain_programs(programs: list[dict[str, Any]]) -> dict[str, Any]:
+    return {"encoding": "plain", "data": programs}
 
 
 def _packed(programs: list[dict[str, Any]]) -> dict[str, Any]:
@@ -189,7 +208,7 @@ def _packed(programs: list[dict[str, Any]]) -> dict[str, Any]:
     packed = base64.b64encode(press.compress(text.encode()) + press.flush()).decode("ascii")
     if len(packed) < len(plain):
         return {"encoding": "deflate-raw", "data": packed}
-    return {"encoding": "plain", "data": programs}
+    return _plain_programs(programs)
 
 
 def _functions(text: str) -> Iterator[str]:
@@ -216,8 +235,9 @@ class PagePrograms:
         resources: Textures and buffers by name.
     """
 
-    def __init__(self, seen: Viewable) -> None:
+    def __init__(self, seen: Viewable, compile: Compile | None = None) -> None:
         self._seen = seen
+        self._compile = compile or compiled
         self.made: list[dict[str, Any]] = []
         self.files: list[str] = []
         self.resources: dict[str, Any] = {}
@@ -279,7 +299,7 @@ class PagePrograms:
             return -1
 
     def _added_program(self, image: Func | Composed) -> int:
-        artifact, module = _compiled(image)
+        artifact, module = self._compile(image)
         program = self._program(artifact, module)
         if program not in self.made:
             self.made.append(program)
@@ -316,7 +336,7 @@ class PagePrograms:
         key = (id(source), str(type))
         if key not in self._names:
             assert isinstance(type, Texture | Buffer)
-            self._names[key] = self._added(name, resource(source, type))
+            self._names[key] = self._added(name, resources.resource(source, type))
         return self._names[key]
 
     def _table(self, entry: Mapping[str, Any]) -> str:
@@ -365,13 +385,23 @@ def _is_library(file: str) -> bool:
     return path.is_relative_to(PACKAGE) and not path.is_relative_to(PACKAGE / "gallery")
 
 
-def _compiled(image: Func | Composed) -> tuple[Artifact, Module]:
+def compiled(image: Func | Composed) -> tuple[Artifact, Module]:
     """Return the compiled text of a picture, and its module, which has the data of textures."""
-    target = get_target(TARGET)
+    module = lowered(image)
+    return compiled_module(module), module
+
+
+def lowered(image: Func | Composed) -> Module:
+    """Return the IR of a picture for a page, before the passes."""
     module = lower(image.text() if isinstance(image, Composed) else image)
     # The picture fills the page, the author's frame the part of it that nothing covers.
-    module = replace(module, uniforms=(*module.uniforms, FRAME_OFFSET))
-    return emit(run_passes(module, target), target), module
+    return replace(module, uniforms=(*module.uniforms, FRAME_OFFSET))
+
+
+def compiled_module(module: Module) -> Artifact:
+    """Return the text of a picture's module."""
+    target = get_target(TARGET)
+    return emit(run_passes(module, target), target)
 
 
 def _uniform(entry: dict[str, Any]) -> dict[str, Any]:

@@ -7,7 +7,6 @@ format that shows the same picture. Does not depend on pages or programs.
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping
 from typing import Any, Final
 
 import numpy as np
@@ -27,11 +26,6 @@ def resource(source: Any, type: Texture | Buffer) -> dict[str, Any]:
     """
     data = load(source, type)
     return _buffer(data) if isinstance(type, Buffer) else _texture(data, type)
-
-
-def table(entry: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the payload entry of a buffer for a table of the program."""
-    return _buffer(np.array(entry["values"], np.int32 if entry["element"] == "int" else np.float32))
 
 
 def _buffer(data: NDArray[Any]) -> dict[str, Any]:

@@ -102,6 +102,22 @@ def write(seen: Viewable, path: Path, target: str, options: TextOptions) -> Expo
         target: The text target, as for ``distal.compile``.
         options: The view, time and parameters.
     """
+    description = TEXT_TARGETS[target]
+    artifact = text(seen, target, options)
+    # Only for targets where the text declares the parameters; elsewhere the host sets its inputs.
+    with_interface = description.parameters is Declares.TEXT
+    beside = write_files(path, artifact, artifact.text, with_interface=with_interface)
+    return Exported(path, {}, beside)
+
+
+def text(seen: Viewable, target: str, options: TextOptions) -> Artifact:
+    """Return the text with its header, the vertex stage and the interface.
+
+    Args:
+        seen: The object to show.
+        target: The text target.
+        options: The view and parameters.
+    """
     values = checked_values(seen.parameters, options.params)
     image = seen.image(options.view, encoded=True)
     description = TEXT_TARGETS[target]
@@ -109,11 +125,7 @@ def write(seen: Viewable, path: Path, target: str, options: TextOptions) -> Expo
     module = lower(text_of, table_from=TEXT_TABLE_FROM if description.buffers else None)
     artifact = emit(run_passes(_set(module, values), description), description)
     name = seen.file.name if seen.file is not None else ""
-    text = with_header(artifact, target, name)
-    # Only for targets where the text declares the parameters; elsewhere the host sets its inputs.
-    with_interface = description.parameters is Declares.TEXT
-    beside = write_files(path, artifact, text, with_interface=with_interface)
-    return Exported(path, {}, beside)
+    return replace(artifact, text=with_header(artifact, target, name))
 
 
 def write_files(

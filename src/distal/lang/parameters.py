@@ -232,7 +232,7 @@ def slider(
         TypeError: An argument has the wrong type.
         ValueError: The range is empty or the default is out of range.
     """
-    name = _name(label)
+    name = parameter_name(label)
     low, high = as_float(label, low), as_float(label, high)
     step = None if step is None else as_float(label, step)
     _check_range(label, low, high, step)
@@ -270,7 +270,7 @@ def integer(
         TypeError: An argument is not a whole number.
         ValueError: The range is empty, the default is out of range, or a value exceeds 32 bits.
     """
-    name = _name(label)
+    name = parameter_name(label)
     low, high, step = (as_int(label, n) for n in (low, high, step))
     _check_range(label, low, high, step)
     return _checked(
@@ -293,7 +293,9 @@ def toggle(label: str, default: bool = False, *, group: str = "", help: str = ""
         TypeError: The default is not a bool.
     """
     return _checked(
-        Parameter(_name(label), label, ParameterKind.TOGGLE, default, group=group, help=help)
+        Parameter(
+            parameter_name(label), label, ParameterKind.TOGGLE, default, group=group, help=help
+        )
     )
 
 
@@ -318,7 +320,7 @@ def choice(
         TypeError: An option is not a text.
         ValueError: There are no options, a name is empty or repeated, or there is no such default.
     """
-    name = _name(label)
+    name = parameter_name(label)
     if isinstance(options, str):
         raise TypeError(f"'{label}' takes a list of options, not one text")
     named = tuple(options)
@@ -359,7 +361,7 @@ def color(
     """
     return _checked(
         Parameter(
-            _name(label),
+            parameter_name(label),
             label,
             ParameterKind.COLOR,
             as_color(label, default),
@@ -389,10 +391,12 @@ def point(
         ValueError: The default does not have 2 or 3 coordinates, or one is not finite.
     """
     where = as_point(label, default, (2, 3))
-    return Parameter(_name(label), label, ParameterKind.POINT, where, group=group, help=help)
+    return Parameter(
+        parameter_name(label), label, ParameterKind.POINT, where, group=group, help=help
+    )
 
 
-def _name(label: object) -> str:
+def parameter_name(label: object) -> str:
     """Return the identifier made from the letters and digits of a label."""
     if not isinstance(label, str):
         raise TypeError(f"a parameter's label is a text, not {type(label).__name__}")

@@ -8,9 +8,10 @@ real modules.
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from distal.lang.lazy_module import LazyModule
+from distal.packages import is_installed
 
 if TYPE_CHECKING:
     from distal.compiler import constant_evaluation
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from distal.notebook import widget
     from distal.runtime import executor as runtime_executor
     from distal.runtime import heights as ray_views
+    from distal.runtime import standard_executor
     from distal.runtime.executor import PythonExecutor
     from distal.video import recording
 else:
@@ -28,12 +30,18 @@ else:
     ray_views = LazyModule("distal.runtime.heights")
     recording = LazyModule("distal.video.recording")
     runtime_executor = LazyModule("distal.runtime.executor")
+    standard_executor = LazyModule("distal.runtime.standard_executor")
     widget = LazyModule("distal.notebook.widget")
 
 
 @cache
 def executor() -> PythonExecutor:
-    """Return the executor of this process, created on the first call."""
+    """Return the executor of this process, created on the first call.
+
+    Without NumPy it is that of the standard library, which refuses whatever needs arrays.
+    """
+    if not is_installed("numpy"):
+        return cast("PythonExecutor", standard_executor.StandardExecutor())
     return runtime_executor.PythonExecutor()
 
 

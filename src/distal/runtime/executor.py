@@ -6,32 +6,25 @@ the front end, the devices and the pictures; ``distal.lang`` calls it through ``
 
 from __future__ import annotations
 
-import threading
 import time
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Final, cast
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.backends import get_target
-from distal.compiler.driver import run_passes
 from distal.devices.base import Kernel
 from distal.diagnostics import DeviceError
 from distal.images.picture import Picture, Provenance
 from distal.ir.collection import paused_collection
-from distal.ir.nodes import Origin, Return
-from distal.ir.types import VEC4
 from distal.lang.composed import Composed
 from distal.lang.expressions import Expression
 from distal.lang.functions import Func, Image
 from distal.lang.lazy_module import LazyModule
 from distal.lang.names import LangFunction
-from distal.lang.parameters import Parameter
 from distal.lang.render_options import (
     PATH_SAMPLES,
     Refinement,
@@ -45,10 +38,11 @@ from distal.runtime.call_arguments import call_arguments
 from distal.runtime.call_values import count, empty, is_double, is_many, single, with_names
 from distal.runtime.device_names import AUTO, CPU, GPU_FRAGMENT, REFERENCE
 from distal.runtime.kernels import KernelCache, automatic_device, is_software
-from distal.runtime.lowered import Lowered, Types
+from distal.runtime.lowered import Lowered
 from distal.runtime.moving import moved_resources
 from distal.runtime.passes import Passes, over_picture
 from distal.runtime.photons import PhotonPasses, PhotonProgram
+from distal.runtime.standard_executor import StandardExecutor, ValueOf, all_values
 from distal.runtime.uniform_values import DeclaredUniforms, frame_values
 
 if TYPE_CHECKING:
@@ -71,14 +65,6 @@ _ROWS_OF_A_THREAD: Final = 16384
 
 
 @dataclass(frozen=True, slots=True)
-class _Parts:
-    """A function and, if there is one, the function that encodes its pixels for display."""
-
-    parts: tuple[Lowered, ...]
-    declared: DeclaredUniforms
-
-
-@dataclass(frozen=True, slots=True)
 class DrawTarget:
     """The texture that ``PythonExecutor.draw`` draws into.
 
@@ -93,35 +79,17 @@ class DrawTarget:
     adapter: str | None = None
 
 
-class PythonExecutor:
-    """Runs scene code for Python; keeps compiled kernels until the process ends.
-
-    A function is lowered again if a constant that it captured has changed.
-    """
+class PythonExecutor(StandardExecutor):
+    """Runs scene code for Python; keeps compiled kernels until the process ends."""
 
     def __init__(self) -> None:
+        super().__init__()
         self.kernels = KernelCache()
-        self._lock = threading.RLock()  # frames of a video are rendered by several threads
-        self._lowered: WeakKeyDictionary[Any, dict[Types, Lowered]] = WeakKeyDictionary()
-        self._together: WeakKeyDictionary[Any, _Parts] = WeakKeyDictionary()
 
     @cached_property
     def tapes(self) -> function_tapes.FunctionTapes:
         """The tapes of shapes."""
         return function_tapes.FunctionTapes()
-
-    def parameters(self, function: Func | Composed) -> list[Parameter]:
-        """Return the parameters that a function and its callees read, in order of first use."""
-        return list(self._parts(function).declared.parameters)
-
-    def reads_time(self, image: Image | Composed) -> bool:
-        """Return whether the picture depends on the time."""
-        target = get_target("numpy")
-        for part in self._parts(image).parts:
-            entered = run_passes(part.module, target, after="entry")
-            if any(u.origin is Origin.FRAME and u.name == "time" for u in entered.uniforms):
-                return True
-        return False
 
     def render(self, image: Image | Composed, options: RenderOptions) -> Picture:
         """Render an image, a scene, or a view of a scene.
@@ -210,7 +178,7 @@ class PythonExecutor:
         """
         is_in_passes = isinstance(image, Composed) and (image.adaptive or image.refined)
         with paused_collection():
-            run = self._parts(image)
+            run = self.parts(image)
             parts = run.parts
             values, others = _uniforms(run.declared, options)
             if options.freeze:
@@ -232,7 +200,7 @@ class PythonExecutor:
 
         They are traced on its device; drivers in software compile them too slowly (llvmpipe: 15 s).
         """
-        plan, deposits = (self._lower(program, None) for program in programs)
+        plan, deposits = (self.lower(program, None) for program in programs)
         on = CPU if is_software(device) else device
         return PhotonPasses(
             PhotonProgram(self.kernels.kernel(plan, REFERENCE, 32), plan, options),
@@ -241,7 +209,7 @@ class PythonExecutor:
 
     def _contrast(self, device: str) -> tuple[Kernel, Mapping[str, Any]]:
         """Return the kernel of ``film.contrast``, and its buffer by name."""
-        lowered = self._lower(film.contrast, None)
+        lowered = self.lower(film.contrast, None)
         return self.kernels.kernel(lowered, device, 32), lowered.resources
 
     def _step(
@@ -254,7 +222,7 @@ class PythonExecutor:
         light: NDArray[np.float32],
     ) -> NDArray[np.float32]:
         """Render a step of ``runtime.glow``; the first two are those of the whole picture."""
-        lowered = self._lower(step, None)
+        lowered = self.lower(step, None)
         kernel = self.kernels.kernel(lowered, device, 32)
         return over_picture(kernel, lowered.resources, size, numbers, light, options)
 
@@ -275,7 +243,7 @@ class PythonExecutor:
             Cancelled: ``options.cancel`` stopped the work.
             DeviceError: The device is missing or was lost.
         """
-        run = self._parts(image)
+        run = self.parts(image)
         assert len(run.parts) == 1, "a window shows display values"
         values, others = _uniforms(run.declared, options)
         uniforms = run.declared.for_kernel(0, values, others)
@@ -321,10 +289,10 @@ class PythonExecutor:
         types, values, rows = call_arguments(function, args, kwargs, dtype)
         many = any(is_many(v, t) for v, t in zip(values, types, strict=True))
         points = count(rows)
-        lowered = self._lower(function, types)
+        lowered = self.lower(function, types)
         module = lowered.module
         result_type = module.function(module.entry).result
-        uniforms = _all_values(DeclaredUniforms([module]), params or {}, seconds)
+        uniforms = all_values(DeclaredUniforms([module]), params or {}, seconds)
         if points == 0:
             return with_names(empty(result_type, dtype), result_type)
         kernel: Kernel
@@ -350,11 +318,11 @@ class PythonExecutor:
             params: Values of parameters by name; those that it does not read are left out.
             time: Seconds.
         """
-        lowered = self._lower(function, None)
+        lowered = self.lower(function, None)
         kernel = cast("CpuKernel", self.kernels.kernel(lowered, CPU, 32))
         declared = DeclaredUniforms([lowered.module])
         known = {p.name: params[p.name] for p in declared.parameters if p.name in params}
-        values = _all_values(declared, known, time)
+        values = all_values(declared, known, time)
         # To start a thread takes longer than to evaluate a few rows.
         few = len(columns) > 0 and len(columns[0]) < _ROWS_OF_A_THREAD
         return kernel.evaluate(columns, values, lowered.resources, here=few)
@@ -371,7 +339,7 @@ class PythonExecutor:
             function: The function.
             columns: The values of each of its parameters, one row each.
         """
-        return sweeps.sweep(self._lower(function, None), columns)
+        return sweeps.sweep(self.lower(function, None), columns)
 
     def fill(
         self,
@@ -475,10 +443,6 @@ class PythonExecutor:
         at = int(np.argmax(lengths))
         return float(lengths[at]), tuple(rows[at].tolist())
 
-    def lowered(self, function: Func | Composed) -> Lowered:
-        """Return the IR of a function that has the types of its own parameters."""
-        return self._lower(function, None)
-
     def at_pixel(
         self, function: Composed, place: tuple[float, float], options: RenderOptions
     ) -> Any:
@@ -489,7 +453,7 @@ class PythonExecutor:
             place: The place in pixels, from the lower left.
             options: The size of the picture, the time and the parameters.
         """
-        lowered = self._lower(function, None)
+        lowered = self.lower(function, None)
         declared = DeclaredUniforms([lowered.module])
         uniforms = declared.for_kernel(0, *_uniforms(declared, options))
         kernel = self.kernels.kernel(lowered, REFERENCE, 32)
@@ -505,33 +469,10 @@ class PythonExecutor:
             params: Values of parameters by name; the others have their defaults.
             time: Seconds.
         """
-        lowered = Lowered.of(_ValueOf(expression), None)
-        uniforms = _all_values(DeclaredUniforms([lowered.module]), params, checked_time(time))
+        lowered = Lowered.of(ValueOf(expression), None)
+        uniforms = all_values(DeclaredUniforms([lowered.module]), params, checked_time(time))
         result = self.kernels.kernel(lowered, REFERENCE, 64).evaluate([], uniforms, {})
         return single(result, expression.type)
-
-    def _parts(self, function: Func | Composed) -> _Parts:
-        """Return the functions to run for an image or function; cached while they are unchanged."""
-        with self._lock:
-            first = self._lower(function, None)
-            display = function.display if isinstance(function, Composed) else None
-            parts = (first,) if display is None else (first, self._lower(display, (VEC4,)))
-            known = self._together.get(function)
-            if known is None or known.parts != parts:
-                declared = DeclaredUniforms([p.module for p in parts])
-                known = self._together[function] = _Parts(parts, declared)
-            return known
-
-    def _lower(self, function: Func | Composed | LangFunction, types: Types) -> Lowered:
-        """Lower the function; the result is cached while the captured constants are unchanged."""
-        if isinstance(function, LangFunction):
-            return Lowered.of(function, types)
-        with self._lock:
-            known = self._lowered.setdefault(function, {})
-            lowered = known.get(types)
-            if lowered is None or not lowered.captured.is_fresh():
-                lowered = known[types] = Lowered.of(function, types)
-            return lowered
 
 
 def _preview_of(
@@ -566,31 +507,9 @@ def _samples(
     return None if adaptive else options.samples or 1
 
 
-class _ValueOf(Composed):
-    """A function without parameters that returns the value of an expression."""
-
-    def __init__(self, expression: Expression) -> None:
-        self._expression = expression
-        self.name, self.signature, self.result = "value", (), expression.type
-
-    def compose(self, assembly: Any) -> str:
-        """Add the function to a program and return its name there."""
-        value = assembly.expression(self._expression)
-        name: str = assembly.define("value", (), self.result, (Return(value),))
-        return name
-
-
 def _uniforms(
     declared: DeclaredUniforms, options: RenderOptions
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the values of the parameters, and those of the frame and of the scene's numbers."""
     values = declared.parameter_values(options.params)
     return values, {**declared.number_values(options.settings), **frame_values(options)}
-
-
-def _all_values(
-    declared: DeclaredUniforms, params: Mapping[str, Any], seconds: float
-) -> dict[str, Any]:
-    """Return the uniforms of a function that is called from Python."""
-    others = {**declared.numbers, "time": seconds}
-    return declared.for_kernel(0, declared.parameter_values(params), others)

@@ -58,7 +58,7 @@ def test_kernels_of_long_ago_are_dropped(monkeypatch):
         return picture
 
     for shade in (0.1, 0.2, 0.3):
-        lowered = executor._lower(plain(shade), None)
+        lowered = executor.lower(plain(shade), None)
         executor.kernels.kernel(lowered, "reference", 32)
     assert len(executor.kernels) == 2
     assert (lowered.digest, "reference", 32) in executor.kernels._kernels

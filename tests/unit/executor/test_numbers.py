@@ -124,8 +124,8 @@ def test_objects_are_lowered_once() -> None:
     executor = PythonExecutor()
     ball = Ball(0.5)
     executor.call(ball, (np.zeros((2, 3)),), {})
-    first = executor._lower(ball, None)
-    assert executor._lower(ball, None) is first
+    first = executor.lower(ball, None)
+    assert executor.lower(ball, None) is first
 
 
 @pytest.mark.parametrize("device", ["cpu", "reference"])

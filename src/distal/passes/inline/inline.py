@@ -18,6 +18,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Final
 
+from distal.diagnostics import Span
 from distal.ir.contents import contents
 from distal.ir.nodes import (
     Assign,
@@ -106,6 +107,7 @@ class _Inliner:
         self._names = FreshNames(local_names(function))
         self._size = size(function.body)
         self._mutable = set(_assigned(function.body))
+        self._here: Span | None = None  # the place of the statement around the current call
         # Inlined calls -> their values, for each block around the current place.
         self._available: list[dict[Expr, Expr]] = [{}]
 
@@ -123,6 +125,7 @@ class _Inliner:
 
     def _statement(self, stmt: Stmt, in_loop: bool) -> list[Stmt]:
         before: list[Stmt] = []
+        outside, self._here = self._here, stmt.span or self._here
         loop = in_loop or isinstance(stmt, For | While)
         # A while's condition is computed in each iteration: none of it may move before the loop.
         eager = not isinstance(stmt, While)
@@ -132,6 +135,7 @@ class _Inliner:
             lambda e: self._expr(e, in_loop or isinstance(stmt, While), eager, before, memo),
             lambda block: self._block(block, in_loop=loop),
         )
+        self._here = outside
         return [*before, changed]
 
     def _expr(
@@ -176,26 +180,39 @@ class _Inliner:
     def _insert(self, callee: _Callee, call: Call, before: list[Stmt]) -> Expr:
         """Append the callee's statements to ``before``, with new names; return the call's value."""
         reads: dict[Expr, Expr] = {}
+        renaming = _Renaming(self._names, reads, self._own_place())
         for param, arg in zip(callee.function.params, call.args, strict=True):
             if is_plain(arg):
                 reads[Read(param.name, param.type)] = arg
             else:
                 name = self._names.fresh(param.name)
-                before.append(Let(name, arg, span=callee.function.span))
+                before.append(Let(name, arg, span=renaming.place(callee.function.span)))
                 reads[Read(param.name, param.type)] = Read(name, param.type)
-        renaming = _Renaming(self._names, reads)
         inserted = renaming.block(callee.straight.body)
         before.extend(inserted)
         self._mutable.update(_assigned(inserted))
         return renaming.expr(callee.straight.value)
 
+    def _own_place(self) -> Span | None:
+        """Return the place of the current call, if it is in the file of this function."""
+        own, here = self._function.span, self._here
+        return here if here is not None and own is not None and here.file == own.file else None
+
 
 class _Renaming:
-    """Copies a callee's statements with its parameters replaced and its locals renamed."""
+    """Copies a callee's statements with its parameters replaced and its locals renamed.
 
-    def __init__(self, names: FreshNames, reads: dict[Expr, Expr]) -> None:
+    Args:
+        names: The names of the caller.
+        reads: What the callee reads -> the expressions of the caller.
+        around: The place of the call; statements of other files get it, because the lines of a text
+            point to the file of the function that they are in. None keeps all places.
+    """
+
+    def __init__(self, names: FreshNames, reads: dict[Expr, Expr], around: Span | None) -> None:
         self._names = names
         self._reads = reads
+        self._around = around
         self._memo: dict[Expr, Expr] = {}
         self._renamed: dict[str, str] = {}
 
@@ -215,20 +232,27 @@ class _Renaming:
         """Return the statements in the caller's names."""
         return tuple(self._statement(s) for s in body)
 
+    def place(self, span: Span | None) -> Span | None:
+        """Return the place of a copied statement."""
+        around = self._around
+        return span if around is None or (span and span.file == around.file) else around
+
     def _statement(self, stmt: Stmt) -> Stmt:
+        span = self.place(stmt.span)
         match stmt:
             case Let(name, value):
                 value = self.expr(value)
-                return Let(self._fresh(name), value, span=stmt.span)
+                return Let(self._fresh(name), value, span=span)
             case Var(name, value):
                 value = self.expr(value)
-                return Var(self._fresh(name), value, span=stmt.span)
+                return Var(self._fresh(name), value, span=span)
             case For(name, start, stop, step, body):
                 start, stop = self.expr(start), self.expr(stop)
                 name = self._fresh(name)
-                return For(name, start, stop, step, self.block(body), span=stmt.span)
+                return For(name, start, stop, step, self.block(body), span=span)
             case _:
-                return map_statement(stmt, self.expr, self.block)
+                changed = map_statement(stmt, self.expr, self.block)
+                return changed if span is stmt.span else replace(changed, span=span)
 
     def _fresh(self, name: str) -> str:
         fresh = self._renamed[name] = self._names.fresh(name)

@@ -131,6 +131,13 @@ def _visit(
     body: StatementList, kind: Attribute, node: Node, site: AttributePoint, *, measured: bool
 ) -> tuple[Expr | None, Expr]:
     """Return a subtree's attribute, and its distance if ``measured``."""
+    with body.at(node.place):
+        return _visit_here(body, kind, node, site, measured=measured)
+
+
+def _visit_here(
+    body: StatementList, kind: Attribute, node: Node, site: AttributePoint, *, measured: bool
+) -> tuple[Expr | None, Expr]:
     composer = kind.composer
     whole = kind.leaf(body, node, site)
     if isinstance(node, TableNode) and whole is None:

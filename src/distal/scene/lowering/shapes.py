@@ -182,14 +182,14 @@ class ShapeComposer:
         values = [Read(p.name, p.type) for p in params] if passed else self.values.all(node)
         extra = self.parts.factor_names(node, names) if safe and passed else []
         params += [Param(n, FLOAT) for n in extra]
-        body = StatementList(taken={"p", "cell", *names, *extra})
+        body = StatementList(taken={"p", "cell", *names, *extra}, place=node.place)
         cell = Read("cell", VEC3) if uses_cell else ZERO_CELL
         factors: Sequence[Expr] | None = None
         if safe:
             given = tuple(Read(n, FLOAT) for n in extra)
             factors = given if passed else self._factors(body, node, values)
         result = self._emit(body, node, Read("p", point), cell, values, factors)
-        body.statements.append(Return(result))
+        body.statements.append(Return(result, span=node.place))
         params = [Param("p", point), *params, *([Param("cell", VEC3)] if uses_cell else [])]
         stem = f"{plain_name(node.name)}_{'safe_distance' if safe else 'distance'}"
         return self.assembly.define(stem, params, FLOAT, body.statements, node.place)
@@ -243,6 +243,18 @@ class ShapeComposer:
         cell: Expr,
         values: Sequence[Expr],
         factors: Sequence[Expr] | None = None,
+    ) -> Expr:
+        with body.at(node.place):
+            return self._emit_here(body, node, p, cell, values, factors)
+
+    def _emit_here(
+        self,
+        body: StatementList,
+        node: Node,
+        p: Expr,
+        cell: Expr,
+        values: Sequence[Expr],
+        factors: Sequence[Expr] | None,
     ) -> Expr:
         if factors and not self.parts.splits(node):
             return self._scaled(body, node, p, cell, values, factors)

@@ -6,10 +6,12 @@ expression if there is one, constants for choices.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
+from distal.diagnostics import Span
 from distal.fields.guarantees import Operator
 from distal.frontend import Assembly
 from distal.ir.nodes import Const, Expr, Let, Read, Stmt
@@ -21,10 +23,17 @@ from distal.scene.tree.node import Node, Rule
 
 @dataclass(slots=True)
 class StatementList:
-    """The statements of a function under construction."""
+    """The statements of a function under construction.
+
+    Attributes:
+        statements: The statements so far.
+        taken: Names that are in use.
+        place: Where the author wrote what the next statements compute.
+    """
 
     statements: list[Stmt] = field(default_factory=list)
     taken: set[str] = field(default_factory=set)
+    place: Span | None = None
     # The number from which to look for a free name, by stem: a scene has thousands of boxes.
     _next: dict[str, int] = field(default_factory=dict)
 
@@ -37,8 +46,18 @@ class StatementList:
             name, n = f"{stem}_{n}", n + 1
         self.taken.add(name)
         self._next[stem] = n
-        self.statements.append(Let(name, value))
+        self.statements.append(Let(name, value, span=self.place))
         return Read(name, value.type)
+
+    @contextmanager
+    def at(self, place: Span | None) -> Iterator[None]:
+        """Give the statements that are added in the block a place; None keeps the one before."""
+        before = self.place
+        self.place = place or before
+        try:
+            yield
+        finally:
+            self.place = before
 
 
 class Values:

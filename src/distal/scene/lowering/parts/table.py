@@ -17,7 +17,6 @@ from distal.fields.guarantees import EXACT_OUTSIDE, Operator
 from distal.frontend import Assembly
 from distal.lang.lazy_module import LazyModule
 from distal.lang.resources import Buffer
-from distal.packages import PackageError
 from distal.scene.lowering.parts.flatten import UnionMember, member_count, members_of
 from distal.scene.lowering.parts.kinds import PartKind, kinds_of
 from distal.scene.lowering.safe_parts import SafeParts
@@ -200,7 +199,7 @@ def _roll(root: Node) -> Rolled:
     kinds = [k if safe.has_safe_values(k.node) else k.with_factor() for k in kinds[:MOST_KINDS]]
     try:
         found = rows.rows_of(kinds)
-    except PackageError:
+    except ImportError:  # also of the module itself
         if root.parts > MOST_WITHOUT:
             raise
         return nothing  # texts are compiled without NumPy too

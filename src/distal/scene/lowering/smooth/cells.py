@@ -15,7 +15,6 @@ from distal.diagnostics import CompileError
 from distal.fields.guarantees import Operator
 from distal.lang.lazy_module import LazyModule
 from distal.lang.resources import Buffer
-from distal.packages import PackageError
 from distal.scene.lowering.parts.kinds import PartKind
 from distal.scene.lowering.safe_parts import SafeParts
 from distal.scene.lowering.smooth.chain import (
@@ -144,7 +143,7 @@ def _with_grids(root: Node) -> CelledTree:
         return CelledTree(rewriting.of(root), rewriting.grids, rewriting.linear)
     except RecursionError:
         return CelledTree(root, (), ())  # lowering reports a tree that is too deep
-    except PackageError:
+    except ImportError:  # also of the module itself
         if root.parts > MOST_WITHOUT:
             raise
         return CelledTree(root, (), ())  # texts are compiled without NumPy too

@@ -1,0 +1,194 @@
+"""What scene code gives without arrays: parameters, values, and whether a picture moves.
+
+Input: recorded functions and plain numbers. Output: plain numbers. Needs the standard library
+alone, so that a compiler in a browser knows as much of a scene as a page needs.
+``runtime.executor`` adds what needs NumPy.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, NoReturn
+from weakref import WeakKeyDictionary
+
+from distal.backends import get_target
+from distal.compiler.constant_functions import evaluate
+from distal.compiler.driver import run_passes
+from distal.ir.nodes import FRAME_TIME, Expr, Module, Origin, Return, Uniform
+from distal.ir.types import FLOAT, VEC4, Struct, Type, Vector
+from distal.ir.walk import map_expressions, substitute
+from distal.lang.composed import Composed
+from distal.lang.expressions import Expression
+from distal.lang.functions import Func, Image
+from distal.lang.names import LangFunction
+from distal.lang.parameters import Parameter
+from distal.lang.render_options import checked_time
+from distal.lang.values import VALUE_CLASSES
+from distal.packages import imported
+from distal.passes.numbers import constant
+from distal.runtime.lowered import Lowered, Types
+from distal.runtime.uniform_values import DeclaredUniforms
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """A function and, if there is one, the function that encodes its pixels for display."""
+
+    parts: tuple[Lowered, ...]
+    declared: DeclaredUniforms
+
+
+class StandardExecutor:
+    """Answers questions about scene code; keeps lowered functions until the process ends.
+
+    A function is lowered again if a constant that it captured has changed.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.RLock()  # frames of a video are rendered by several threads
+        self._lowered: WeakKeyDictionary[Any, dict[Types, Lowered]] = WeakKeyDictionary()
+        self._together: WeakKeyDictionary[Any, Parts] = WeakKeyDictionary()
+
+    def parameters(self, function: Func | Composed) -> list[Parameter]:
+        """Return the parameters that a function and its callees read, in order of first use."""
+        return list(self.parts(function).declared.parameters)
+
+    def reads_time(self, image: Image | Composed) -> bool:
+        """Return whether the picture depends on the time."""
+        target = get_target("glsl-es300")
+        for part in self.parts(image).parts:
+            entered = run_passes(part.module, target, after="entry")
+            if any(u.origin is Origin.FRAME and u.name == "time" for u in entered.uniforms):
+                return True
+        return False
+
+    def lowered(self, function: Func | Composed) -> Lowered:
+        """Return the IR of a function that has the types of its own parameters."""
+        return self.lower(function, None)
+
+    def value(self, expression: Expression, params: Mapping[str, Any], time: float) -> Any:
+        """Return the value of an expression for values of its parameters and a time in seconds.
+
+        Args:
+            expression: The expression.
+            params: Values of parameters by name; the others have their defaults.
+            time: Seconds.
+        """
+        return _evaluated(Lowered.of(ValueOf(expression), None).module, params, checked_time(time))
+
+    def call(
+        self,
+        function: Func | Composed | LangFunction,
+        args: Sequence[Any],
+        kwargs: Mapping[str, Any],
+        params: Mapping[str, Any] | None = None,
+        time: float = 0.0,
+        device: str = "",
+    ) -> Any:
+        """Evaluate a function without arguments; as ``PythonExecutor.call``.
+
+        Raises:
+            PackageError: It has arguments, or it is one that only a device can evaluate.
+        """
+        if args or kwargs:
+            _needs_arrays()
+        return _evaluated(self.lower(function, None).module, params or {}, checked_time(time))
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            # What only the executor with arrays can do.
+            if not name.startswith("_"):
+                _needs_arrays()
+            raise AttributeError(f"an executor has no '{name}'", name=name, obj=self)
+
+    def parts(self, function: Func | Composed) -> Parts:
+        """Return the functions to run for an image or function; cached while they are unchanged."""
+        with self._lock:
+            first = self.lower(function, None)
+            display = function.display if isinstance(function, Composed) else None
+            parts = (first,) if display is None else (first, self.lower(display, (VEC4,)))
+            known = self._together.get(function)
+            if known is None or known.parts != parts:
+                declared = DeclaredUniforms([p.module for p in parts])
+                known = self._together[function] = Parts(parts, declared)
+            return known
+
+    def lower(self, function: Func | Composed | LangFunction, types: Types) -> Lowered:
+        """Lower the function; the result is cached while the captured constants are unchanged."""
+        if isinstance(function, LangFunction):
+            return Lowered.of(function, types)
+        with self._lock:
+            known = self._lowered.setdefault(function, {})
+            lowered = known.get(types)
+            if lowered is None or not lowered.captured.is_fresh():
+                lowered = known[types] = Lowered.of(function, types)
+            return lowered
+
+
+class ValueOf(Composed):
+    """A function without parameters that returns the value of an expression."""
+
+    def __init__(self, expression: Expression) -> None:
+        self._expression = expression
+        self.name, self.signature, self.result = "value", (), expression.type
+
+    def compose(self, assembly: Any) -> str:
+        """Add the function to a program and return its name there."""
+        value = assembly.expression(self._expression)
+        name: str = assembly.define("value", (), self.result, (Return(value),))
+        return name
+
+
+def all_values(
+    declared: DeclaredUniforms, params: Mapping[str, Any], seconds: float
+) -> dict[str, Any]:
+    """Return the uniforms of a function that is called from Python."""
+    others = {**declared.numbers, "time": seconds}
+    return declared.for_kernel(0, declared.parameter_values(params), others)
+
+
+def _evaluated(module: Module, params: Mapping[str, Any], seconds: float) -> Any:
+    """Return the value of a function without arguments.
+
+    Raises:
+        PackageError: It is one that only a device can evaluate.
+    """
+    declared = DeclaredUniforms([module])
+    values = {**declared.numbers, **declared.parameter_values(params)}
+    known: dict[Expr, Expr] = {
+        Uniform(u.name, u.type): constant(values[u.name], u.type) for u in module.uniforms
+    }
+    known[Uniform(FRAME_TIME, FLOAT)] = constant(seconds, FLOAT)
+    memo: dict[Expr, Expr] = {}
+    functions = tuple(
+        replace(f, body=map_expressions(f.body, lambda e: substitute(e, known, memo)))
+        for f in module.functions
+    )
+    found = evaluate(replace(module, functions=functions, uniforms=()))
+    if found is None:
+        _needs_arrays()
+    return _named(found, module.function(module.entry).result)
+
+
+def _named(value: Any, type: Type) -> Any:
+    """Return nested tuples of numbers as the values of the language."""
+    match type:
+        case Vector():
+            return VALUE_CLASSES[type](*value)
+        case Struct(_, fields):
+            return tuple(_named(v, t) for v, (_, t) in zip(value, fields, strict=True))
+        case _:
+            return value
+
+
+def _needs_arrays() -> NoReturn:
+    """Report that NumPy is missing.
+
+    Raises:
+        PackageError: Always.
+    """
+    imported("numpy")
+    raise AssertionError("the executor with arrays is used wherever NumPy is installed")

@@ -1,0 +1,1 @@
+"""The studio's worker: author code to programs, numbers and places, by JSON messages."""

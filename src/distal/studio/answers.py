@@ -1,0 +1,169 @@
+"""The requests that are answered by one result: edits, texts, exports, checks, pixels.
+
+Input: a request, and what loads its scene. Output: its result.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import PurePath
+from typing import Any, Final, Literal, cast
+
+from distal.backends import TEXT_TARGETS
+from distal.compiler.driver import compile as compile_text
+from distal.export import page, texts
+from distal.export.page_options import PageOptions, TextOptions
+from distal.lang.lazy_module import LazyModule
+from distal.scene.objects.field import BaseShape
+from distal.studio.edits import edits_of
+from distal.studio.looks import Looks, known_values, mistake_at
+from distal.studio.messages import (
+    Checked,
+    EmittedText,
+    Export,
+    ExportedFile,
+    Probe,
+    Probed,
+    Result,
+    SourceRequest,
+    Text,
+    Write,
+    Written,
+)
+
+probing: Final = cast(Any, LazyModule("distal.scene.checks.probe"))  # needs NumPy
+validation: Final = cast(Any, LazyModule("distal.scene.checks.validation"))
+NEEDS_NUMPY: Final = frozenset({"check", "probe"})
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """A request, and what loads its scene."""
+
+    request: SourceRequest
+    looks: Looks
+
+
+def _write(work: Work) -> Result:
+    request = cast(Write, work.request)
+    return Written(edits=edits_of(request.files, request.main, request.changes))
+
+
+def _text(work: Work) -> Result:
+    request = cast(Text, work.request)
+    _, seen = work.looks.load(request, request.files)
+    artifact = compile_text(seen.image(request.view, encoded=True), target=request.target)
+    files = tuple(request.files)
+    places: list[tuple[int, int, int, int]] = []
+    for number, origin in enumerate(artifact.lines, start=1):
+        name = PurePath(origin[0]).name if origin is not None else ""
+        if origin is None or name not in request.files:
+            continue
+        place = (number, number, files.index(name), origin[1])
+        if places and places[-1][1:] == (number - 1, *place[2:]):
+            place = (places.pop()[0], *place[1:])
+        places.append(place)
+    return EmittedText(
+        target=request.target,
+        language=_language(request.target),
+        text=artifact.text,
+        files=files,
+        places=tuple(places),
+    )
+
+
+def _language(target: str) -> Literal["glsl", "wgsl", "llvm", "ir"]:
+    if target in ("llvm", "ir"):
+        return cast(Literal["llvm", "ir"], target)
+    return "wgsl" if target.startswith("wgsl") else "glsl"
+
+
+def _export(work: Work) -> Result:
+    request = cast(Export, work.request)
+    _, seen = work.looks.load(request, request.files)
+    params = known_values(seen.parameters, request.values)
+    stem = PurePath(request.main).stem
+    if request.format == "page":
+        options = PageOptions(
+            size=request.size,
+            time=request.time,
+            params=params,
+            view=request.view,
+            title=request.title,
+            embed=request.embed,
+            poster=False,
+        )
+        shown = base64.b64decode(request.poster or "")
+        made = page.page(seen, options, shown, "png")
+        return ExportedFile(
+            name=f"{stem}.html",
+            media_type="text/html",
+            text=made.text,
+            command=f"distal export {request.main} -o {stem}.html",
+        )
+    if request.format not in TEXT_TARGETS:
+        known = ", ".join(("page", *TEXT_TARGETS))
+        raise ValueError(f"there is no format '{request.format[:40]}'; formats: {known}")
+    suffix = TEXT_TARGETS[request.format].suffix or ".txt"
+    values = TextOptions(params=params, view=request.view)
+    return ExportedFile(
+        name=f"{stem}{suffix}",
+        media_type="text/plain",
+        text=texts.text(seen, request.format, values).text,
+        command=f"distal export {request.main} -o {stem}{suffix} --target {request.format}",
+    )
+
+
+def _check(work: Work) -> Result:
+    request = work.request
+    loaded, seen = work.looks.load(request, request.files)
+    subject = seen.scene.subject if seen.scene is not None else loaded.picture
+    if not isinstance(subject, BaseShape):
+        raise ValueError("scenes and shapes are checked; this is an @image")
+    values = known_values(subject.parameters(), request.values)
+    report = validation.check(subject, values, request.time)
+    return Checked(
+        mistakes=tuple(
+            mistake_at(f.diagnostic, request.files, _SEVERITIES.get(f.severity.value, "note"))
+            for f in report.findings
+        )
+    )
+
+
+def _probe(work: Work) -> Result:
+    request = cast(Probe, work.request)
+    _, seen = work.looks.load(request, request.files)
+    if seen.scene is None:
+        raise ValueError("pixels of scenes and shapes are probed; this is an @image")
+    values = known_values(seen.parameters, request.values)
+    pixel = (int(request.x), int(request.y))
+    found = probing.probe(seen.scene, pixel, request.size, values, request.time)
+    if not found.hit:
+        return Probed(numbers={"steps": float(found.seen.steps)})
+    shape = found.path[-1]
+    span = shape.place
+    known = span is not None and PurePath(span.file).name in request.files
+    return Probed(
+        shape=shape.name,
+        material=str((found.as_json()["material"] or {}).get("name") or ""),
+        file=PurePath(span.file).name if known else None,
+        line=span.line if known else None,
+        point=tuple(map(float, found.seen.p)),
+        normal=tuple(map(float, found.seen.normal)),
+        numbers={"steps": float(found.seen.steps), "distance": float(found.seen.t)},
+    )
+
+
+_SEVERITIES: Final[Mapping[str, Literal["error", "warning", "note"]]] = {
+    "error": "error",
+    "warning": "warning",
+}
+ANSWERS: Final[Mapping[str, Callable[[Work], Result]]] = {
+    "write": _write,
+    "probe": _probe,
+    "check": _check,
+    "text": _text,
+    "export": _export,
+}

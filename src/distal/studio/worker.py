@@ -1,0 +1,222 @@
+"""The studio's worker: answers requests about the author's code, one after the other.
+
+Input: messages of the app, one JSON text a line on standard input, or by ``Worker.answers`` where
+the host carries them itself (a browser). Output: messages, as lines on standard output. It runs the
+author's code, which may never end: whoever started the worker ends it. Needs the standard library
+alone; ``check``, ``probe`` and textures need NumPy.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import queue
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import IO, Any, Final
+
+from distal.backends import TEXT_TARGETS
+from distal.compiler.driver import COMPILE_TARGETS
+from distal.diagnostics import CompileError, DeviceError, LoadError
+from distal.export.payload import FORMAT
+from distal.packages import explained, is_installed
+from distal.studio.answers import ANSWERS, NEEDS_NUMPY, Work
+from distal.studio.edits import EditError, applied, edits_of
+from distal.studio.literals import LiteralError, find_literals
+from distal.studio.looks import Looks, mistakes_of
+from distal.studio.mailbox import Mailbox
+from distal.studio.messages import (
+    LONGEST_PRINTED,
+    Answer,
+    Dropped,
+    Edit,
+    Hold,
+    Look,
+    Message,
+    MessageError,
+    Mistake,
+    Mistakes,
+    Printed,
+    Ready,
+    Request,
+    SourceLiteral,
+    SourceRequest,
+    Stop,
+    encoded,
+    parsed,
+)
+from distal.version import __version__
+
+Send = Callable[[Message], None]
+_NAMED: Final = (CompileError, LoadError, DeviceError)
+_REFUSED: Final = (EditError, LiteralError, ValueError, TypeError, OSError)
+
+
+class Worker:
+    """Answers requests. It keeps compiled programs between them."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._looks = Looks(folder)
+
+    def ready(self) -> Ready:
+        """Return the worker's first message."""
+        has_numpy = is_installed("numpy")
+        kinds = ["look", "hold", *ANSWERS, "stop"]
+        return Ready(
+            abilities=tuple(k for k in kinds if has_numpy or k not in NEEDS_NUMPY),
+            versions={
+                "distal": __version__,
+                "python": ".".join(map(str, sys.version_info[:3])),
+                "payload": str(FORMAT),
+                "messages": "1",
+            },
+            targets=COMPILE_TARGETS,
+            formats=("page", *TEXT_TARGETS),
+        )
+
+    def answers(self, request: Request) -> list[Message]:
+        """Return the messages that answer a request: what was printed, then the answer."""
+        printed = io.StringIO()
+        with _captured(printed):
+            answer = self._answer(request)
+        text = printed.getvalue()
+        first: list[Message] = []
+        if text:
+            kept = text[:LONGEST_PRINTED]
+            more = "" if kept == text else f"\n… {len(text) - len(kept):,} characters more"
+            first = [Printed(id=request.id, revision=request.revision, text=kept + more)]
+        return [*first, answer]
+
+    def _answer(self, request: Request) -> Message:
+        begin = time.perf_counter()
+        number: dict[str, Any] = {"id": request.id, "revision": request.revision}
+        if not isinstance(request, SourceRequest) or request.kind not in self.ready().abilities:
+            return _refused(number, f"this worker cannot do '{request.kind}'")
+        edits: tuple[Edit, ...] = ()
+        literals: tuple[SourceLiteral, ...] | None = None
+        try:
+            if request.main not in request.files:
+                raise EditError(f"there is no file '{request.main[:80]}' among the texts")
+            if isinstance(request, Look):
+                edits = edits_of(request.files, request.main, request.changes)
+                files = applied(request.files, edits)
+                if not request.lean:
+                    literals = tuple(x for f, t in files.items() for x in find_literals(f, t))
+                return self._looks.look(request, files, edits, literals, begin)
+            if isinstance(request, Hold):
+                return self._looks.hold(request, begin)
+            result = ANSWERS[request.kind](Work(request, self._looks))
+            return Answer(**number, request=request.kind, result=result)
+        except Exception as error:
+            found = _mistakes_of(error, request)
+            return Mistakes(**number, mistakes=found, literals=literals, edits=edits)
+
+
+def _mistakes_of(error: Exception, request: SourceRequest) -> tuple[Mistake, ...]:
+    """Return what the author or the app did wrong; an unknown error names its type, too."""
+    if isinstance(error, _NAMED):
+        return mistakes_of(error, request.files)
+    if isinstance(error, RecursionError):
+        text = "the scene is nested too deeply"
+    elif isinstance(error, _REFUSED):
+        text = str(error)
+    else:
+        text = str(explained(error) or f"{type(error).__name__}: {error}")
+    return (Mistake(severity="error", message=text),)
+
+
+def _refused(number: dict[str, Any], text: str) -> Mistakes:
+    return Mistakes(**number, mistakes=(Mistake(severity="error", message=text),))
+
+
+@contextlib.contextmanager
+def _captured(into: IO[str]) -> Iterator[None]:
+    """Keep what the author's code prints from the messages."""
+    with contextlib.redirect_stdout(into), contextlib.redirect_stderr(into):
+        yield
+
+
+def serve(worker: Worker, lines: IO[str], send: Send) -> None:
+    """Answer requests until ``stop`` or the end of the input.
+
+    Args:
+        worker: The worker.
+        lines: A request on each line.
+        send: Sends a message.
+    """
+    arriving: queue.SimpleQueue[str | None] = queue.SimpleQueue()
+    threading.Thread(target=_read, args=(lines, arriving), daemon=True).start()
+    mailbox = Mailbox()
+    send(worker.ready())
+    while True:
+        waiting = mailbox.take()
+        if waiting is None:
+            if not _received(arriving.get(), mailbox, send):
+                return
+        else:
+            # What arrived meanwhile may be newer.
+            for dropped in mailbox.put(waiting):
+                send(Dropped(id=dropped.id, revision=dropped.revision))
+        while not arriving.empty():
+            if not _received(arriving.get(), mailbox, send):
+                return
+        request = mailbox.take()
+        if request is not None:
+            for message in worker.answers(request):
+                send(message)
+
+
+def _received(line: str | None, mailbox: Mailbox, send: Send) -> bool:
+    """Put a line's request into the mailbox; return whether the worker goes on."""
+    if line is None:
+        return False
+    if not line.strip():
+        return True
+    try:
+        request = parsed(line)
+    except MessageError as error:
+        send(_refused({"id": -1, "revision": -1}, str(error)))
+        return True
+    if isinstance(request, Stop):
+        return False
+    if not isinstance(request, Request):
+        send(_refused({"id": -1, "revision": -1}, f"'{request.kind}' is not a request"))
+        return True
+    for dropped in mailbox.put(request):
+        send(Dropped(id=dropped.id, revision=dropped.revision))
+    return True
+
+
+def _read(lines: IO[str], arriving: queue.SimpleQueue[str | None]) -> None:
+    for line in lines:
+        arriving.put(line)
+    arriving.put(None)
+
+
+def main() -> None:
+    """Answer requests on standard input, in a folder that is removed at the end.
+
+    The streams of messages are copies: the author's code has neither.
+    """
+    requests = os.fdopen(os.dup(0), "r", encoding="utf-8", newline="\n")
+    messages = os.fdopen(os.dup(1), "w", encoding="utf-8", newline="\n")
+    nothing = os.open(os.devnull, os.O_RDWR)
+    os.dup2(nothing, 0)
+    os.dup2(2, 1)
+
+    def send(message: Any) -> None:
+        messages.write(f"{encoded(message)}\n")
+        messages.flush()
+
+    with tempfile.TemporaryDirectory(prefix="distal_studio_") as folder:
+        serve(Worker(Path(folder)), requests, send)
+
+
+if __name__ == "__main__":
+    main()

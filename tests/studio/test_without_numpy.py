@@ -1,0 +1,136 @@
+"""What a browser's compiler has: the standard library. It must give what NumPy's presence gives."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import subprocess
+import sys
+from typing import Any
+
+import pytest
+
+import distal
+
+BLOCKED = """
+import sys
+
+class Blocker:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in ("numpy", "llvmlite", "PIL", "wgpu", "typer", "rich"):
+            raise ModuleNotFoundError(f"No module named '{name}'", name=name)
+
+sys.meta_path.insert(0, Blocker())
+"""
+FACTS = """
+import hashlib, json, sys
+import distal
+from distal.export.page_options import PageOptions
+from distal.export.payload import payload
+from distal.scene.viewing.viewable import viewable
+
+def digest(value):
+    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
+
+def facts(name):
+    obj = distal.load("example:" + name)
+    seen = viewable(obj)
+    names = [p.name for p in seen.parameters]
+    text = distal.compile(obj).text
+    return [seen.animated, round(seen.elevation, 6), names, digest(text)]
+
+def page(name):
+    seen = viewable(distal.load("example:" + name))
+    return digest(payload(seen, PageOptions(views=["color"], poster=False)))
+"""
+NEEDS_NUMPY = "import numpy"
+ALONE = [n for n, path in distal.gallery().items() if NEEDS_NUMPY not in path.read_text()]
+# Of 16 parts and more, a page with NumPy has tables; of 256 and more, a text has.
+PAGES = ("raymarcher_objects", "melting", "bunny")
+
+
+def blocked(code: str) -> Any:
+    answer = subprocess.run(
+        [sys.executable, "-c", BLOCKED + code],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "DISTAL_VERIFY": ""},
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert answer.returncode == 0, answer.stderr
+    return json.loads(answer.stdout)
+
+
+def here() -> dict[str, Any]:
+    made: dict[str, Any] = {}
+    exec(FACTS, made)
+    return made
+
+
+def test_the_gallery_needs_numpy_where_it_works_with_arrays_alone() -> None:
+    others = set(distal.gallery()) - set(ALONE)
+    assert others == {"beach", "bricks", "forest", "molecule", "ripples", "sdfray_glass"}
+
+
+def test_texts_and_facts_of_the_gallery_are_those_with_numpy() -> None:
+    code = f"{FACTS}\nprint(json.dumps({{n: facts(n) for n in {ALONE}}}))"
+    found, facts = blocked(code), here()["facts"]
+    assert found == {name: facts(name) for name in ALONE}
+
+
+def test_pages_are_those_with_numpy() -> None:
+    found = blocked(f"{FACTS}\nprint(json.dumps({{n: page(n) for n in {PAGES}}}))")
+    page = here()["page"]
+    assert found == {name: page(name) for name in PAGES}
+
+
+def test_a_lone_shape_has_its_stage_and_its_box() -> None:
+    code = """
+import json
+from distal import Circle, Sphere, time
+from distal.lang import slider
+from distal.scene.viewing.viewable import viewable
+radius = slider("Radius", 0.5, low=0.1, high=3.0)
+flat = viewable(Circle(radius).translate(1.0, 0.0), {"Radius": 2.0})
+low, high = Sphere(0.5 + 0.25 * time).bounds(time=2.0)
+print(json.dumps([flat.elevation, list(flat.views[:1]), low, high, (2.0 * radius).value()]))
+"""
+    elevation, views, low, high, value = blocked(code)
+    assert 0.0 <= elevation < 1.0 and views == ["color"]
+    assert (low, high, value) == ([-1.0, -1.0, -1.0], [1.0, 1.0, 1.0], 1.0)
+
+
+def test_every_public_name_can_be_imported_and_reports_its_package_when_used() -> None:
+    code = """
+import json
+from distal import *
+from distal.packages import PackageError
+try:
+    points_on(Sphere(1.0), 10)
+except PackageError as error:
+    print(json.dumps([Sphere(1.0).name, str(error)]))
+"""
+    assert blocked(code) == ["Sphere", "numpy is missing: pip install numpy"]
+
+
+@pytest.mark.parametrize(
+    "ask",
+    ["Sphere(1.0)((1.0, 0.0, 0.0))", "points_in(Sphere(1.0), 10)", "Picture.of"],
+)
+def test_what_needs_arrays_says_so(ask: str) -> None:
+    code = f"""
+import json
+from distal import *
+try:
+    {ask}
+except ImportError as error:
+    print(json.dumps(str(error)))
+"""
+    assert " is missing: pip install" in blocked(code)
+
+
+def test_digests_differ_where_texts_do() -> None:
+    made = here()
+    assert made["digest"]("a") != made["digest"]("b")
+    assert made["digest"]("a") == hashlib.sha256(b'"a"').hexdigest()

@@ -1,0 +1,579 @@
+// Made by tools/gen_messages.py from src/distal/studio/messages.py: change that, and run it.
+// A field with a question mark has that file's default where it is left out.
+
+import type { Parameter, Payload, Program, UniformEntry } from "../payload";
+
+export type Value = boolean | number | number[];
+
+export type LiteralValue = boolean | number | string | number[];
+
+/** One change of the source that the worker writes. */
+export interface Change {
+  /** "literal": the one at `file`, `start` and `end`; "parameter": the default in the declaration of the parameter `name`; "camera": the placement of the scene's camera. */
+  what: "literal" | "parameter" | "camera";
+  file?: string | null;
+  start?: number | null;
+  end?: number | null;
+  name?: string | null;
+  /** The new value of a literal or parameter; a choice's number for a parameter of choice. */
+  value?: boolean | number | string | number[] | null;
+  /** For a camera: what `Player.cameraText()` gives. */
+  text?: string | null;
+}
+
+/** A piece of a file to replace: offsets in the text as it was sent. */
+export interface Edit {
+  file: string;
+  start: number;
+  end: number;
+  text: string;
+}
+
+/** A literal of the source that a dial, a picker or a switch can change. */
+export interface SourceLiteral {
+  file: string;
+  line: number;
+  start: number;
+  end: number;
+  text: string;
+  /** What changes it. */
+  type: "number" | "vector" | "color" | "switch" | "choice";
+  /** Its value now; of a color linear numbers, or its text where it is "#hex". */
+  value: boolean | number | string | number[];
+  /** Start and end of each number of a vector. */
+  parts: [number, number][];
+  /** The function or class it is an argument of, or "". */
+  call: string;
+  /** The name of that argument, or of the variable it is assigned to, or "". */
+  slot: string;
+  /** The least allowed value, of each part of a vector. */
+  low: number | null;
+  /** The greatest. */
+  high: number | null;
+  /** How much the last written digit counts. */
+  step: number;
+  /** Whether only whole numbers are allowed. */
+  whole: boolean;
+  /** The words of a choice. */
+  options: string[];
+  /** What a drag needs: "numbers" where the program stays (an object scene), "hold" where a `hold` request first makes it an input (in a `@func`), else "compile". */
+  way: "numbers" | "hold" | "compile";
+}
+
+/** Where a shape of the scene was written. */
+export interface ShapePlace {
+  /** The author's name for it, else that of the primitive or operator. */
+  name: string;
+  /** Whether the name is the author's. */
+  label: boolean;
+  file: string;
+  line: number;
+  /** First column of the call that makes it. */
+  start: number;
+  /** One past its last column on that line. */
+  end: number;
+  /** The material's name or "". */
+  material: string;
+}
+
+/** An error or warning; without a line where the place is not known. */
+export interface Mistake {
+  severity: "error" | "warning" | "note";
+  message: string;
+  file: string | null;
+  line: number | null;
+  column: number;
+  end_line: number;
+  end_column: number;
+  hint: string | null;
+}
+
+/** Edits that make the changes; the new literals are found by the next `look`. */
+export interface Written {
+  edits: Edit[];
+}
+
+/**
+ * A program that counts how often statements run, and what to draw it with.
+ *
+ * Draw it as the view's program with the uniform `which` set to the number of a place: each
+ * pixel's color holds the count as red + 256 green + 65536 blue (bytes).
+ */
+export interface Counting {
+  program: Program;
+  which: string;
+  files: string[];
+  /** File (number in `files`) and line by the number of the place. */
+  places: [number, number][];
+  /** The estimated operations of one run, by the number of the place. */
+  operations: number[];
+}
+
+/** What a pixel shows; `shape` is empty where it is the background. */
+export interface Probed {
+  shape: string;
+  material: string;
+  file: string | null;
+  line: number | null;
+  point: number[];
+  normal: number[];
+  /** Further measured values by name, e.g. "steps", "distance", "depth". */
+  numbers: Record<string, number>;
+}
+
+/** What `distal check` reports. */
+export interface Checked {
+  mistakes: Mistake[];
+}
+
+/** A scene as the text of a target, and where its lines come from. */
+export interface EmittedText {
+  target: string;
+  language: "glsl" | "wgsl" | "llvm" | "ir";
+  text: string;
+  files: string[];
+  places: [number, number, number, number][];
+}
+
+/** The file is on the disk, with this digest; or a conflict: what is there instead. */
+export interface Saved {
+  digest: string;
+  conflict: string | null;
+}
+
+/** A file to save: its data as text, or in base64 where it is bytes. */
+export interface ExportedFile {
+  name: string;
+  media_type: string;
+  text: string | null;
+  base64: string | null;
+  command: string;
+}
+
+/** Compile a scene's view. Answered by `scene`, `numbers` or `mistakes`. */
+export interface Look {
+  kind: "look";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  /** The texts by name: the scene's file and modules beside it. */
+  files: Record<string, string>;
+  /** The name of the scene's file. */
+  main: string;
+  /** The name of the object in it; None for the only one. */
+  object?: string | null;
+  /** The view to show. */
+  view?: string;
+  /** Values of parameters by name; others have their defaults. */
+  values?: Record<string, boolean | number | number[]>;
+  /** In seconds. */
+  time?: number;
+  /** The look to show it in; None for its own. */
+  look?: string | null;
+  /** How light is computed; None: as the scene says. */
+  mode?: "direct" | "path" | null;
+  /** The author's frame in pixels. */
+  size?: [number, number];
+  /** The `key` of the program that the app shows; if it is still that of the scene, the answer is `numbers`. None for a `scene` in any case. */
+  known?: string | null;
+  /** Changes to make in the text first; the answer has their edits. */
+  changes?: Change[];
+  /** Whether to leave out literals and shapes, as while a literal is dragged. */
+  lean?: boolean;
+}
+
+/**
+ * Make the number of a `@func` an input of the program. Answered as a `look`.
+ *
+ * The `scene` that answers has `held`: the name of the input, to be set by
+ * `player.setNumber(held, value)`. Where it cannot be an input (a loop's bound), `held` is
+ * None and the program is the usual one.
+ */
+export interface Hold {
+  kind: "hold";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  /** The texts by name: the scene's file and modules beside it. */
+  files: Record<string, string>;
+  /** The name of the scene's file. */
+  main: string;
+  /** The name of the object in it; None for the only one. */
+  object?: string | null;
+  /** The view to show. */
+  view?: string;
+  /** Values of parameters by name; others have their defaults. */
+  values?: Record<string, boolean | number | number[]>;
+  /** In seconds. */
+  time?: number;
+  /** The look to show it in; None for its own. */
+  look?: string | null;
+  /** How light is computed; None: as the scene says. */
+  mode?: "direct" | "path" | null;
+  /** The author's frame in pixels. */
+  size?: [number, number];
+  file: string;
+  start: number;
+  end: number;
+}
+
+/** Write changes into the source: Keep of a slider, a literal or the camera. */
+export interface Write {
+  kind: "write";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  /** The texts by name: the scene's file and modules beside it. */
+  files: Record<string, string>;
+  /** The name of the scene's file. */
+  main: string;
+  /** The name of the object in it; None for the only one. */
+  object?: string | null;
+  /** The view to show. */
+  view?: string;
+  /** Values of parameters by name; others have their defaults. */
+  values?: Record<string, boolean | number | number[]>;
+  /** In seconds. */
+  time?: number;
+  /** The look to show it in; None for its own. */
+  look?: string | null;
+  /** How light is computed; None: as the scene says. */
+  mode?: "direct" | "path" | null;
+  /** The author's frame in pixels. */
+  size?: [number, number];
+  changes: Change[];
+}
+
+/** Give the program that counts how often each statement runs. */
+export interface Count {
+  kind: "count";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  /** The texts by name: the scene's file and modules beside it. */
+  files: Record<string, string>;
+  /** The name of the scene's file. */
+  main: string;
+  /** The name of the object in it; None for the only one. */
+  object?: string | null;
+  /** The view to show. */
+  view?: string;
+  /** Values of parameters by name; others have their defaults. */
+  values?: Record<string, boolean | number | number[]>;
+  /** In seconds. */
+  time?: number;
+  /** The look to show it in; None for its own. */
+  look?: string | null;
+  /** How light is computed; None: as the scene says. */
+  mode?: "direct" | "path" | null;
+  /** The author's frame in pixels. */
+  size?: [number, number];
+}
+
+/** Tell what the pixel at `x`, `y` shows (from the top left), with the camera as moved. */
+export interface Probe {
+  kind: "probe";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  /** The texts by name: the scene's file and modules beside it. */
+  files: Record<string, string>;
+  /** The name of the scene's file. */
+  main: string;
+  /** The name of the object in it; None for the only one. */
+  object?: string | null;
+  /** The view to show. */
+  view?: string;
+  /** Values of parameters by name; others have their defaults. */
+  values?: Record<string, boolean | number | number[]>;
+  /** In seconds. */
+  time?: number;
+  /** The look to show it in; None for its own. */
+  look?: string | null;
+  /** How light is computed; None: as the scene says. */
+  mode?: "direct" | "path" | null;
+  /** The author's frame in pixels. */
+  size?: [number, number];
+  x: number;
+  y: number;
+  steering?: Record<string, number>;
+}
+
+/** Validate the scene as `distal check` does. */
+export interface Check {
+  kind: "check";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  /** The texts by name: the scene's file and modules beside it. */
+  files: Record<string, string>;
+  /** The name of the scene's file. */
+  main: string;
+  /** The name of the object in it; None for the only one. */
+  object?: string | null;
+  /** The view to show. */
+  view?: string;
+  /** Values of parameters by name; others have their defaults. */
+  values?: Record<string, boolean | number | number[]>;
+  /** In seconds. */
+  time?: number;
+  /** The look to show it in; None for its own. */
+  look?: string | null;
+  /** How light is computed; None: as the scene says. */
+  mode?: "direct" | "path" | null;
+  /** The author's frame in pixels. */
+  size?: [number, number];
+}
+
+/** Give the emitted text of a target, as `distal compile` prints it. */
+export interface Text {
+  kind: "text";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  /** The texts by name: the scene's file and modules beside it. */
+  files: Record<string, string>;
+  /** The name of the scene's file. */
+  main: string;
+  /** The name of the object in it; None for the only one. */
+  object?: string | null;
+  /** The view to show. */
+  view?: string;
+  /** Values of parameters by name; others have their defaults. */
+  values?: Record<string, boolean | number | number[]>;
+  /** In seconds. */
+  time?: number;
+  /** The look to show it in; None for its own. */
+  look?: string | null;
+  /** How light is computed; None: as the scene says. */
+  mode?: "direct" | "path" | null;
+  /** The author's frame in pixels. */
+  size?: [number, number];
+  target?: string;
+}
+
+/** Make a file of the scene; `ready` has the formats. */
+export interface Export {
+  kind: "export";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  /** The texts by name: the scene's file and modules beside it. */
+  files: Record<string, string>;
+  /** The name of the scene's file. */
+  main: string;
+  /** The name of the object in it; None for the only one. */
+  object?: string | null;
+  /** The view to show. */
+  view?: string;
+  /** Values of parameters by name; others have their defaults. */
+  values?: Record<string, boolean | number | number[]>;
+  /** In seconds. */
+  time?: number;
+  /** The look to show it in; None for its own. */
+  look?: string | null;
+  /** How light is computed; None: as the scene says. */
+  mode?: "direct" | "path" | null;
+  /** The author's frame in pixels. */
+  size?: [number, number];
+  /** E.g. "page", "shadertoy", "isf", "wgsl". */
+  format: string;
+  /** The title of a page; None for the scene's name. */
+  title?: string | null;
+  /** Whether a page is a fragment for other pages. */
+  embed?: boolean;
+  /** A PNG in base64 that a page shows first; None for none. */
+  poster?: string | null;
+}
+
+/** Render a picture or video (local only), with `progress`. */
+export interface Render {
+  kind: "render";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  /** The texts by name: the scene's file and modules beside it. */
+  files: Record<string, string>;
+  /** The name of the scene's file. */
+  main: string;
+  /** The name of the object in it; None for the only one. */
+  object?: string | null;
+  /** The view to show. */
+  view?: string;
+  /** Values of parameters by name; others have their defaults. */
+  values?: Record<string, boolean | number | number[]>;
+  /** In seconds. */
+  time?: number;
+  /** The look to show it in; None for its own. */
+  look?: string | null;
+  /** How light is computed; None: as the scene says. */
+  mode?: "direct" | "path" | null;
+  /** The author's frame in pixels. */
+  size?: [number, number];
+  /** "png", "exr", "mp4", "webm" ... */
+  format: string;
+  samples?: number | null;
+  /** How the camera was moved. */
+  steering?: Record<string, number>;
+  /** Seconds of a video. */
+  duration?: number | null;
+  frames_per_s?: number;
+}
+
+/** Write a file (local only; the server answers). `digest` is that of the text it replaces. */
+export interface Save {
+  kind: "save";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  file: string;
+  text: string;
+  digest?: string | null;
+}
+
+/** End the worker; it answers nothing. */
+export interface Stop {
+  kind: "stop";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+}
+
+/** The first message of a worker. */
+export interface Ready {
+  kind: "ready";
+  /** The kinds of requests that it answers. */
+  abilities: string[];
+  /** By name: "distal", "python", "payload", "messages". */
+  versions: Record<string, string>;
+  /** The targets of `text`. */
+  targets: string[];
+  /** The formats of `export`. */
+  formats: string[];
+  /** The formats of `render`. */
+  render_formats: string[];
+}
+
+/** A compiled view: the payload of a player, with its program. */
+export interface SceneFound {
+  kind: "scene";
+  id: number;
+  revision: number;
+  /** Names the program: equal keys, equal programs. */
+  key: string;
+  /** None where the request was lean. */
+  literals: SourceLiteral[] | null;
+  /** None where the request was lean. */
+  shapes: ShapePlace[] | null;
+  /** The edits of the request's changes. */
+  edits: Edit[];
+  /** Milliseconds of work by stage: "load", "compile", "literals", "all". */
+  ms: Record<string, number>;
+  /** For `player.load(payload)`. It has the programs of `view` and of the camera's guide; `views` lists all views, with program -1 for those that are not there. */
+  payload: Payload;
+  /** The names of the pictures in the file, which `object` can select. */
+  objects: string[];
+  /** For `hold`: the name of the input; else None. */
+  held: string | null;
+}
+
+/** The program is the one the app has; these are its new numbers. */
+export interface NumbersFound {
+  kind: "numbers";
+  id: number;
+  revision: number;
+  /** Names the program: equal keys, equal programs. */
+  key: string;
+  /** None where the request was lean. */
+  literals: SourceLiteral[] | null;
+  /** None where the request was lean. */
+  shapes: ShapePlace[] | null;
+  /** The edits of the request's changes. */
+  edits: Edit[];
+  /** Milliseconds of work by stage: "load", "compile", "literals", "all". */
+  ms: Record<string, number>;
+  /** The new values of the program's inputs of origin "number", by their `name`: for `player.setNumber(name, value)`. */
+  numbers: Record<string, UniformEntry["default"]>;
+  /** The declarations of all parameters, as in the payload. */
+  parameters: Parameter[];
+}
+
+/** The author's code has mistakes, or the request cannot be done; at least one. */
+export interface Mistakes {
+  kind: "mistakes";
+  id: number;
+  revision: number;
+  mistakes: Mistake[];
+  literals: SourceLiteral[] | null;
+  edits: Edit[];
+}
+
+/** The result of each kind of request that is answered by `answer`. */
+export interface Results {
+  write: Written;
+  count: Counting;
+  probe: Probed;
+  check: Checked;
+  text: EmittedText;
+  export: ExportedFile;
+  render: ExportedFile;
+  save: Saved;
+}
+
+/** The result of a request; `request` is its kind. */
+export type Answer = {
+  [K in keyof Results]: { kind: "answer"; id: number; revision: number; request: K; result: Results[K] };
+}[keyof Results];
+
+/** A newer request made this one useless; it was not done. */
+export interface Dropped {
+  kind: "dropped";
+  id: number;
+  revision: number;
+}
+
+/** What the author's code printed. */
+export interface Printed {
+  kind: "printed";
+  id: number;
+  revision: number;
+  text: string;
+}
+
+/** How much of a long request is done, from 0 to 1. */
+export interface Progress {
+  kind: "progress";
+  id: number;
+  revision: number;
+  done: number;
+  label: string;
+}
+
+/** Files were changed by another program (local only; from the server): their new texts. */
+export interface Changed {
+  kind: "changed";
+  files: Record<string, string>;
+  digests: Record<string, string>;
+}
+
+/** The worker did not answer and was replaced (from the carrier); `id` is not answered. */
+export interface Restarted {
+  kind: "restarted";
+  id: number | null;
+  reason: string;
+}
+
+export type Request = Look | Hold | Write | Count | Probe | Check | Text | Export | Render | Save | Stop;
+
+export type Response = Ready | SceneFound | NumbersFound | Mistakes | Answer | Dropped | Printed | Progress | Changed | Restarted;
