@@ -54,7 +54,7 @@ _STYLE: Final = (
     "noscript{position:absolute;inset:auto 0 0;padding:.6em;text-align:center;background:Canvas}"
 )
 # A circle with a ring around it, so that no browser requests /favicon.ico.
-_ICON: Final = (
+ICON: Final = (
     "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 16 16'%3E"
     "%3Ccircle cx='8' cy='8' r='6.5' fill='none' stroke='%23888'/%3E"
     "%3Ccircle cx='8' cy='8' r='4' fill='%23e8833a'/%3E%3C/svg%3E"
@@ -83,8 +83,8 @@ def write(seen: Viewable, path: Path, options: PageOptions) -> Exported:
         seen, options, lambda name, error: omitted.update({name: error.diagnostics[0].message})
     )
     shown = poster(seen, options) if options.poster else b""
-    stage = _stage(content, shown)
-    text = _fragment(stage, player) if options.embed else _document(stage, content, player)
+    held = stage(content, shown)
+    text = _fragment(held, player) if options.embed else _document(held, content, player)
     with replacement(path) as file:
         file.write(text.encode("utf-8"))
     parts = {
@@ -140,14 +140,15 @@ def json_text(value: Any) -> str:
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 
 
-def _escaped(text: str) -> str:
+def escaped(text: str) -> str:
+    """Return a text for HTML, in elements and in quoted attributes."""
     return html.escape(text.encode("utf-8", "replace").decode("utf-8"), quote=True)
 
 
-def _stage(content: Mapping[str, Any], poster: bytes) -> str:
+def stage(content: Mapping[str, Any], poster: bytes) -> str:
     """Return the element in which the player draws, and its data."""
     width, height = content["size"]
-    description = _escaped(content["description"])
+    description = escaped(content["description"])
     shown = ""
     if poster:
         data = base64.b64encode(poster).decode("ascii")
@@ -170,23 +171,27 @@ def _stage(content: Mapping[str, Any], poster: bytes) -> str:
     )
 
 
-def _fragment(stage: str, player: PlayerScript) -> str:
-    return (
-        f"<!-- Made by distal {__version__}. Paste all of this where the picture is to stand. -->\n"
-        f'{stage}<script type="module"{_UNSEEN}>{player.text}</script>\n'
-    )
-
-
-def _document(stage: str, content: Mapping[str, Any], player: PlayerScript) -> str:
-    name, description = _escaped(content["name"]), _escaped(content["description"])
+def policy(player: PlayerScript) -> str:
+    """Return the content security policy of a page: its own scripts and no requests."""
     scripts = " ".join(f"'{digest}'" for digest in player.hashes)
-    policy = (
+    return (
         f"default-src 'none'; script-src {scripts}; style-src 'unsafe-inline'; "
         "img-src data: blob:; base-uri 'none'; form-action 'none'"
     )
+
+
+def _fragment(held: str, player: PlayerScript) -> str:
+    return (
+        f"<!-- Made by distal {__version__}. Paste all of this where the picture is to stand. -->\n"
+        f'{held}<script type="module"{_UNSEEN}>{player.text}</script>\n'
+    )
+
+
+def _document(held: str, content: Mapping[str, Any], player: PlayerScript) -> str:
+    name, description = escaped(content["name"]), escaped(content["description"])
     return (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy(player)}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         '<meta name="color-scheme" content="dark light">\n'
         f"<title>{name}</title>\n"
@@ -195,7 +200,7 @@ def _document(stage: str, content: Mapping[str, Any], player: PlayerScript) -> s
         f'<meta property="og:description" content="{description}">\n'
         '<meta property="og:type" content="website">\n'
         f'<meta name="generator" content="distal {__version__}">\n'
-        f'<link rel="icon" href="{_ICON}">\n'
+        f'<link rel="icon" href="{ICON}">\n'
         f"<style>{_STYLE}</style>\n</head>\n<body>\n<main>\n"
-        f'{stage}</main>\n<script type="module">{player.text}</script>\n</body>\n</html>\n'
+        f'{held}</main>\n<script type="module">{player.text}</script>\n</body>\n</html>\n'
     )

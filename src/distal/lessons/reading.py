@@ -15,7 +15,9 @@ from typing import Any, Final
 
 from distal.diagnostics import CompileError, LoadError
 from distal.lessons.document import (
+    GOAL_WITHIN,
     LAYERS,
+    LEAST_DIFFERENCE,
     Goal,
     Head,
     Layers,
@@ -247,7 +249,7 @@ class _Reader:
         if not values and not view:
             hint = 'write values="max_steps=16" or view="steps"'
             raise self.fail(block.line, "this experiment changes nothing", hint)
-        least = self.number(block, "least", Try.least)
+        least = self.number(block, "least", LEAST_DIFFERENCE)
         self.parts.append(Try(block.line, title, values, block.text, "", view, least))
 
     def read_watch(self, block: _Block) -> None:
@@ -292,7 +294,7 @@ class _Reader:
 
     def read_goal(self, block: _Block) -> None:
         values = self.values(block.attributes["values"], block.line)
-        within = self.number(block, "within", Goal.within)
+        within = self.number(block, "within", GOAL_WITHIN)
         self.parts.append(Goal(block.line, block.attributes["file"], values, block.text, within))
 
 
