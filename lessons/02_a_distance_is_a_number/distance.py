@@ -19,7 +19,9 @@ from distal.lang import (
 )
 
 radius = slider("Circle radius", 0.5, low=0.1, high=1.0)
-joined = choice("Joined by", ["union", "intersection", "difference"], help="min, max, or max(a, -b).")
+joined = choice(
+    "Joined by", ["union", "intersection", "difference"], help="min, max, or max(a, -b)."
+)
 offset = slider("Take off", 0.0, low=-0.3, high=0.3, help="A number taken off every distance.")
 stretch = slider("Stretch", 1.0, low=0.4, high=2.5, help="The whole plane, stretched sideways.")
 

@@ -4,7 +4,9 @@ from distal.lang import (
     Frame,
     abs,
     atan2,
+    clamp,
     cos,
+    dot,
     exp,
     func,
     image,
@@ -18,8 +20,6 @@ from distal.lang import (
     smoothstep,
     vec2,
     vec3,
-    dot,
-    clamp,
 )
 
 steps = integer("Steps", 12, low=1, high=40, help="How many steps the ray may take.")

@@ -6,6 +6,7 @@ Input: Markdown. Output: HTML. Raw HTML in the text stays text.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Final
 
 from markdown_it import MarkdownIt
@@ -19,7 +20,7 @@ _LEXER: Final = PythonLexer()
 
 def python(code: str) -> str:
     """Return Python source as HTML, with a class for each kind of token."""
-    return highlight(code, _LEXER, _FORMATTER).rstrip("\n")
+    return str(highlight(code, _LEXER, _FORMATTER)).rstrip("\n")
 
 
 def _colored(code: str, language: str, _: str) -> str:
@@ -53,7 +54,7 @@ def sections(text: str) -> list[Section]:
     starts = [i for i, token in enumerate(tokens) if token.type == "heading_open"]
     cuts = [0, *(i for i in starts if tokens[i].tag == "h2"), len(tokens)]
     made = []
-    for first, last in zip(cuts, cuts[1:], strict=False):
+    for first, last in pairwise(cuts):
         shown = _MARKDOWN.renderer.render(tokens[first:last], _MARKDOWN.options, {})
         made.append(Section([str(shown).strip()] if last > first else []))
     return made

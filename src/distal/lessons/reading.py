@@ -235,8 +235,8 @@ class _Reader:
             number = float(text)
         except ValueError:
             number = -1.0
-        if not 0.0 <= number < 1.0:
-            message = f"'{key}' is a number from 0 to below 1, not '{text:.20}'"
+        if not 0.0 < number < 1.0:
+            message = f"'{key}' is a number between 0 and 1, not '{text:.20}'"
             raise self.fail(block.line, message, f'write {key}="{default}"')
         return number
 
