@@ -150,7 +150,7 @@ STAGED = {
     ),
     'Text.\n:::try title="A" values="radius=5"\n:::\n:::watch\nX.\n:::\n': (
         8,
-        "'radius': 'Radius' is between 0.1 and 0.9, not 5",
+        "'radius': 'Radius' lies between 0.1 and 0.9, not 5",
         "write a value in range",
     ),
     'Text.\n:::try title="A" values="radius=0.5"\n:::\n': (

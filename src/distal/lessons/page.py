@@ -1,7 +1,7 @@
 """Write a lesson as one page that needs neither a compiler nor a network.
 
-Input: a lesson's file. Output: HTML with the text, the player, all programs and stills. What moves is
-``web/src/lesson/``; each button carries its values as data.
+Input: a lesson's file. Output: HTML with the text, the player, all programs and stills. The page's
+script is made from ``web/src/lesson/``; each button carries its values as data.
 """
 
 from __future__ import annotations
