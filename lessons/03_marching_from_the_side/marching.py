@@ -65,7 +65,6 @@ def marching(frame: Frame) -> vec3:
     color = vec3(0.42, 0.47, 0.55) if d < 0.0 else color
 
     t = 0.0
-    count = 0
     hit = False
     for i in range(steps):
         at = EYE + direction * t
@@ -78,7 +77,6 @@ def marching(frame: Frame) -> vec3:
         color = mix(color, vec3(0.35, 0.75, 0.95) * shade, 0.85 * ring)
         color = mix(color, vec3(0.98, 0.85, 0.45), line(length(p - at) - 0.014, scale))
         t += factor * safe
-        count = i + 1
         if t > FAR:
             break
     along = clamp(dot(p - EYE, direction), 0.0, t)

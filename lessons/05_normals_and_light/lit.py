@@ -1,4 +1,4 @@
-"""A sphere on a plane in the light: a normal from six distances, Lambert's cosine, ambient light."""
+"""A sphere on a plane in the light: a normal from six distances and Lambert's cosine."""
 
 from distal.lang import (
     Frame,
@@ -20,7 +20,7 @@ around = slider("Light around", 2.7, low=0.0, high=6.28, help="The direction of 
 up = slider("Light up", 0.7, low=0.0, high=1.57, help="How high the light stands.")
 ambient = slider("Ambient", 0.15, low=0.0, high=1.0, help="Light from everywhere.")
 spread = slider(
-    "Spread", 0.001, low=0.001, high=1.0, log=True, help="How far apart the samples are."
+    "Spread", 0.001, low=0.001, high=1.0, log=True, help="Between two samples."
 )
 
 FAR = 100.0

@@ -102,4 +102,5 @@ def materials(frame: Frame) -> vec3:
         return vec3(0.05, 0.05, 0.12)
     normal = surface_normal(eye + direction * t)
     diffuse = max(dot(normal, normalize(vec3(1.0, 1.2, -0.8))), 0.0)
-    return albedo((material + shift) % 4) * (diffuse + 0.12)
+    shown = (material + shift) % 4 if material >= 0 else GROUND
+    return albedo(shown) * (diffuse + 0.12)

@@ -56,7 +56,7 @@ def surface_normal(p: vec3, time: float) -> vec3:
 @func
 def march(origin: vec3, direction: vec3, time: float) -> float:
     t = 0.0
-    for _ in range(80):
+    for _ in range(200):
         d = scene(origin + direction * t, time)
         if d < 0.001 or t > FAR:
             break
