@@ -19,9 +19,7 @@ from distal.lang import (
 around = slider("Light around", 2.7, low=0.0, high=6.28, help="The direction of the light.")
 up = slider("Light up", 0.7, low=0.0, high=1.57, help="How high the light stands.")
 ambient = slider("Ambient", 0.15, low=0.0, high=1.0, help="Light from everywhere.")
-spread = slider(
-    "Spread", 0.001, low=0.001, high=1.0, log=True, help="Between two samples."
-)
+spread = slider("Spread", 0.001, low=0.001, high=1.0, log=True, help="Between two samples.")
 
 FAR = 100.0
 

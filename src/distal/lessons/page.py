@@ -263,7 +263,8 @@ def _goal(part: Goal, made: StagedLesson) -> str:
         f'<div class="goal" data-within="{part.within:g}">{markdown(part.text)}\n'
         f'<div class="pair"><figure><img class="wanted" src="{picture}" width="{width}"'
         f' height="{height}" alt="The picture to reach"><figcaption>Goal</figcaption></figure>'
-        f'<figure><img class="yours" src="{yours}" width="{width}" height="{height}" alt="Your picture"><figcaption>Yours</figcaption></figure>'
+        f'<figure><img class="yours" src="{yours}" width="{width}" height="{height}"'
+        ' alt="Your picture"><figcaption>Yours</figcaption></figure>'
         '</div><p class="difference" role="status"></p>'
         f'<p><button type="button" class="solve"{_data(made.values[part.line])}>'
         "Show the solution</button></p></div>"
