@@ -1,11 +1,12 @@
-// Builds the player: src/main.ts -> one minified ES module, and another one that also traces paths.
+// Builds the player: src/main.ts -> one minified ES module, and another one that also traces paths;
+// and the script and style sheet of a lesson's page, whose script has the player inside.
 //
-//   node build.mjs [FOLDER]     default: ../src/distal/export
+//   node build.mjs [FOLDER]     default: ../src/distal/export and ../src/distal/lessons
 //
 // The output is committed, so that nobody needs Node to export a page; a test builds it again and
 // compares the bytes. Nothing of this machine goes in: no paths, no dates, no source map.
 
-import { readFile } from "node:fs/promises";
+import { readFile, writeFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
 import { argv } from "node:process";
 import { fileURLToPath } from "node:url";
@@ -33,11 +34,16 @@ const styles = {
 };
 
 const folder = argv[2] ?? join(here, "../src/distal/export");
-for (const [name, paths] of [["player.js", "false"], ["path_player.js", "true"]]) {
+const lessons = argv[2] ?? join(here, "../src/distal/lessons");
+for (const [source, file, paths] of [
+  ["src/main.ts", join(folder, "player.js"), "false"],
+  ["src/main.ts", join(folder, "path_player.js"), "true"],
+  ["src/lesson/main.ts", join(lessons, "lesson.js"), "false"],
+]) {
   await build({
     absWorkingDir: here,
-    entryPoints: ["src/main.ts"],
-    outfile: join(folder, name),
+    entryPoints: [source],
+    outfile: file,
     define: { PATHS: paths },
     bundle: true,
     minify: true,
@@ -49,3 +55,6 @@ for (const [name, paths] of [["player.js", "false"], ["path_player.js", "true"]]
     logLevel: "warning",
   });
 }
+const sheet = await readFile(join(here, "src/lesson/lesson.css"), "utf8");
+const { code } = await transform(sheet, { loader: "css", minify: true, target: "chrome123" });
+await writeFile(join(lessons, "lesson.css"), code);

@@ -108,6 +108,8 @@ def export(
     # The names in ``flags`` are fields of PageOptions, which checks the values.
     options: ExportOptions = {"view": view or "color", "time": read_time(at)}
     options.update(cast("ExportOptions", dict(given.values())))
+    if scene.endswith(".md"):
+        return _write_lesson(scene, output, target, [*given, *(["--set"] if assignments else [])])
     _check(scene, output, target, {flag: name for flag, (name, _) in given.items()})
     _write(scene, output, target, assignments or [], look, options)
 
@@ -139,6 +141,23 @@ def _check(scene: str, output: Path, target: str | None, given: Mapping[str, str
     check_destination(output)
     if name == "html" and "--no-poster" not in given:
         check_processor()
+
+
+def _write_lesson(scene: str, output: Path, target: str | None, given: list[str]) -> None:
+    """Write the page of a lesson, whose file says everything else."""
+    from distal.images.atomic_files import check_destination
+    from distal.lessons.page import write
+
+    if target not in (None, "html") or output.suffix.lower() not in (".html", ".htm"):
+        raise UsageError(f"a lesson is written as a page: -o {output.with_suffix('.html').name}")
+    if given:
+        raise UsageError(f"{given[0]} is for scenes; a lesson's file has its own settings")
+    check_destination(output)
+    check_processor()
+    made = write(scene, output)
+    for view, reason in made.omitted.items():
+        say(f"warning: the view '{view}' is left out: {reason}")
+    say(made)
 
 
 def _write(

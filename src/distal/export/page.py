@@ -59,7 +59,7 @@ _STYLE: Final = (
     "noscript{position:absolute;inset:auto 0 0;padding:.6em;text-align:center;background:Canvas}"
 )
 # A circle with a ring around it, so that no browser requests /favicon.ico.
-_ICON: Final = (
+ICON: Final = (
     "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 16 16'%3E"
     "%3Ccircle cx='8' cy='8' r='6.5' fill='none' stroke='%23888'/%3E"
     "%3Ccircle cx='8' cy='8' r='4' fill='%23e8833a'/%3E%3C/svg%3E"
@@ -122,15 +122,13 @@ def page(seen: Viewable, options: PageOptions, shown: bytes, media_type: str = "
     content = payload(
         seen, options, lambda name, error: omitted.update({name: error.diagnostics[0].message})
     )
-    encoded = base64.b64encode(shown).decode("ascii")
-    source = f"data:image/{media_type};base64,{encoded}" if shown else ""
-    stage = _stage(content, source)
-    text = _fragment(stage, player) if options.embed else _document(stage, content, player)
+    held = stage(content, shown, media_type)
+    text = _fragment(held, player) if options.embed else _document(held, content, player)
     parts = {
         "player": len(player.text),
         "shaders": len(json.dumps(content["programs"])),
         "textures": len(json.dumps(content["resources"])) if content["resources"] else 0,
-        "poster": len(encoded),
+        "poster": len(base64.b64encode(shown)),
     }
     return Page(text, parts, omitted)
 
@@ -179,19 +177,27 @@ def json_text(value: Any) -> str:
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 
 
-def _escaped(text: str) -> str:
+def escaped(text: str) -> str:
+    """Return a text for HTML, in elements and in quoted attributes."""
     return html.escape(text.encode("utf-8", "replace").decode("utf-8"), quote=True)
 
 
-def _stage(content: Mapping[str, Any], poster: str) -> str:
-    """Return the element in which the player draws, and its data; ``poster`` is a data URL."""
+def stage(content: Mapping[str, Any], poster: bytes, media_type: str = "webp") -> str:
+    """Return the element in which the player draws, and its data.
+
+    Args:
+        content: The payload.
+        poster: The picture before the first frame; empty for none.
+        media_type: Its format.
+    """
     width, height = content["size"]
-    description = _escaped(content["description"])
+    description = escaped(content["description"])
     shown = ""
     if poster:
+        encoded = base64.b64encode(poster).decode("ascii")
         fill = ' style="display:block;width:100%;height:100%;object-fit:contain"'
         shown = (
-            f'<img src="{poster}" width="{width}" height="{height}"'
+            f'<img src="data:image/{media_type};base64,{encoded}" width="{width}" height="{height}"'
             f' alt="{description}"{fill if content["embed"] else ""}>'
         )
     own = unseen = ""
@@ -208,23 +214,27 @@ def _stage(content: Mapping[str, Any], poster: str) -> str:
     )
 
 
-def _fragment(stage: str, player: PlayerScript) -> str:
-    return (
-        f"<!-- Made by distal {__version__}. Paste all of this where the picture is to stand. -->\n"
-        f'{stage}<script type="module"{_UNSEEN}>{player.text}</script>\n'
-    )
-
-
-def _document(stage: str, content: Mapping[str, Any], player: PlayerScript) -> str:
-    name, description = _escaped(content["name"]), _escaped(content["description"])
+def policy(player: PlayerScript) -> str:
+    """Return the content security policy of a page: its own scripts and no requests."""
     scripts = " ".join(f"'{digest}'" for digest in player.hashes)
-    policy = (
+    return (
         f"default-src 'none'; script-src {scripts}; style-src 'unsafe-inline'; "
         "img-src data: blob:; base-uri 'none'; form-action 'none'"
     )
+
+
+def _fragment(held: str, player: PlayerScript) -> str:
+    return (
+        f"<!-- Made by distal {__version__}. Paste all of this where the picture is to stand. -->\n"
+        f'{held}<script type="module"{_UNSEEN}>{player.text}</script>\n'
+    )
+
+
+def _document(held: str, content: Mapping[str, Any], player: PlayerScript) -> str:
+    name, description = escaped(content["name"]), escaped(content["description"])
     return (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy(player)}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         '<meta name="color-scheme" content="dark light">\n'
         f"<title>{name}</title>\n"
@@ -233,7 +243,7 @@ def _document(stage: str, content: Mapping[str, Any], player: PlayerScript) -> s
         f'<meta property="og:description" content="{description}">\n'
         '<meta property="og:type" content="website">\n'
         f'<meta name="generator" content="distal {__version__}">\n'
-        f'<link rel="icon" href="{_ICON}">\n'
+        f'<link rel="icon" href="{ICON}">\n'
         f"<style>{_STYLE}</style>\n</head>\n<body>\n<main>\n"
-        f'{stage}</main>\n<script type="module">{player.text}</script>\n</body>\n</html>\n'
+        f'{held}</main>\n<script type="module">{player.text}</script>\n</body>\n</html>\n'
     )
