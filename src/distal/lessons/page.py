@@ -28,7 +28,7 @@ from distal.images.png import quantise
 from distal.lang.parameter_values import Value
 from distal.lang.render_options import RenderOptions
 from distal.lessons.document import LAYERS, Goal, Layers, Phrases, Prose, Try
-from distal.lessons.prose import Section, inline, markdown, python, sections
+from distal.lessons.prose import Section, code_block, inline, markdown, python, sections
 from distal.lessons.reading import read
 from distal.lessons.scenes import StagedLesson, folded, staged
 from distal.scene.viewing.viewable import Viewable
@@ -276,10 +276,7 @@ def _code(made: StagedLesson) -> str:
     name = Path(made.seen.file).name if made.seen.file else "scene.py"
     parts = []
     for text, first, is_shown in folded(made.source, made.lesson.head.code):
-        block = (
-            f'<pre tabindex="0" aria-label="Code from line {first}">'
-            f"<code>{python(text)}</code></pre>"
-        )
+        block = code_block(python(text), label=f"Code from line {first}")
         if is_shown:
             parts.append(block)
         else:

@@ -6,6 +6,7 @@ Input: Markdown. Output: HTML. Raw HTML in the text stays text.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from html import escape
 from itertools import pairwise
 from typing import Final
 
@@ -23,12 +24,17 @@ def python(code: str) -> str:
     return str(highlight(code, _LEXER, _FORMATTER)).rstrip("\n")
 
 
-def _colored(code: str, language: str, _: str) -> str:
-    # Markdown-it escapes the code itself where this returns nothing.
-    return python(code) if language == "python" else ""
+def code_block(code: str, *, label: str = "") -> str:
+    """Return a block of code that the keyboard can scroll; ``code`` is HTML."""
+    name = f' role="region" aria-label="{label}"' if label else ""
+    return f'<pre tabindex="0"{name}><code>{code}</code></pre>'
 
 
-_MARKDOWN: Final = MarkdownIt("commonmark", {"html": False, "highlight": _colored}).enable("table")
+def _block(code: str, language: str, _: str) -> str:
+    return code_block(python(code) if language == "python" else escape(code.rstrip("\n")))
+
+
+_MARKDOWN: Final = MarkdownIt("commonmark", {"html": False, "highlight": _block}).enable("table")
 
 
 def markdown(text: str) -> str:
