@@ -85,7 +85,7 @@ def interface(record: type) -> str:
     hints = messages.field_types(record)
     for made in fields(record):
         has_default = made.default is not MISSING or made.default_factory is not MISSING
-        optional = has_default and issubclass(record, messages.Request | messages.Change)
+        optional = has_default and issubclass(record, messages.AppRequest | messages.Change)
         if made.name in about:
             lines.append(documentation(about[made.name], "  "))
         lines.append(f"  {made.name}{'?' if optional else ''}: {written(hints[made.name])};\n")

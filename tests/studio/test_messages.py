@@ -23,8 +23,10 @@ LOOK = {
     "changes": [{"what": "literal", "file": "scene.py", "start": 4, "end": 5, "value": 2}],
 }
 SAMPLES = [
-    messages.Look(id=1, revision=1, files={"a.py": ""}, main="a.py", size=(8, 4)),
-    messages.Hold(id=1, revision=1, files={"a.py": ""}, main="a.py", file="a.py", start=0, end=2),
+    messages.LookRequest(id=1, revision=1, files={"a.py": ""}, main="a.py", size=(8, 4)),
+    messages.HoldRequest(
+        id=1, revision=1, files={"a.py": ""}, main="a.py", file="a.py", start=0, end=2
+    ),
     messages.Ready(abilities=("look",), versions={"distal": "1"}),
     messages.SceneFound(
         id=1,
@@ -61,7 +63,7 @@ def test_what_is_written_is_read(message: messages.Message) -> None:
 
 def test_a_request_may_leave_out_what_has_a_default() -> None:
     look = parsed(json.dumps(LOOK))
-    assert isinstance(look, messages.Look)
+    assert isinstance(look, messages.LookRequest)
     assert look.view == "color" and look.size == (640, 480) and not look.lean
     assert look.values["Color"] == (1.0, 0.5, 0.0) and look.values["On"] is True
     assert look.changes[0].value == 2.0

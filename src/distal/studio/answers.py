@@ -22,14 +22,14 @@ from distal.studio.looks import Looks, known_values, mistake_at
 from distal.studio.messages import (
     Checked,
     EmittedText,
-    Export,
     ExportedFile,
-    Probe,
-    Probed,
+    ExportRequest,
+    ProbeRequest,
+    ProbeResult,
     Result,
     SourceRequest,
-    Text,
-    Write,
+    TextRequest,
+    WriteRequest,
     Written,
 )
 
@@ -39,20 +39,20 @@ NEEDS_NUMPY: Final = frozenset({"check", "probe"})
 
 
 @dataclass(frozen=True, slots=True)
-class Work:
+class AnswerWork:
     """A request, and what loads its scene."""
 
     request: SourceRequest
     looks: Looks
 
 
-def _write(work: Work) -> Result:
-    request = cast(Write, work.request)
+def _write(work: AnswerWork) -> Result:
+    request = cast(WriteRequest, work.request)
     return Written(edits=edits_of(request.files, request.main, request.changes))
 
 
-def _text(work: Work) -> Result:
-    request = cast(Text, work.request)
+def _text(work: AnswerWork) -> Result:
+    request = cast(TextRequest, work.request)
     _, seen = work.looks.load(request, request.files)
     artifact = compile_text(seen.image(request.view, encoded=True), target=request.target)
     files = tuple(request.files)
@@ -80,8 +80,8 @@ def _language(target: str) -> Literal["glsl", "wgsl", "llvm", "ir"]:
     return "wgsl" if target.startswith("wgsl") else "glsl"
 
 
-def _export(work: Work) -> Result:
-    request = cast(Export, work.request)
+def _export(work: AnswerWork) -> Result:
+    request = cast(ExportRequest, work.request)
     _, seen = work.looks.load(request, request.files)
     params = known_values(seen.parameters, request.values)
     stem = PurePath(request.main).stem
@@ -116,7 +116,7 @@ def _export(work: Work) -> Result:
     )
 
 
-def _check(work: Work) -> Result:
+def _check(work: AnswerWork) -> Result:
     request = work.request
     loaded, seen = work.looks.load(request, request.files)
     subject = seen.scene.subject if seen.scene is not None else loaded.picture
@@ -132,8 +132,8 @@ def _check(work: Work) -> Result:
     )
 
 
-def _probe(work: Work) -> Result:
-    request = cast(Probe, work.request)
+def _probe(work: AnswerWork) -> Result:
+    request = cast(ProbeRequest, work.request)
     _, seen = work.looks.load(request, request.files)
     if seen.scene is None:
         raise ValueError("pixels of scenes and shapes are probed; this is an @image")
@@ -141,11 +141,11 @@ def _probe(work: Work) -> Result:
     pixel = (int(request.x), int(request.y))
     found = probing.probe(seen.scene, pixel, request.size, values, request.time)
     if not found.hit:
-        return Probed(numbers={"steps": float(found.seen.steps)})
+        return ProbeResult(numbers={"steps": float(found.seen.steps)})
     shape = found.path[-1]
     span = shape.place
     known = span is not None and PurePath(span.file).name in request.files
-    return Probed(
+    return ProbeResult(
         shape=shape.name,
         material=str((found.as_json()["material"] or {}).get("name") or ""),
         file=PurePath(span.file).name if known else None,
@@ -160,7 +160,7 @@ _SEVERITIES: Final[Mapping[str, Literal["error", "warning", "note"]]] = {
     "error": "error",
     "warning": "warning",
 }
-ANSWERS: Final[Mapping[str, Callable[[Work], Result]]] = {
+ANSWERS: Final[Mapping[str, Callable[[AnswerWork], Result]]] = {
     "write": _write,
     "probe": _probe,
     "check": _check,

@@ -25,8 +25,8 @@ from distal.studio.edits import applied
 from distal.studio.literals import find_literals, literal_at
 from distal.studio.messages import (
     Edit,
-    Hold,
-    Look,
+    HoldRequest,
+    LookRequest,
     Mistake,
     NumbersFound,
     SceneFound,
@@ -35,7 +35,7 @@ from distal.studio.messages import (
     SourceRequest,
 )
 from distal.studio.places import column, shapes_of
-from distal.studio.programs import Programs, key_of, numbers_of
+from distal.studio.programs import KeptPrograms, key_of, numbers_of
 
 HELD: Final = "held_value"
 # A held number has a slider from so many times below its size to as many above.
@@ -52,7 +52,7 @@ class Looks:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._written: dict[str, str] = {}
-        self._programs = Programs()
+        self._programs = KeptPrograms()
 
     def load(
         self,
@@ -100,7 +100,7 @@ class Looks:
 
     def look(
         self,
-        request: Look,
+        request: LookRequest,
         files: Mapping[str, str],
         edits: tuple[Edit, ...],
         literals: tuple[SourceLiteral, ...] | None,
@@ -142,7 +142,7 @@ class Looks:
             ms=_times(begin, loaded_at),
         )
 
-    def hold(self, request: Hold, begin: float) -> SceneFound:
+    def hold(self, request: HoldRequest, begin: float) -> SceneFound:
         """Return the program in which a number of the text is an input.
 
         Raises:

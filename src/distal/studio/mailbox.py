@@ -5,30 +5,30 @@ Input: requests in the order in which they arrive. Output: the next one to do, a
 
 from __future__ import annotations
 
-from distal.studio.messages import Look, Request
+from distal.studio.messages import AppRequest, LookRequest
 
 
 class Mailbox:
     """The requests that wait, in the order in which they are done."""
 
     def __init__(self) -> None:
-        self._waiting: list[Request] = []
+        self._waiting: list[AppRequest] = []
 
-    def put(self, request: Request) -> list[Request]:
+    def put(self, request: AppRequest) -> list[AppRequest]:
         """Add a request; return those that it makes useless."""
         dropped = [w for w in self._waiting if _is_useless(w, request)]
         self._waiting = [w for w in self._waiting if w not in dropped]
         self._waiting.append(request)
         return dropped
 
-    def take(self) -> Request | None:
+    def take(self) -> AppRequest | None:
         """Remove and return the request to do next; None if none waits."""
         return self._waiting.pop(0) if self._waiting else None
 
 
-def _is_useless(waiting: Request, newer: Request) -> bool:
+def _is_useless(waiting: AppRequest, newer: AppRequest) -> bool:
     if waiting.kind in ("save", "stop"):
         return False
     if waiting.kind == newer.kind:
         return True
-    return isinstance(newer, Look) and waiting.revision < newer.revision
+    return isinstance(newer, LookRequest) and waiting.revision < newer.revision

@@ -175,7 +175,7 @@ class Counting:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Probed:
+class ProbeResult:
     """What a pixel shows; ``shape`` is empty where it is the background.
 
     Attributes:
@@ -229,7 +229,7 @@ class Saved:
 
 
 Result: TypeAlias = (
-    Written | Counting | Probed | EmittedText | ExportedFile | Checked | Saved
+    Written | Counting | ProbeResult | EmittedText | ExportedFile | Checked | Saved
 )  # in TypeScript, the type that `Results` has for the kind of the request
 
 
@@ -237,7 +237,7 @@ Result: TypeAlias = (
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Request:
+class AppRequest:
     """What all requests have.
 
     Attributes:
@@ -252,7 +252,7 @@ class Request:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SourceRequest(Request):
+class SourceRequest(AppRequest):
     """A request about a scene.
 
     Attributes:
@@ -279,7 +279,7 @@ class SourceRequest(Request):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Look(SourceRequest):
+class LookRequest(SourceRequest):
     """Compile a scene's view. Answered by ``scene``, ``numbers`` or ``mistakes``.
 
     Attributes:
@@ -296,7 +296,7 @@ class Look(SourceRequest):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Hold(SourceRequest):
+class HoldRequest(SourceRequest):
     """Make the number of a ``@func`` an input of the program. Answered as a ``look``.
 
     The ``scene`` that answers has ``held``: the name of the input, to be set by
@@ -311,7 +311,7 @@ class Hold(SourceRequest):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Write(SourceRequest):
+class WriteRequest(SourceRequest):
     """Write changes into the source: Keep of a slider, a literal or the camera."""
 
     kind: ClassVar[str] = "write"
@@ -320,7 +320,7 @@ class Write(SourceRequest):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Count(SourceRequest):
+class CountRequest(SourceRequest):
     """Give the program that counts how often each statement runs."""
 
     kind: ClassVar[str] = "count"
@@ -328,18 +328,18 @@ class Count(SourceRequest):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Probe(SourceRequest):
+class ProbeRequest(SourceRequest):
     """Tell what the pixel at ``x``, ``y`` shows (from the top left), with the camera as moved."""
 
     kind: ClassVar[str] = "probe"
-    result: ClassVar[type | None] = Probed
+    result: ClassVar[type | None] = ProbeResult
     x: float
     y: float
     steering: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Check(SourceRequest):
+class CheckRequest(SourceRequest):
     """Validate the scene as ``distal check`` does."""
 
     kind: ClassVar[str] = "check"
@@ -347,7 +347,7 @@ class Check(SourceRequest):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Text(SourceRequest):
+class TextRequest(SourceRequest):
     """Give the emitted text of a target, as ``distal compile`` prints it."""
 
     kind: ClassVar[str] = "text"
@@ -356,7 +356,7 @@ class Text(SourceRequest):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Export(SourceRequest):
+class ExportRequest(SourceRequest):
     """Make a file of the scene; ``ready`` has the formats.
 
     Attributes:
@@ -375,7 +375,7 @@ class Export(SourceRequest):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Render(SourceRequest):
+class RenderRequest(SourceRequest):
     """Render a picture or video (local only), with ``progress``.
 
     Attributes:
@@ -394,7 +394,7 @@ class Render(SourceRequest):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Save(Request):
+class SaveRequest(AppRequest):
     """Write a file (local only; the server answers). ``digest`` is that of the text it replaces."""
 
     kind: ClassVar[str] = "save"
@@ -405,7 +405,7 @@ class Save(Request):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Stop(Request):
+class StopRequest(AppRequest):
     """End the worker; it answers nothing."""
 
     kind: ClassVar[str] = "stop"
@@ -435,7 +435,7 @@ class Ready:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Response:
+class Reply:
     """What all answers have: the numbers of the request."""
 
     kind: ClassVar[str]
@@ -444,7 +444,7 @@ class Response:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Found(Response):
+class Found(Reply):
     """What a compiled scene has apart from its program.
 
     Attributes:
@@ -495,7 +495,7 @@ class NumbersFound(Found):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Mistakes(Response):
+class Mistakes(Reply):
     """The author's code has mistakes, or the request cannot be done; at least one."""
 
     kind: ClassVar[str] = "mistakes"
@@ -505,7 +505,7 @@ class Mistakes(Response):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Answer(Response):
+class Answer(Reply):
     """The result of a request; ``request`` is its kind."""
 
     kind: ClassVar[str] = "answer"
@@ -514,14 +514,14 @@ class Answer(Response):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Dropped(Response):
+class Dropped(Reply):
     """A newer request made this one useless; it was not done."""
 
     kind: ClassVar[str] = "dropped"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Printed(Response):
+class Printed(Reply):
     """What the author's code printed."""
 
     kind: ClassVar[str] = "printed"
@@ -529,7 +529,7 @@ class Printed(Response):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Progress(Response):
+class Progress(Reply):
     """How much of a long request is done, from 0 to 1."""
 
     kind: ClassVar[str] = "progress"
@@ -555,23 +555,35 @@ class Restarted:
     reason: str
 
 
-REQUESTS: Final = (Look, Hold, Write, Count, Probe, Check, Text, Export, Render, Save, Stop)
+REQUESTS: Final = (
+    LookRequest,
+    HoldRequest,
+    WriteRequest,
+    CountRequest,
+    ProbeRequest,
+    CheckRequest,
+    TextRequest,
+    ExportRequest,
+    RenderRequest,
+    SaveRequest,
+    StopRequest,
+)
 RESPONSES: Final = (
     *(Ready, SceneFound, NumbersFound, Mistakes, Answer, Dropped),
     *(Printed, Progress, Changed, Restarted),
 )
 Message: TypeAlias = (
-    Look
-    | Hold
-    | Write
-    | Count
-    | Probe
-    | Check
-    | Text
-    | Export
-    | Render
-    | Save
-    | Stop
+    LookRequest
+    | HoldRequest
+    | WriteRequest
+    | CountRequest
+    | ProbeRequest
+    | CheckRequest
+    | TextRequest
+    | ExportRequest
+    | RenderRequest
+    | SaveRequest
+    | StopRequest
     | Ready
     | SceneFound
     | NumbersFound

@@ -22,7 +22,7 @@ from distal.lang.functions import Func
 PROGRAMS_KEPT: Final = 64
 
 
-class Programs:
+class KeptPrograms:
     """The programs that were compiled last."""
 
     def __init__(self) -> None:

@@ -25,7 +25,7 @@ from distal.compiler.driver import COMPILE_TARGETS
 from distal.diagnostics import CompileError, DeviceError, LoadError
 from distal.export.payload import FORMAT
 from distal.packages import explained, is_installed
-from distal.studio.answers import ANSWERS, NEEDS_NUMPY, Work
+from distal.studio.answers import ANSWERS, NEEDS_NUMPY, AnswerWork
 from distal.studio.edits import EditError, applied, edits_of
 from distal.studio.literals import LiteralError, find_literals
 from distal.studio.looks import Looks, mistakes_of
@@ -33,20 +33,20 @@ from distal.studio.mailbox import Mailbox
 from distal.studio.messages import (
     LONGEST_PRINTED,
     Answer,
+    AppRequest,
     Dropped,
     Edit,
-    Hold,
-    Look,
+    HoldRequest,
+    LookRequest,
     Message,
     MessageError,
     Mistake,
     Mistakes,
     Printed,
     Ready,
-    Request,
     SourceLiteral,
     SourceRequest,
-    Stop,
+    StopRequest,
     encoded,
     parsed,
 )
@@ -57,7 +57,7 @@ _NAMED: Final = (CompileError, LoadError, DeviceError)
 _REFUSED: Final = (EditError, LiteralError, ValueError, TypeError, OSError)
 
 
-class Worker:
+class StudioWorker:
     """Answers requests. It keeps compiled programs between them."""
 
     def __init__(self, folder: Path) -> None:
@@ -80,7 +80,7 @@ class Worker:
             formats=("page", *TEXT_TARGETS),
         )
 
-    def answers(self, request: Request) -> list[Message]:
+    def answers(self, request: AppRequest) -> list[Message]:
         """Return the messages that answer a request: what was printed, then the answer."""
         printed = io.StringIO()
         with _captured(printed):
@@ -93,7 +93,7 @@ class Worker:
             first = [Printed(id=request.id, revision=request.revision, text=kept + more)]
         return [*first, answer]
 
-    def _answer(self, request: Request) -> Message:
+    def _answer(self, request: AppRequest) -> Message:
         begin = time.perf_counter()
         number: dict[str, Any] = {"id": request.id, "revision": request.revision}
         if not isinstance(request, SourceRequest) or request.kind not in self.ready().abilities:
@@ -103,15 +103,15 @@ class Worker:
         try:
             if request.main not in request.files:
                 raise EditError(f"there is no file '{request.main[:80]}' among the texts")
-            if isinstance(request, Look):
+            if isinstance(request, LookRequest):
                 edits = edits_of(request.files, request.main, request.changes)
                 files = applied(request.files, edits)
                 if not request.lean:
                     literals = tuple(x for f, t in files.items() for x in find_literals(f, t))
                 return self._looks.look(request, files, edits, literals, begin)
-            if isinstance(request, Hold):
+            if isinstance(request, HoldRequest):
                 return self._looks.hold(request, begin)
-            result = ANSWERS[request.kind](Work(request, self._looks))
+            result = ANSWERS[request.kind](AnswerWork(request, self._looks))
             return Answer(**number, request=request.kind, result=result)
         except Exception as error:
             found = _mistakes_of(error, request)
@@ -142,7 +142,7 @@ def _captured(into: IO[str]) -> Iterator[None]:
         yield
 
 
-def serve(worker: Worker, lines: IO[str], send: Send) -> None:
+def serve(worker: StudioWorker, lines: IO[str], send: Send) -> None:
     """Answer requests until ``stop`` or the end of the input.
 
     Args:
@@ -183,9 +183,9 @@ def _received(line: str | None, mailbox: Mailbox, send: Send) -> bool:
     except MessageError as error:
         send(_refused({"id": -1, "revision": -1}, str(error)))
         return True
-    if isinstance(request, Stop):
+    if isinstance(request, StopRequest):
         return False
-    if not isinstance(request, Request):
+    if not isinstance(request, AppRequest):
         send(_refused({"id": -1, "revision": -1}, f"'{request.kind}' is not a request"))
         return True
     for dropped in mailbox.put(request):
@@ -215,7 +215,7 @@ def main() -> None:
         messages.flush()
 
     with tempfile.TemporaryDirectory(prefix="distal_studio_") as folder:
-        serve(Worker(Path(folder)), requests, send)
+        serve(StudioWorker(Path(folder)), requests, send)
 
 
 if __name__ == "__main__":

@@ -110,7 +110,7 @@ export interface Counting {
 }
 
 /** What a pixel shows; `shape` is empty where it is the background. */
-export interface Probed {
+export interface ProbeResult {
   shape: string;
   material: string;
   file: string | null;
@@ -151,7 +151,7 @@ export interface ExportedFile {
 }
 
 /** Compile a scene's view. Answered by `scene`, `numbers` or `mistakes`. */
-export interface Look {
+export interface LookRequest {
   kind: "look";
   /** The app's number of the request, never used twice. */
   id: number;
@@ -190,7 +190,7 @@ export interface Look {
  * `player.setNumber(held, value)`. Where it cannot be an input (a loop's bound), `held` is
  * None and the program is the usual one.
  */
-export interface Hold {
+export interface HoldRequest {
   kind: "hold";
   /** The app's number of the request, never used twice. */
   id: number;
@@ -220,7 +220,7 @@ export interface Hold {
 }
 
 /** Write changes into the source: Keep of a slider, a literal or the camera. */
-export interface Write {
+export interface WriteRequest {
   kind: "write";
   /** The app's number of the request, never used twice. */
   id: number;
@@ -248,7 +248,7 @@ export interface Write {
 }
 
 /** Give the program that counts how often each statement runs. */
-export interface Count {
+export interface CountRequest {
   kind: "count";
   /** The app's number of the request, never used twice. */
   id: number;
@@ -275,7 +275,7 @@ export interface Count {
 }
 
 /** Tell what the pixel at `x`, `y` shows (from the top left), with the camera as moved. */
-export interface Probe {
+export interface ProbeRequest {
   kind: "probe";
   /** The app's number of the request, never used twice. */
   id: number;
@@ -305,7 +305,7 @@ export interface Probe {
 }
 
 /** Validate the scene as `distal check` does. */
-export interface Check {
+export interface CheckRequest {
   kind: "check";
   /** The app's number of the request, never used twice. */
   id: number;
@@ -332,7 +332,7 @@ export interface Check {
 }
 
 /** Give the emitted text of a target, as `distal compile` prints it. */
-export interface Text {
+export interface TextRequest {
   kind: "text";
   /** The app's number of the request, never used twice. */
   id: number;
@@ -360,7 +360,7 @@ export interface Text {
 }
 
 /** Make a file of the scene; `ready` has the formats. */
-export interface Export {
+export interface ExportRequest {
   kind: "export";
   /** The app's number of the request, never used twice. */
   id: number;
@@ -395,7 +395,7 @@ export interface Export {
 }
 
 /** Render a picture or video (local only), with `progress`. */
-export interface Render {
+export interface RenderRequest {
   kind: "render";
   /** The app's number of the request, never used twice. */
   id: number;
@@ -430,7 +430,7 @@ export interface Render {
 }
 
 /** Write a file (local only; the server answers). `digest` is that of the text it replaces. */
-export interface Save {
+export interface SaveRequest {
   kind: "save";
   /** The app's number of the request, never used twice. */
   id: number;
@@ -442,7 +442,7 @@ export interface Save {
 }
 
 /** End the worker; it answers nothing. */
-export interface Stop {
+export interface StopRequest {
   kind: "stop";
   /** The app's number of the request, never used twice. */
   id: number;
@@ -523,7 +523,7 @@ export interface Mistakes {
 export interface Results {
   write: Written;
   count: Counting;
-  probe: Probed;
+  probe: ProbeResult;
   check: Checked;
   text: EmittedText;
   export: ExportedFile;
@@ -574,6 +574,6 @@ export interface Restarted {
   reason: string;
 }
 
-export type Request = Look | Hold | Write | Count | Probe | Check | Text | Export | Render | Save | Stop;
+export type Request = LookRequest | HoldRequest | WriteRequest | CountRequest | ProbeRequest | CheckRequest | TextRequest | ExportRequest | RenderRequest | SaveRequest | StopRequest;
 
 export type Response = Ready | SceneFound | NumbersFound | Mistakes | Answer | Dropped | Printed | Progress | Changed | Restarted;

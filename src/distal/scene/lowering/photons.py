@@ -116,7 +116,7 @@ class DepositFunction(Composed):
         return self.scene.functions()
 
 
-class PlanImage(PlanFunction):
+class PlanPicture(PlanFunction):
     """What the photons of a pass depend on, as two pictures of equal pixels."""
 
     kind: ClassVar[EntryKind] = EntryKind.IMAGE
@@ -131,7 +131,7 @@ class PlanImage(PlanFunction):
         return _as_image(self, assembly, body, photons.plan_image, given)
 
 
-class DepositImage(DepositFunction):
+class DepositPicture(DepositFunction):
     """The photons of a pass as three pictures: each pixel follows a photon, only once."""
 
     kind: ClassVar[EntryKind] = EntryKind.IMAGE
@@ -173,9 +173,9 @@ def _as_image(
     return assembly.define("picture", params, made.type, body.statements, owner.scene.place)
 
 
-def photon_images(scene: Scene) -> tuple[PlanImage, DepositImage]:
+def photon_images(scene: Scene) -> tuple[PlanPicture, DepositPicture]:
     """Return the programs of the photons of a live picture, whose camera is steered."""
-    return PlanImage(scene, steered=True), DepositImage(scene, steered=True)
+    return PlanPicture(scene, steered=True), DepositPicture(scene, steered=True)
 
 
 def scene_photons(scene: Scene, *, steered: bool) -> tuple[PlanFunction, DepositFunction]:
