@@ -42,7 +42,7 @@ def run(code, *words):
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "DISTAL_VERIFY": ""},
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=400,
     )
     assert answer.returncode == 0, answer.stderr
     return answer.stdout
