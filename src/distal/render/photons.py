@@ -41,6 +41,7 @@ from distal.lang import (
     vec3,
     vec4,
 )
+from distal.lang.functions import apart
 from distal.render.camera import Ray
 from distal.render.dispersion import color_of, wavelength_of
 from distal.render.footprint import THIN, Footprint, pixel_cone

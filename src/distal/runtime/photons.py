@@ -189,7 +189,8 @@ def _sorted(
         slot: Its slot; -1 if it met nothing.
         slots: How many slots there are.
     """
-    bright = np.abs(power).max(axis=1)
+    red, green, blue = np.abs(power).T
+    bright = np.maximum(np.maximum(red, green), blue)
     kept = np.flatnonzero((slot >= 0) & np.isfinite(bright) & (bright > 0.0))
     # Keys of 16 bits are sorted in linear time.
     of_slot = slot[kept].astype(np.uint16 if slots <= 2**16 else np.int32)
