@@ -31,7 +31,7 @@ from distal.lessons.document import (
 from distal.lessons.mistakes import choice_hint, mistake
 
 _RULE: Final = "+++"
-_FENCE: Final = re.compile(r"^:::\s*(\S*)\s*(.*?)\s*$")
+_FENCE_LINE: Final = re.compile(r"^:::\s*(\S*)\s*(.*?)\s*$")
 _CODE: Final = re.compile(r"^ {0,3}(`{3,}|~{3,})")
 _ATTRIBUTE: Final = re.compile(r'([A-Za-z_]\w*)=(?:"([^"]*)"|([^\s"]+))(?:\s+|$)')
 # A comma separates values only where another name follows: a point has commas of its own.
@@ -62,11 +62,11 @@ def parse(text: str, file: Path) -> Lesson:
     Raises:
         CompileError: The text is not a valid lesson.
     """
-    return _Reader(text, file).lesson()
+    return _LessonReader(text, file).lesson()
 
 
 @dataclass(frozen=True, slots=True)
-class _Block:
+class _Fence:
     """A fence: its name, its attributes, and the text inside with the line before it."""
 
     name: str
@@ -79,7 +79,7 @@ class _Block:
         return "\n".join(self.body).strip()
 
 
-class _Reader:
+class _LessonReader:
     """One lesson's text while it is read."""
 
     def __init__(self, text: str, file: Path) -> None:
@@ -173,7 +173,7 @@ class _Reader:
 
     def _block(self, line: int) -> int:
         """Read the fence that opens at a line; return the line where it ends."""
-        found = _FENCE.match(self.lines[line - 1])
+        found = _FENCE_LINE.match(self.lines[line - 1])
         assert found is not None
         name, rest = found[1], found[2]
         if not name:
@@ -190,7 +190,7 @@ class _Reader:
             hint = "write ::: alone on the line after its text"
             raise self.fail(line, f"':::{name}' is not closed", hint)
         attributes = self._attributes(line, name, rest)
-        block = _Block(name, line, attributes, self.lines[line:end])
+        block = _Fence(name, line, attributes, self.lines[line:end])
         _BLOCKS[name].read(self, block)
         return end + 1
 
@@ -226,7 +226,7 @@ class _Reader:
             values[name.strip()] = value.strip()
         return values
 
-    def number(self, block: _Block, key: str, default: float) -> float:
+    def number(self, block: _Fence, key: str, default: float) -> float:
         """Return an attribute that is a share between 0 and 1."""
         text = block.attributes.get(key)
         if text is None:
@@ -242,7 +242,7 @@ class _Reader:
 
     # One method for each fence
 
-    def read_try(self, block: _Block) -> None:
+    def read_try(self, block: _Fence) -> None:
         title = block.attributes["title"]
         values = self.values(block.attributes.get("values", ""), block.line)
         view = block.attributes.get("view", "")
@@ -252,7 +252,7 @@ class _Reader:
         least = self.number(block, "least", LEAST_DIFFERENCE)
         self.parts.append(Try(block.line, title, values, block.text, "", view, least))
 
-    def read_watch(self, block: _Block) -> None:
+    def read_watch(self, block: _Fence) -> None:
         last = self.parts[-1] if self.parts else None
         if not isinstance(last, Try) or last.watch:
             hint = "put :::watch directly below the ::: of the experiment that it belongs to"
@@ -261,7 +261,7 @@ class _Reader:
             raise self.fail(block.line, "':::watch' is empty", "write what the reader will see")
         self.parts[-1] = replace(last, watch=block.text)
 
-    def read_phrases(self, block: _Block) -> None:
+    def read_phrases(self, block: _Fence) -> None:
         rows = []
         for i, line in enumerate(block.body, block.line + 1):
             if not line.strip():
@@ -276,7 +276,7 @@ class _Reader:
             raise self.fail(block.line, "':::phrases' is empty", hint)
         self.parts.append(Phrases(block.line, tuple(rows)))
 
-    def read_layers(self, block: _Block) -> None:
+    def read_layers(self, block: _Fence) -> None:
         if any(isinstance(part, Layers) for part in self.parts):
             hint = "keep one of them: the strip stands below the picture"
             raise self.fail(block.line, "a lesson has one ':::layers'", hint)
@@ -292,34 +292,34 @@ class _Reader:
         views = {name: block.attributes.get(name, name) for name in LAYERS}
         self.parts.append(Layers(block.line, views, captions))
 
-    def read_goal(self, block: _Block) -> None:
+    def read_goal(self, block: _Fence) -> None:
         values = self.values(block.attributes["values"], block.line)
         within = self.number(block, "within", GOAL_WITHIN)
         self.parts.append(Goal(block.line, block.attributes["file"], values, block.text, within))
 
 
 @dataclass(frozen=True, slots=True)
-class _Kind:
+class _FenceKind:
     """A kind of fence: how it is read, and its attributes."""
 
-    read: Callable[[_Reader, _Block], None]
+    read: Callable[[_LessonReader, _Fence], None]
     attributes: tuple[str, ...] = ()
     required: tuple[str, ...] = ()
     example: str = ""
 
 
-_BLOCKS: Final[Mapping[str, _Kind]] = {
-    "try": _Kind(
-        _Reader.read_try,
+_BLOCKS: Final[Mapping[str, _FenceKind]] = {
+    "try": _FenceKind(
+        _LessonReader.read_try,
         ("title", "values", "view", "least"),
         ("title",),
         'title="Too few steps" values="max_steps=16"',
     ),
-    "watch": _Kind(_Reader.read_watch),
-    "phrases": _Kind(_Reader.read_phrases),
-    "layers": _Kind(_Reader.read_layers, LAYERS, (), 'signal="steps"'),
-    "goal": _Kind(
-        _Reader.read_goal,
+    "watch": _FenceKind(_LessonReader.read_watch),
+    "phrases": _FenceKind(_LessonReader.read_phrases),
+    "layers": _FenceKind(_LessonReader.read_layers, LAYERS, (), 'signal="steps"'),
+    "goal": _FenceKind(
+        _LessonReader.read_goal,
         ("file", "values", "within"),
         ("file", "values"),
         'file="solution.py" values="radius=0.5"',
