@@ -22,7 +22,7 @@ from distal.lang import (
     vec3,
 )
 
-steps = integer("Steps", 12, low=1, high=40, help="How many steps the ray may take.")
+steps = integer("Steps", 24, low=1, high=40, help="How many steps the ray may take.")
 aim = slider("Aim", 0.05, low=-0.6, high=0.6, help="The direction of the ray; drag in the picture.")
 factor = slider("Step factor", 1.0, low=0.2, high=2.0, help="Times the distance that is safe.")
 

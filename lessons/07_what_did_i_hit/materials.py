@@ -71,7 +71,7 @@ def surface_normal(p: vec3) -> vec3:
 @func
 def march(origin: vec3, direction: vec3) -> tuple[float, int]:
     t = 0.0
-    for _ in range(80):
+    for _ in range(160):
         d, material = scene(origin + direction * t)
         if d < 0.001:
             return t, material

@@ -43,7 +43,7 @@ def start(origin: vec3, direction: vec3) -> float:
     if not ceiling or origin.y <= TALL:
         return 0.0
     if direction.y >= 0.0:
-        return FAR
+        return FAR + 1.0
     return (TALL - origin.y) / direction.y
 
 

@@ -31,7 +31,7 @@ from distal.lessons.document import (
 from distal.lessons.mistakes import choice_hint, mistake
 
 _RULE: Final = "+++"
-_FENCE: Final = re.compile(r"^:::\s*(\S*)\s*(.*?)\s*$")
+_FENCE_LINE: Final = re.compile(r"^:::\s*(\S*)\s*(.*?)\s*$")
 _CODE: Final = re.compile(r"^ {0,3}(`{3,}|~{3,})")
 _ATTRIBUTE: Final = re.compile(r'([A-Za-z_]\w*)=(?:"([^"]*)"|([^\s"]+))(?:\s+|$)')
 # A comma separates values only where another name follows: a point has commas of its own.
@@ -173,7 +173,7 @@ class _LessonReader:
 
     def _block(self, line: int) -> int:
         """Read the fence that opens at a line; return the line where it ends."""
-        found = _FENCE.match(self.lines[line - 1])
+        found = _FENCE_LINE.match(self.lines[line - 1])
         assert found is not None
         name, rest = found[1], found[2]
         if not name:
