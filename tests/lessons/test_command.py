@@ -5,22 +5,23 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
-from distal.cli import main
+from distal.cli.application import application
 
 LESSON = Path(__file__).parents[2] / "lessons" / "01_rays_are_colors" / "lesson.md"
 
 
-def run(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(list(arguments))
-    return int(ended.value.code or 0)
+def run(*arguments: str) -> tuple[int, str]:
+    result = CliRunner().invoke(application, arguments)
+    return result.exit_code, " ".join(result.output.split())
 
 
-def test_it_writes_one_page(tmp_path, capsys):
+def test_it_writes_one_page(tmp_path):
     page = tmp_path / "lesson.html"
-    assert run("export", str(LESSON), "-o", str(page)) == 0
-    assert "lesson.html" in "".join(capsys.readouterr())
+    code, said = run("export", str(LESSON), "-o", str(page))
+    assert code == 0
+    assert "lesson.html" in said
     text = page.read_text(encoding="utf-8")
     assert text.startswith("<!doctype html>")
     assert "<h1>Rays are colors</h1>" in text
@@ -40,7 +41,8 @@ def test_it_writes_one_page(tmp_path, capsys):
         ),
     ],
 )
-def test_options_of_scenes_are_refused(arguments, message, capsys, monkeypatch, tmp_path):
+def test_options_of_scenes_are_refused(arguments, message, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
-    assert run("export", str(LESSON), *arguments) != 0
-    assert message in " ".join("".join(capsys.readouterr()).split())
+    code, said = run("export", str(LESSON), *arguments)
+    assert code != 0
+    assert message in said
