@@ -13,6 +13,7 @@ from distal import (
     Camera,
     OrbitCamera,
     OrthographicCamera,
+    PointLight,
     Scene,
     Sphere,
     emissive,
@@ -200,3 +201,14 @@ def test_frames_of_a_video_are_blurred(tmp_path):
     assert np.abs(frame - sharp).max() > 0.2
     with pytest.raises(VideoError, match="shutter is for mode 'path'"):
         Scene(bar, **made).video(tmp_path / "direct" / "%d.png", shutter=0.05, **shots)
+
+
+def test_a_video_traces_paths_if_asked(tmp_path):
+    scene = Scene(Sphere(), lights=PointLight((2.0, 4.0, 3.0), radius=0.5))
+    shots = {"duration": 1, "fps": 1, "size": (16, 16), "samples": 8}
+    scene.video(tmp_path / "%d.png", mode="path", **shots)
+    scene.render((16, 16), mode="path", spp=8).save(tmp_path / "still.png")
+    found, still = (np.asarray(Image.open(tmp_path / name)) for name in ("0.png", "still.png"))
+    assert np.array_equal(found[..., :3], still[..., :3])
+    with pytest.raises(VideoError, match="there is no mode 'paths'; modes: direct, path"):
+        scene.video(tmp_path / "%d.png", mode="paths", **shots)

@@ -16,6 +16,7 @@ from distal.cli.base import (
     AdapterOption,
     Device,
     DeviceOption,
+    ModeOption,
     SamplesOption,
     SceneArgument,
     SetOption,
@@ -53,6 +54,7 @@ def video(
         str, typer.Option("--start", "--time", metavar="S", help="When the first frame is.")
     ] = "0",
     samples: SamplesOption = None,
+    mode: ModeOption = None,
     shutter: Annotated[
         float | None,
         typer.Option(
@@ -110,6 +112,7 @@ def video(
                 params=values,
                 view=view,
                 samples=samples,
+                mode=mode,
                 shutter=shutter,
                 loop=loop,
                 quality=quality or "high",

@@ -89,7 +89,11 @@ class MovingPicture:
 
 
 def moving_picture(
-    obj: Any, options: RenderOptions, view: str, shutter: float | None = None
+    obj: Any,
+    options: RenderOptions,
+    view: str,
+    mode: str | None = None,
+    shutter: float | None = None,
 ) -> MovingPicture:
     """Return the animated picture of an object.
 
@@ -98,13 +102,17 @@ def moving_picture(
         options: How to render each frame. The default scene of a single shape fits the size of
             the shape at this time and for these parameters.
         view: One of its views.
+        mode: How light is computed; None: as the scene says.
         shutter: Seconds that the shutter is open; None: as the scene says.
 
     Raises:
         LoadError: The object is not a picture.
-        VideoError: There is no such view or parameter.
+        VideoError: There is no such view, mode or parameter.
     """
-    shown = viewable(obj, options.params, options.time)
+    try:
+        shown = viewable(obj, options.params, options.time).in_mode(mode)
+    except ValueError as error:
+        raise VideoError(str(error)) from None
     image, settings = _image(shown, view, options.samples)
     refinement = _refinement(shown, view, options.samples, shutter)
     lowered = Lowered.of(image, None)
@@ -138,7 +146,7 @@ def _image(
     try:
         if shown.scene is None:
             return shown.image(view), {}
-        return shown.scene.program(view, samples, encoded=True)
+        return shown.scene.program(view, samples, encoded=True, mode=shown.mode)
     except ValueError as error:
         raise VideoError(str(error)) from None
 
@@ -160,7 +168,7 @@ def _refinement(
         return None
     try:
         asked = ViewOptions(view=view, shutter=shutter)
-        return asked.refinement(shown.scene.mode, samples, shown.scene.shutter)
+        return asked.refinement(shown.mode, samples, shown.scene.shutter)
     except ValueError as error:
         raise VideoError(str(error)) from None
 

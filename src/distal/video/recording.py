@@ -98,6 +98,7 @@ def video(
     params: Mapping[str, Any] | None = None,
     view: str = "color",
     samples: int | None = None,
+    mode: str | None = None,
     shutter: float | None = None,
     loop: bool = False,
     quality: str | float = "high",
@@ -125,6 +126,7 @@ def video(
         params: Values of parameters by name.
         view: The view to show; see ``Scene.render``.
         samples: Samples in each pixel, as for ``render``.
+        mode: How light is computed: "direct" or "path"; None: as the scene says.
         shutter: In mode "path": seconds that the shutter is open in each frame, from its time on;
             ``0.5 / fps`` is a shutter of 180 degrees. None: as the scene says.
         loop: Whether gif, apng and webp repeat forever; otherwise they are played once.
@@ -175,12 +177,12 @@ def video(
     job = _RecordingJob(
         output=output,
         format=format,
-        moving=moving_picture(obj, options, view, shutter),
+        moving=moving_picture(obj, options, view, mode, shutter),
         timing=when,
         quality=chosen,
         loop=loop,
         fresh=fresh,
-        shown={"view": view, "samples": samples, "shutter": shutter},
+        shown={"view": view, "samples": samples, "mode": mode, "shutter": shutter},
         progress=progress or (lambda done, total, what: None),
         tell=tell or (lambda words: None),
         stop=stop,
