@@ -52,7 +52,7 @@ def steep_ball(p: vec3, radius: float = 1.0) -> float:
 @func
 def steep_at_one_place(p: vec3, radius: float = 1.0) -> float:
     d = length(p) - radius
-    return d + 0.01 * max(0.0, 1.0 - 8.0 * length(p - vec3(1.3, 0.3, 0.2)))
+    return d + 0.02 * max(0.0, 1.0 - 4.0 * length(p - vec3(1.3, 0.3, 0.2)))
 
 
 @func
