@@ -41,6 +41,9 @@ _SAFETY: Final = 1.2
 _FEWEST_SAMPLES: Final = 8
 # The rate of fewer pixels is not known well enough.
 _FEWEST_PIXELS: Final = 1024
+# The square of the mean difference by the mean square is 1/3 for normal errors; less than this
+# many of so many pixels have the weight of all.
+_MOST_BRIGHT: Final = 50.0
 
 
 def advance(steps: NDArray[np.float64], where: Any, luma: NDArray[np.float64]) -> None:
@@ -81,6 +84,9 @@ def share_that_is_left(
     rate = np.where(rate < _LIMIT, _SLOWEST, rate)
     found = _SAFETY * last / (rate - 1.0) / np.maximum(independent, 1e-300)
     found *= _since_doubling(samples[::TILE_PX, ::TILE_PX], np.log2(rate))
+    # A few bright pixels may make up the sum; then it says nothing.
+    squares = over_neighbors(over_tiles((doubled * steps[_LAST]) ** 2))
+    found[last**2 * _FEWEST_PIXELS < _MOST_BRIGHT * squares] = 1.0
     return by_pixel(np.minimum(found, 1.0), width, height)
 
 
