@@ -203,7 +203,7 @@ def test_what_is_left_out_on_request(rings, tmp_path):
 
 
 def test_a_view_that_webgl_cannot_show_is_left_out(rings, tmp_path, monkeypatch):
-    compiled = payload_room._compiled
+    compiled = payload_room.compiled
 
     def refusing(image):
         if "signal" in image.name or image.name.endswith(bad):
@@ -211,7 +211,7 @@ def test_a_view_that_webgl_cannot_show_is_left_out(rings, tmp_path, monkeypatch)
         return compiled(image)
 
     bad = "nothing"
-    monkeypatch.setattr(payload_room, "_compiled", refusing)
+    monkeypatch.setattr(payload_room, "compiled", refusing)
     path = tmp_path / "p.html"
     obj = distal.load(rings)
     obj_view = distal.scene.viewing.viewable.viewable(obj).image("signal").name

@@ -155,7 +155,7 @@ def test_a_wrong_option_is_refused(options, error, message):
 
 
 def test_a_view_that_webgl_cannot_show_is_none(monkeypatch):
-    compiled = payload_room._compiled
+    compiled = payload_room.compiled
 
     def refusing(image):
         if "depth" in image.name:
@@ -163,7 +163,7 @@ def test_a_view_that_webgl_cannot_show_is_none(monkeypatch):
         return compiled(image)
 
     scene = ball()
-    monkeypatch.setattr(payload_room, "_compiled", refusing)
+    monkeypatch.setattr(payload_room, "compiled", refusing)
     widget = scene.show()
     widget.view = "normal"
     with pytest.raises(TraitError, match="there is no view 'depth'"):
