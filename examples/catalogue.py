@@ -53,7 +53,7 @@ scene = Scene(
         DistantLight((-0.7, 1.0, 0.3), intensity=0.85, color="#fff4e2", angle=0.12),
         HemisphereLight(sky=(0.95, 0.97, 1.0), ground=(0.6, 0.52, 0.46), intensity=0.42),
     ],
-    camera=OrbitCamera(44.0, azimuth=turn, elevation=0.9, target=(0.0, -0.5, 0.0), fov_deg=20.5),
+    camera=OrbitCamera(46.0, azimuth=turn, elevation=0.9, target=(-0.4, -0.5, 0.0), fov_deg=20.5),
     background="#e9e2d4",
     normals="tetrahedron",
     ambient_occlusion=0.7,

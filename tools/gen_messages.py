@@ -1,6 +1,6 @@
 """Write the types of the studio's messages for TypeScript: ``web/src/generated/messages.ts``.
 
-Made of the classes of ``distal/studio/messages.py``. Run it after any change of these; a test fails
+Made of the classes of ``distal/editor/messages.py``. Run it after any change of these; a test fails
 when it was forgotten.
 """
 
@@ -15,12 +15,12 @@ from dataclasses import MISSING, fields, is_dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union
 
-from distal.studio import messages
+from distal.editor import messages
 
 ROOT = Path(__file__).parents[1]
 FILE = ROOT / "web" / "src" / "generated" / "messages.ts"
 NOTE = """\
-// Made by tools/gen_messages.py from src/distal/studio/messages.py: change that, and run it.
+// Made by tools/gen_messages.py from src/distal/editor/messages.py: change that, and run it.
 // A field with a question mark has that file's default where it is left out.
 
 import type { Parameter, Payload, Program, UniformEntry } from "../payload";

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from typing import Final
 
 import pytest
@@ -158,3 +160,11 @@ def test_operators_in_the_plane_are_those_of_space():
         assert (solid.lies_flat(False), flat.lies_flat(True)) == (False, True)
     paired = {flat.name for flat in IN_PLANE.values()} | {"flat rotate"}
     assert paired == {name for name in operators() if name.startswith("flat ")}
+
+
+def test_the_order_of_the_shapes_does_not_depend_on_what_was_imported_first():
+    code = "from distal.fields.library import PRIMITIVES; print(*PRIMITIVES)"
+    for first in ("distal.fields.solids.tubes", "distal.video.recording"):
+        run = [sys.executable, "-c", f"import {first}; {code}"]
+        found = subprocess.run(run, capture_output=True, text=True, check=True, timeout=120)
+        assert found.stdout.split() == [*primitives()], first

@@ -61,6 +61,7 @@ class VideoOptions(TypedDict, total=False):
     params: Mapping[str, Any] | None
     view: str
     samples: int | None
+    mode: str | None
     shutter: float | None
     loop: bool
     quality: str | float
@@ -133,9 +134,9 @@ class Presentable:
         Args:
             path: ``.mp4``, ``.webm``, ``.gif``, ``.apng``, ``.webp``, or ``frames/%05d.png``.
             duration: Seconds.
-            options: ``fps``, ``size``, ``start``, ``samples``, ``shutter``, ``loop``, ``quality``,
-                ``params``, ``view``, ``device``, ``threads``, ``keep_frames``, ``fresh``,
-                ``progress``, ``cancel``. The devices are those of ``render``.
+            options: ``fps``, ``size``, ``start``, ``samples``, ``mode``, ``shutter``, ``loop``,
+                ``quality``, ``params``, ``view``, ``device``, ``threads``, ``keep_frames``,
+                ``fresh``, ``progress``, ``cancel``. The devices are those of ``render``.
 
         Raises:
             CompileError: The scene code has mistakes.

@@ -1,4 +1,4 @@
-// Made by tools/gen_messages.py from src/distal/studio/messages.py: change that, and run it.
+// Made by tools/gen_messages.py from src/distal/editor/messages.py: change that, and run it.
 // A field with a question mark has that file's default where it is left out.
 
 import type { Parameter, Payload, Program, UniformEntry } from "../payload";

@@ -17,7 +17,7 @@ from functools import cache
 from typing import Any, Final, Literal, TypeAlias, cast
 
 import distal
-from distal.studio.messages import LiteralValue, SourceLiteral
+from distal.editor.messages import LiteralValue, SourceLiteral
 
 Type: TypeAlias = Literal["number", "vector", "color", "switch", "choice"]
 Way: TypeAlias = Literal["numbers", "hold", "compile"]

@@ -23,14 +23,12 @@ from typing import IO, Any, Final
 from distal.backends import TEXT_TARGETS
 from distal.compiler.driver import COMPILE_TARGETS
 from distal.diagnostics import CompileError, DeviceError, LoadError
-from distal.export.payload import FORMAT
-from distal.packages import explained, is_installed
-from distal.studio.answers import ANSWERS, NEEDS_NUMPY, AnswerWork
-from distal.studio.edits import EditError, applied, edits_of
-from distal.studio.literals import LiteralError, find_literals
-from distal.studio.looks import Looks, mistakes_of
-from distal.studio.mailbox import Mailbox
-from distal.studio.messages import (
+from distal.editor.answers import ANSWERS, NEEDS_NUMPY, AnswerWork
+from distal.editor.edits import EditError, applied, edits_of
+from distal.editor.literals import LiteralError, find_literals
+from distal.editor.looks import Looks, mistakes_of
+from distal.editor.mailbox import Mailbox
+from distal.editor.messages import (
     LONGEST_PRINTED,
     Answer,
     AppRequest,
@@ -50,6 +48,8 @@ from distal.studio.messages import (
     encoded,
     parsed,
 )
+from distal.export.payload import FORMAT
+from distal.packages import explained, is_installed
 from distal.version import __version__
 
 Send = Callable[[Message], None]

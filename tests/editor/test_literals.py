@@ -7,10 +7,10 @@ import ast
 import pytest
 
 import distal
-from distal.studio.edits import EditError, applied, edits_of
-from distal.studio.links import LinkError, link_of, shared_by
-from distal.studio.literals import find_literals, number_text, piece, spliced, step_of, written
-from distal.studio.messages import Change, SourceLiteral
+from distal.editor.edits import EditError, applied, edits_of
+from distal.editor.links import LinkError, link_of, shared_by
+from distal.editor.literals import find_literals, number_text, piece, spliced, step_of, written
+from distal.editor.messages import Change, SourceLiteral
 
 
 def other(found: SourceLiteral):

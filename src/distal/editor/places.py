@@ -10,10 +10,10 @@ from collections.abc import Collection, Iterator
 from pathlib import Path
 
 from distal.diagnostics import Span
+from distal.editor.literals import utf16_length
+from distal.editor.messages import ShapePlace
 from distal.scene.scene import Scene
 from distal.scene.tree.node import Node
-from distal.studio.literals import utf16_length
-from distal.studio.messages import ShapePlace
 
 MOST_SHAPES = 2000
 

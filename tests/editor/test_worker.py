@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 import distal
-from distal.studio.literals import spliced
+from distal.editor.literals import spliced
 
 SPHERE = """\
 from distal import Box, Scene, Sphere
@@ -33,7 +33,7 @@ class Child:
 
     def __init__(self) -> None:
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "distal.studio.worker"],
+            [sys.executable, "-m", "distal.editor.worker"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "DISTAL_VERIFY": ""},

@@ -12,18 +12,9 @@ from pathlib import Path, PurePath
 from typing import Any, Final, Literal, cast
 
 from distal.diagnostics import CompileError, Diagnostic, LoadError
-from distal.export.page_options import PageOptions
-from distal.export.payload import lowered, parameter_entry, payload
-from distal.ir.nodes import Module, Origin
-from distal.lang.chosen_values import checked_values
-from distal.lang.composed import Composed
-from distal.lang.functions import Func
-from distal.lang.parameters import Parameter, slider
-from distal.loading import LoadedFile, load_text
-from distal.scene.viewing.viewable import COLOR, Viewable, view_label, viewable
-from distal.studio.edits import applied
-from distal.studio.literals import find_literals, literal_at
-from distal.studio.messages import (
+from distal.editor.edits import applied
+from distal.editor.literals import find_literals, literal_at
+from distal.editor.messages import (
     Edit,
     HoldRequest,
     LookRequest,
@@ -34,8 +25,17 @@ from distal.studio.messages import (
     SourceLiteral,
     SourceRequest,
 )
-from distal.studio.places import column, shapes_of
-from distal.studio.programs import KeptPrograms, key_of, numbers_of
+from distal.editor.places import column, shapes_of
+from distal.editor.programs import KeptPrograms, key_of, numbers_of
+from distal.export.page_options import PageOptions
+from distal.export.payload import lowered, parameter_entry, payload
+from distal.ir.nodes import Module, Origin
+from distal.lang.chosen_values import checked_values
+from distal.lang.composed import Composed
+from distal.lang.functions import Func
+from distal.lang.parameters import Parameter, slider
+from distal.loading import LoadedFile, load_text
+from distal.scene.viewing.viewable import COLOR, Viewable, view_label, viewable
 
 HELD: Final = "held_value"
 # A held number has a slider from so many times below its size to as many above.

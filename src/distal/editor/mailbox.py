@@ -5,7 +5,7 @@ Input: requests in the order in which they arrive. Output: the next one to do, a
 
 from __future__ import annotations
 
-from distal.studio.messages import AppRequest, LookRequest
+from distal.editor.messages import AppRequest, LookRequest
 
 
 class Mailbox:

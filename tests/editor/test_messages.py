@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from distal.studio import messages
-from distal.studio.messages import MessageError, encoded, parsed
+from distal.editor import messages
+from distal.editor.messages import MessageError, encoded, parsed
 
 ROOT = Path(__file__).parents[2]
 

@@ -10,8 +10,7 @@ import ast
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from distal.lang.parameters import parameter_name
-from distal.studio.literals import (
+from distal.editor.literals import (
     LiteralError,
     Positions,
     find_literals,
@@ -19,7 +18,8 @@ from distal.studio.literals import (
     spliced,
     written,
 )
-from distal.studio.messages import Change, Edit, LiteralValue
+from distal.editor.messages import Change, Edit, LiteralValue
+from distal.lang.parameters import parameter_name
 
 # The functions of the language that declare a parameter, whose second argument is the default.
 _DECLARES: Final = frozenset({"slider", "integer", "toggle", "choice", "color", "point"})

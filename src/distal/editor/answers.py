@@ -13,13 +13,9 @@ from typing import Any, Final, Literal, cast
 
 from distal.backends import TEXT_TARGETS
 from distal.compiler.driver import compile as compile_text
-from distal.export import page, texts
-from distal.export.page_options import PageOptions, TextOptions
-from distal.lang.lazy_module import LazyModule
-from distal.scene.objects.field import BaseShape
-from distal.studio.edits import edits_of
-from distal.studio.looks import Looks, known_values, mistake_at
-from distal.studio.messages import (
+from distal.editor.edits import edits_of
+from distal.editor.looks import Looks, known_values, mistake_at
+from distal.editor.messages import (
     Checked,
     EmittedText,
     ExportedFile,
@@ -32,6 +28,10 @@ from distal.studio.messages import (
     WriteRequest,
     Written,
 )
+from distal.export import page, texts
+from distal.export.page_options import PageOptions, TextOptions
+from distal.lang.lazy_module import LazyModule
+from distal.scene.objects.field import BaseShape
 
 probing: Final = cast(Any, LazyModule("distal.scene.checks.probe"))  # needs NumPy
 validation: Final = cast(Any, LazyModule("distal.scene.checks.validation"))
