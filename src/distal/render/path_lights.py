@@ -1,7 +1,7 @@
-"""The lights of a path: what a ray meets of them, and a random direction to one of them.
+"""The lights of a path: a random direction to one of them, and the light from there.
 
-Input: a ray, or a vertex of a path, and the lights of a scene. Output: light, weighted by how well
-each of the two ways finds it (multiple importance sampling).
+Input: a vertex of a path, and the lights of a scene. Output: light, weighted by how well this way
+finds it and the scattered ray would (multiple importance sampling).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from distal.lang import (
     vec3,
 )
 from distal.render.camera import Ray
-from distal.render.emitters import power_share, sample_light, seen_light
+from distal.render.emitters import power_share, sample_light
 from distal.render.footprint import (
     Footprint,
     point_footprint,
@@ -34,40 +34,6 @@ from distal.render.shade import Lit, Shading
 from distal.render.surroundings import DirectionSample
 from distal.render.trace import hit_point
 from distal.render.vertices import Vertex, start_from
-
-
-@func
-def met_lights(
-    ray: Ray,
-    length: float,
-    sampled: float,
-    lights: Callable[[int, vec3], LightSample],
-    light_count: int,
-    chance: float,
-    target: Bounds,
-    bundled: bool,
-) -> vec3:
-    """Return the light of all discs that a ray meets before a surface, weighted.
-
-    Args:
-        ray: Ray.
-        length: Distance to the surface; ``UNBOUNDED`` if there is none.
-        sampled: The density per solid angle with which the direction was chosen; 0 if it was the
-            only possible one, so that the discs cannot be sampled.
-        lights: The light with a given index at a point.
-        light_count: How many lights there are.
-        chance: The probability with which a surface chooses each of them.
-        target: The box that photons cross.
-        bundled: Whether the light that photons follow is left out.
-    """
-    total = vec3(0.0)
-    for i in range(light_count):
-        light = lights(i, ray.origin)
-        seen = seen_light(light, ray.direction)
-        followed = bundled and is_followed(target, ray, seen.distance, light)
-        if seen.density > 0.0 and seen.distance < length and not followed:
-            total += seen.radiance * power_share(sampled, seen.density * chance)
-    return total
 
 
 @struct

@@ -34,7 +34,7 @@ from distal.lang.functions import apart
 from distal.render.bounce import ALL_INSIDE
 from distal.render.camera import Ray
 from distal.render.dispersion import color_of, wavelength_of
-from distal.render.emitters import power_share
+from distal.render.emitters import power_share, seen_light
 from distal.render.footprint import (
     THIN,
     Cone,
@@ -47,8 +47,8 @@ from distal.render.lost_rays import INSIDE, SHADOWS, marked, merged, reason
 from distal.render.march import Hit, March
 from distal.render.material import Surface, brightest
 from distal.render.normals import EXACT
-from distal.render.path_lights import aim_at_light, light_from, met_lights
-from distal.render.photon_aim import bundles, is_followed_from_afar
+from distal.render.path_lights import aim_at_light, light_from
+from distal.render.photon_aim import bundles, is_followed, is_followed_from_afar
 from distal.render.sampling.points import Stream, single, triple
 from distal.render.scatter import Meeting, all_specular, emitted, meet, sample_from
 from distal.render.shade import Shading
@@ -70,6 +70,40 @@ DIRECTION = 2
 ENDING = 3
 # The decisions of the camera.
 WAVELENGTH = 3
+
+
+@func
+def met_lights(
+    ray: Ray,
+    length: float,
+    sampled: float,
+    lights: Callable[[int, vec3], LightSample],
+    light_count: int,
+    chance: float,
+    target: Bounds,
+    bundled: bool,
+) -> vec3:
+    """Return the light of all discs that a ray meets before a surface, weighted.
+
+    Args:
+        ray: Ray.
+        length: Distance to the surface; ``UNBOUNDED`` if there is none.
+        sampled: The density per solid angle with which the direction was chosen; 0 if it was the
+            only possible one, so that the discs cannot be sampled.
+        lights: The light with a given index at a point.
+        light_count: How many lights there are.
+        chance: The probability with which a surface chooses each of them.
+        target: The box that photons cross.
+        bundled: Whether the light that photons follow is left out.
+    """
+    total = vec3(0.0)
+    for i in range(light_count):
+        light = lights(i, ray.origin)
+        seen = seen_light(light, ray.direction)
+        followed = bundled and is_followed(target, ray, seen.distance, light)
+        if seen.density > 0.0 and seen.distance < length and not followed:
+            total += seen.radiance * power_share(sampled, seen.density * chance)
+    return total
 
 
 @apart
