@@ -73,6 +73,8 @@ PACKAGES: Final = (
     Package("anywidget", "notebook", "sliders in notebooks"),
     Package("pyoidn", "denoise", "removing noise"),
     Package("fonttools", "text", "letters of fonts", "fontTools"),
+    Package("markdown-it-py", "lessons", "pages of lessons", "markdown_it"),
+    Package("pygments", "lessons", "pages of lessons"),
 )
 _BY_MODULE: Final = {package.imported_as: package for package in PACKAGES}
 # Texts of errors that loaders and libraries raise when memory runs out; the class varies.

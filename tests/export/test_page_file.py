@@ -277,6 +277,7 @@ def test_a_view_that_webgl_cannot_show_is_left_out(rings, tmp_path, monkeypatch)
             2,
             "error: there is no target 'metal'",
         ),
+        (["{file}", "-o", "{out}/a.html", "--no-caustics"], 2, "error: --no-caustics is for"),
         (["{file}", "-o", "{file}", "--target", "isf"], 2, "error: '{file}' is the scene itself"),
     ],
 )

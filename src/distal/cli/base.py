@@ -126,6 +126,13 @@ ModeOption = Annotated[
         show_default=False,
     ),
 ]
+CausticsOption = Annotated[
+    bool,
+    typer.Option(
+        "--caustics/--no-caustics",
+        help="In mode path: whether photons find the light that glass and mirrors bundle.",
+    ),
+]
 TimeOption = Annotated[str, typer.Option("--time", metavar="S", help="Seconds.")]
 SetOption = Annotated[
     list[str] | None,

@@ -15,6 +15,7 @@ import typer
 from distal.backends import TEXT_TARGETS
 from distal.cli.arguments import UsageError, read_scene, read_size, read_time
 from distal.cli.base import (
+    CausticsOption,
     LookOption,
     ModeOption,
     SceneArgument,
@@ -74,6 +75,7 @@ def export(
     ] = None,
     look: LookOption = None,
     mode: ModeOption = None,
+    caustics: CausticsOption = True,
     title: Annotated[
         str | None, typer.Option(help="Of a page: what it is called.", show_default=False)
     ] = None,
@@ -98,6 +100,7 @@ def export(
         "--size": ("size", _size(size)),
         "--duration": ("duration", _duration(duration)),
         "--mode": ("mode", mode),
+        "--no-caustics": ("caustics", None if caustics else False),
         "--title": ("title", title),
         "--views": ("views", None if views is None else _views(views)),
         "--embed": ("embed", embed or None),
@@ -173,9 +176,13 @@ def _write(
 
     obj, values = load_picture(scene, assignments)
     try:
-        seen = viewable(obj, values, options["time"], look).in_mode(options.get("mode"))
+        seen = viewable(obj, values, options["time"], look).in_mode(
+            options.get("mode"), caustics=options.get("caustics")
+        )
     except ValueError as error:
         raise UsageError(str(error)) from None
+    if seen.mode != "path" and options.get("caustics") is False:
+        raise UsageError("--no-caustics is for --mode path")
     for name in (options["view"], *(options.get("views") or ())):
         check_view(seen, name)
     options["params"] = values

@@ -18,6 +18,7 @@ import typer
 from distal.cli.arguments import UsageError, read_plane, read_size, read_time
 from distal.cli.base import (
     AdapterOption,
+    CausticsOption,
     Device,
     DeviceOption,
     LookOption,
@@ -185,13 +186,7 @@ def render(
             help="In mode path: use the samples of a run that was broken off, and keep them.",
         ),
     ] = False,
-    caustics: Annotated[
-        bool,
-        typer.Option(
-            "--caustics/--no-caustics",
-            help="In mode path: whether photons find the light that glass and mirrors bundle.",
-        ),
-    ] = True,
+    caustics: CausticsOption = True,
     view: Annotated[
         str | None,
         typer.Option(

@@ -14,6 +14,7 @@ import typer
 from distal.cli.arguments import UsageError, read_scene, read_size, read_time
 from distal.cli.base import (
     AdapterOption,
+    CausticsOption,
     Device,
     DeviceOption,
     LookOption,
@@ -48,6 +49,7 @@ def view(
     paused: Annotated[bool, typer.Option("--paused", help="Begin with the time paused.")] = False,
     look: LookOption = None,
     mode: ModeOption = None,
+    caustics: CausticsOption = True,
 ) -> None:
     """Show a scene in a window, and reload it whenever its file is saved. H shows the keys."""
     from distal.lang.render_options import RenderOptions
@@ -75,6 +77,7 @@ def view(
             paused=paused,
             look=look,
             mode=mode,
+            caustics=caustics,
         )
     except ValueError as error:
         raise UsageError(str(error)) from None

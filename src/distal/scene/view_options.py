@@ -7,8 +7,8 @@ Input: values from a caller. Output: a ``ViewOptions``, and the numbers that its
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 MODES: Final = ("direct", "path")
 # The options of mode "path", and those of them that a picture's file records.
-RECORDED: Final = ("noise", "filter", "shutter", "clamp", "denoise")
+RECORDED: Final = ("noise", "filter", "shutter", "clamp", "denoise", "caustics")
 _OF_PATHS: Final = ("spp", "time_limit", "film", "preview", *RECORDED)
 
 
@@ -115,12 +115,9 @@ class ViewOptions:
         Raises:
             ValueError: An option for paths was given in mode "direct", or contradicts another.
         """
-        given = {name: getattr(self, name) for name in _OF_PATHS}
-        given["caustics"] = None if self.caustics else "off"
         if (self.mode or mode) != "path":
-            for name, value in given.items():
-                if value is not None and value is not False:
-                    raise ValueError(f"{name} is for mode 'path'")
+            for name in self._given(_OF_PATHS):
+                raise ValueError(f"{name} is for mode 'path'")
             for name in self.layers:
                 if name in OF_SAMPLES:
                     raise ValueError(f"the layer '{name}' is for mode 'path'")
@@ -152,8 +149,13 @@ class ViewOptions:
     @property
     def recorded(self) -> dict[str, Any]:
         """The options of mode "path" that a picture's file records, by name."""
-        given = {name: getattr(self, name) for name in RECORDED}
-        return {name: value for name, value in given.items() if value not in (None, False)}
+        return self._given(RECORDED)
+
+    def _given(self, names: Iterable[str]) -> dict[str, Any]:
+        """Return those of these options that are not at their defaults, by name."""
+        defaults = {option.name: option.default for option in fields(self)}
+        found = {name: getattr(self, name) for name in names}
+        return {name: value for name, value in found.items() if value != defaults[name]}
 
     @property
     def steering_settings(self) -> dict[str, Any]:

@@ -10,7 +10,7 @@ import sys
 import time
 import traceback
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -54,12 +54,14 @@ class SceneSource:
         name: The name of the object in the file; None for the default.
         files: The file and the modules that it imported.
         look: The name of a look to show it in; None for its own.
+        caustics: Whether photons find the caustics of paths.
     """
 
     path: str
     name: str | None
     files: tuple[Path, ...]
     look: str | None = None
+    caustics: bool = True
 
     @property
     def title(self) -> str:
@@ -287,7 +289,9 @@ class Application:
         shot, renderer = session.shot(time.monotonic()), self._scheduler.renderer
 
         def job(_: object) -> ReloadedScene:
-            return load_again(source.path, source.name, shot, renderer, source.look)
+            return load_again(
+                source.path, source.name, shot, renderer, source.look, source.caustics
+            )
 
         self._submit(job, self._loaded)
         self.wake()
@@ -304,7 +308,7 @@ class Application:
             self._watch.watch([*self._source.files, *files_in(result, self._source.files[0])])
         else:
             self._trouble_of_file = self._trouble_of_frame = self._last_report = ""
-            self._source = SceneSource(self._source.path, self._source.name, result.files)
+            self._source = replace(self._source, files=result.files)
             self._watch.watch(result.files)
             self._session.adopt(result.viewable, time.monotonic(), animated=result.animated)
             self._log("loaded", files=[str(file) for file in result.files])

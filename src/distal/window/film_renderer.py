@@ -100,7 +100,8 @@ class FilmRenderer:
         light = self._film.light
         shown = self._passes(viewable, shot, size, never).shown(light)
         made = replace(direct, array=shown, light=light, stats=self._film.figures())
-        return made.with_provenance(mode="path", samples=self._done)
+        paths = {} if viewable.caustics else {"caustics": False}
+        return made.with_provenance(mode="path", samples=self._done, paths=paths)
 
     def _passes(
         self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event

@@ -31,6 +31,7 @@ def view(
     paused: bool = False,
     look: str | None = None,
     mode: str | None = None,
+    caustics: bool = True,
 ) -> tuple[int, bool]:
     """Show a loaded object until the window is closed.
 
@@ -45,6 +46,7 @@ def view(
         paused: Whether the time is paused at the start.
         look: The name of a look to show it in; None for its own.
         mode: How light is computed: "direct" or "path"; None: as the scene says.
+        caustics: Whether photons find the caustics of paths.
 
     Returns:
         The exit code, 0 or 130, and whether all threads have ended: a running compilation cannot
@@ -57,8 +59,8 @@ def view(
     """
     check_display()
     known = loaded_from(obj)
-    origin = SceneSource(path, name, known.files if known is not None else (), look)
-    shown = viewable(obj, options.params, options.time, look)
+    origin = SceneSource(path, name, known.files if known is not None else (), look, caustics)
+    shown = viewable(obj, options.params, options.time, look).in_mode(None, caustics=caustics)
     shown.in_mode(mode)  # raises if it has no such mode
     if first_view not in shown.views:
         raise ValueError(f"there is no view '{first_view:.40}'; views: {', '.join(shown.views)}")

@@ -89,7 +89,12 @@ class ReloadedScene:
 
 
 def load_again(
-    path: str, name: str | None, shot: Shot, maker: FrameRenderer, look: str | None = None
+    path: str,
+    name: str | None,
+    shot: Shot,
+    maker: FrameRenderer,
+    look: str | None = None,
+    caustics: bool = True,
 ) -> ReloadedScene:
     """Load a scene again and compile it for the current shot.
 
@@ -99,6 +104,7 @@ def load_again(
         shot: The current shot.
         maker: Compiles and renders the frames.
         look: The name of a look to show it in; None for its own.
+        caustics: Whether photons find the caustics of paths.
 
     Raises:
         LoadError, CompileError: There is a mistake; the scene that was loaded before still works.
@@ -108,7 +114,7 @@ def load_again(
     origin = loaded_from(obj)
     assert origin is not None, "it was loaded just now"
     values = valid_values(obj.parameters(), dict(shot.parameters))
-    shown = viewable(obj, values, shot.time, look)
+    shown = viewable(obj, values, shot.time, look).in_mode(None, caustics=caustics)
     view = shot.view if shot.view in shown.views else shown.views[0]
     parameters = tuple(sorted(values.items()))
     steering = (shot.steering or STILL) if shown.steers else None

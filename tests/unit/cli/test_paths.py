@@ -37,13 +37,18 @@ def run(tmp_path, monkeypatch):
 def test_options_reach_the_picture(run):
     result = run(
         "-o", "a.png", "--mode", "path", "--spp", "8", "--filter", "box", "--clamp", "5",
-        "--shutter", "0.1", "--stats",
+        "--shutter", "0.1", "--no-caustics", "--stats",
     )  # fmt: skip
     assert result.exit_code == 0, result.output
     figures = json.loads(result.stdout)
     assert figures["samples"] == 8 and figures["clamp"] == 5.0
     origin = picture_files.read(Path("a.png")).provenance
-    assert origin.paths == {"filter": "box", "clamp": 5.0, "shutter": 0.1}
+    assert origin.paths == {
+        "filter": "box",
+        "clamp": 5.0,
+        "shutter": 0.1,
+        "caustics": False,
+    }
     assert not Path("a.png.film").exists()
 
 
