@@ -50,6 +50,7 @@ from distal.ir.types import Buffer, Kind, Struct, Texture, TextureShape, kind_of
 from distal.ir.walk import children
 
 Memo = dict[Expr, Value]
+Step = Callable[[Scope, Memo], Value]
 
 
 class ReferenceExpressions:
@@ -81,7 +82,7 @@ class ReferenceExpressions:
             for u in module.uniforms
         }
         self._calls: dict[Expr, bool] = {}
-        self._constants: Memo = {}
+        self._steps: dict[Expr, Step] = {}
         self._per_frame: dict[str, Value] = {}
         nowhere = Scope(ActiveCall(1), 1)
         with np.errstate(all="ignore"):
@@ -107,82 +108,108 @@ class ReferenceExpressions:
     def _evaluate(self, e: Expr, scope: Scope, memo: Memo) -> Value:
         value = memo.get(e)
         if value is None:
-            value = memo[e] = self._compute(e, scope, memo)
+            step = self._steps.get(e)
+            if step is None:
+                step = self._steps[e] = self._step(e)
+            value = memo[e] = step(scope, memo)
         return value
 
-    def _compute(self, e: Expr, scope: Scope, memo: Memo) -> Value:
+    def _step(self, e: Expr) -> Step:
+        """Return the function that computes a node. It is found once and called many times."""
         match e:
             case Const(value, type):
-                known = self._constants.get(e)
-                if known is None:
-                    known = self._constants[e] = operations.as_value(value, type, self.precision)
-                return known
+                known = operations.as_value(value, type, self.precision)
+                return lambda scope, memo: known
             case Read(name):
-                return scope.read(name)
+                return lambda scope, memo: scope.read(name)
             case Uniform(name):
-                return self._uniforms[name]
+                known = self._uniforms[name]
+                return lambda scope, memo: known
             case PerFrame(name):
-                return self._per_frame[name]
+                known = self._per_frame[name]
+                return lambda scope, memo: known
             case Logical(op, lhs, rhs):
-                return self._logical(op, lhs, rhs, scope, memo)
+                return lambda scope, memo: self._logical(op, lhs, rhs, scope, memo)
             case Select(condition, yes, no):
-                return self._select(self._leaf(condition, scope, memo), yes, no, scope, memo)
+                return lambda scope, memo: self._select(
+                    self._leaf(condition, scope, memo), yes, no, scope, memo
+                )
             case Construct(parts):
-                return tuple(self._evaluate(part, scope, memo) for part in parts)
+                return lambda scope, memo: tuple([self._evaluate(p, scope, memo) for p in parts])
             case Field(base, name):
-                fields = self._evaluate(base, scope, memo)
                 assert isinstance(base.type, Struct)
-                return fields[[n for n, _ in base.type.fields].index(name)]
+                place = [n for n, _ in base.type.fields].index(name)
+                return lambda scope, memo: self._evaluate(base, scope, memo)[place]
             case Index(base, index):
-                return self._index(base, self._leaf(index, scope, memo), scope, memo)
+                return lambda scope, memo: self._index(
+                    base, self._leaf(index, scope, memo), scope, memo
+                )
             case Call(name, args):
-                return self._call(name, [self._evaluate(a, scope, memo) for a in args])
+                return lambda scope, memo: self._call(
+                    name, [self._evaluate(a, scope, memo) for a in args]
+                )
             case Texel(Resource(name, Texture(shape)), index):
-                return self._texel(self._resources[name], shape, self._leaf(index, scope, memo))
+                data = self._resources[name]
+                return lambda scope, memo: self._texel(data, shape, self._leaf(index, scope, memo))
             case Size(Resource(name, type)):
-                return self._size(self._resources[name], type)
+                known = self._size(self._resources[name], type)
+                return lambda scope, memo: known
             case Resource() | FunctionRef() | Apply() | Gradient() | Sample() | Texel() | Size():
                 raise AssertionError(f"passes leave no such expression: {e}")
             case _:
-                return self._componentwise(e, [self._leaf(c, scope, memo) for c in children(e)])
+                return self._componentwise(e)
 
-    def _componentwise(self, e: Expr, operands: list[Leaf]) -> Leaf:
-        """Return the value of a node that depends only on the values of its operands."""
+    def _componentwise(self, e: Expr) -> Step:
+        """Return the step of a node that depends only on the values of its operands."""
+        meaning, operands, evaluate = self._meaning(e), children(e), self._evaluate
+        if len(operands) == 1:
+            (a,) = operands
+            return lambda scope, memo: meaning(evaluate(a, scope, memo))
+        if len(operands) == 2:
+            a, b = operands
+            return lambda scope, memo: meaning(evaluate(a, scope, memo), evaluate(b, scope, memo))
+        return lambda scope, memo: meaning(*[evaluate(o, scope, memo) for o in operands])
+
+    def _meaning(self, e: Expr) -> Callable[..., Leaf]:
         match e:
             case Unary(op):
-                return operations.unary(op, *operands)
+                return operations.UNARY[op]
             case Binary(op):
-                return operations.binary(op, *operands)
+                return operations.BINARY[op]
             case Compare(op):
-                return operations.compare(op, *operands)
+                return operations.COMPARISONS[op]
             case MatMul():
-                return operations.matrix_product(*operands)
+                return operations.matrix_product
             case Splat(_, type):
-                return operations.splat(operands[0], type)
+                return lambda value: operations.splat(value, type)
             case Compose(_, type):
-                return operations.compose(operands, type)
+                return lambda *parts: operations.compose(parts, type)
             case Swizzle(_, lanes):
                 positions = ["xyzw".index(lane) for lane in lanes]
-                return operands[0][positions if len(positions) > 1 else positions[0]]
+                key = positions if len(positions) > 1 else positions[0]
+                return lambda base: base[key]
             case Cast(_, type):
                 kind = kind_of(type)
                 assert kind is not None
-                return operations.convert(operands[0], kind, self.precision)
+                return lambda value: operations.convert(value, kind, self.precision)
             case Builtin(name):
-                return self._builtin(name, operands)
+                return self._builtin(name)
             case _:
                 raise AssertionError(f"not an expression of components: {e}")
 
-    def _builtin(self, name: str, operands: list[Leaf]) -> Leaf:
+    def _builtin(self, name: str) -> Callable[..., Leaf]:
         meaning = INTRINSICS[name].meaning
         assert meaning is not None, f"decompose leaves no {name} here"
+        dtype = operations.dtype_of(Kind.FLOAT, self.precision)
+
+        def computed(*operands: Leaf) -> Leaf:
+            result: Leaf = meaning(np, *operands)
+            return result.astype(dtype, copy=False) if result.dtype.kind == "f" else result
+
+        if not name.startswith("float_bits"):
+            return computed
         # In either precision, the bits are those of a 32-bit float.
-        if name.startswith("float_bits"):
-            operands = [a.astype(np.float32) for a in operands]
-        result: Leaf = meaning(np, *operands)
-        if result.dtype.kind == "f":
-            return result.astype(operations.dtype_of(Kind.FLOAT, self.precision), copy=False)
-        return result
+        return lambda *operands: computed(*[a.astype(np.float32) for a in operands])
 
     def _logical(self, op: LogicalOp, lhs: Expr, rhs: Expr, scope: Scope, memo: Memo) -> Value:
         first = self._leaf(lhs, scope, memo)

@@ -8,8 +8,8 @@ or on names.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, TypeAlias, assert_never
+from collections.abc import Callable, Sequence
+from typing import Any, Final, TypeAlias, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,56 +97,6 @@ def choose(condition: Leaf, yes: Value, no: Value) -> Value:
     return each_leaf(chosen, yes, no)
 
 
-def unary(op: UnaryOp, operand: Leaf) -> Leaf:
-    """Return ``op operand``."""
-    match op:
-        case UnaryOp.NEGATE:
-            return np.negative(operand)
-        case UnaryOp.NOT:
-            return np.logical_not(operand)
-        case UnaryOp.INVERT:
-            return np.invert(operand)
-        case _:
-            assert_never(op)
-
-
-def binary(op: BinaryOp, a: Leaf, b: Leaf) -> Leaf:
-    """Return ``a op b``, component by component.
-
-    Args:
-        op: The operator.
-        a: The left operand.
-        b: The right operand, of the same kind.
-    """
-    match op:
-        case BinaryOp.ADD:
-            return a + b
-        case BinaryOp.SUB:
-            return a - b
-        case BinaryOp.MUL:
-            return a * b
-        case BinaryOp.DIV:
-            return a / b
-        case BinaryOp.FLOOR_DIV:
-            return _floor_quotient(a, b)
-        case BinaryOp.MOD:
-            return a - b * _floor_quotient(a, b) if _is_float(a) else _int_remainder(a, b)
-        case BinaryOp.AND:
-            return a & b
-        case BinaryOp.OR:
-            return a | b
-        case BinaryOp.XOR:
-            return a ^ b
-        case BinaryOp.SHL:
-            # Shift as unsigned: the highest bits are lost, including the sign.
-            return (a.view(np.uint32) << (b.view(np.uint32) & np.uint32(31))).view(a.dtype)
-        case BinaryOp.SHR:
-            shifted: Leaf = a >> (b & b.dtype.type(31))
-            return shifted
-        case _:
-            assert_never(op)
-
-
 def _is_float(a: Leaf) -> bool:
     return a.dtype.kind == "f"
 
@@ -164,31 +114,49 @@ def _int_remainder(a: Leaf, b: Leaf) -> Leaf:
     return (a.astype(np.int64) % divisor).astype(a.dtype)
 
 
-def compare(op: CompareOp, a: Leaf, b: Leaf) -> Leaf:
-    """Return the comparison ``a op b``, component by component.
+def _mod(a: Leaf, b: Leaf) -> Leaf:
+    return a - b * _floor_quotient(a, b) if _is_float(a) else _int_remainder(a, b)
 
-    Args:
-        op: The comparison.
-        a: The left operand.
-        b: The right operand, of the same kind.
-    """
-    result: Leaf
-    match op:
-        case CompareOp.EQ:
-            result = a == b
-        case CompareOp.NE:
-            result = a != b
-        case CompareOp.LT:
-            result = a < b
-        case CompareOp.LE:
-            result = a <= b
-        case CompareOp.GT:
-            result = a > b
-        case CompareOp.GE:
-            result = a >= b
-        case _:
-            assert_never(op)
-    return result
+
+def _shifted_left(a: Leaf, b: Leaf) -> Leaf:
+    # Shift as unsigned: the highest bits are lost, including the sign.
+    return (a.view(np.uint32) << (b.view(np.uint32) & np.uint32(31))).view(a.dtype)
+
+
+def _shifted_right(a: Leaf, b: Leaf) -> Leaf:
+    shifted: Leaf = a >> (b & b.dtype.type(31))
+    return shifted
+
+
+# The operators, component by component; both operands are of the same kind.
+UNARY: Final[dict[UnaryOp, Callable[[Leaf], Leaf]]] = {
+    UnaryOp.NEGATE: np.negative,
+    UnaryOp.NOT: np.logical_not,
+    UnaryOp.INVERT: np.invert,
+}
+BINARY: Final[dict[BinaryOp, Callable[[Leaf, Leaf], Leaf]]] = {
+    BinaryOp.ADD: np.add,
+    BinaryOp.SUB: np.subtract,
+    BinaryOp.MUL: np.multiply,
+    BinaryOp.DIV: np.true_divide,
+    BinaryOp.FLOOR_DIV: _floor_quotient,
+    BinaryOp.MOD: _mod,
+    BinaryOp.AND: np.bitwise_and,
+    BinaryOp.OR: np.bitwise_or,
+    BinaryOp.XOR: np.bitwise_xor,
+    BinaryOp.SHL: _shifted_left,
+    BinaryOp.SHR: _shifted_right,
+}
+COMPARISONS: Final[dict[CompareOp, Callable[[Leaf, Leaf], Leaf]]] = {
+    CompareOp.EQ: np.equal,
+    CompareOp.NE: np.not_equal,
+    CompareOp.LT: np.less,
+    CompareOp.LE: np.less_equal,
+    CompareOp.GT: np.greater,
+    CompareOp.GE: np.greater_equal,
+}
+for _table, _operators in ((UNARY, UnaryOp), (BINARY, BinaryOp), (COMPARISONS, CompareOp)):
+    assert set(_table) == set(_operators), "an operator without a meaning"
 
 
 def convert(a: Leaf, kind: Kind, precision: int) -> Leaf:
@@ -244,22 +212,30 @@ def _inner(a: Leaf, b: Leaf) -> Leaf:
 
 def splat(value: Leaf, type: Type) -> Leaf:
     """Return a vector or matrix with a scalar in every component."""
-    match type:
-        case Vector(_, size):
-            return np.broadcast_to(value, (size, *value.shape))
-        case Matrix(size):
-            return np.broadcast_to(value, (size, size, *value.shape))
-        case _:
-            raise AssertionError(f"nothing is splatted to {type}")
+    assert isinstance(type, Vector | Matrix), f"nothing is splatted to {type}"
+    shape = (type.size,) if isinstance(type, Vector) else (type.size, type.size)
+    whole = np.empty((*shape, *value.shape), value.dtype)
+    whole[...] = value
+    return whole
 
 
-def compose(parts: list[Leaf], type: Type) -> Leaf:
+def compose(parts: Sequence[Leaf], type: Type) -> Leaf:
     """Return a vector made of scalars and vectors, or a matrix made of columns."""
-    lanes = max(part.shape[-1] for part in parts)
+    assert isinstance(type, Vector | Matrix), f"no {type} is composed"
+    lanes = max([part.shape[-1] for part in parts])
     if isinstance(type, Matrix):
-        return np.stack([np.broadcast_to(part, (type.size, lanes)) for part in parts])
-    rows = [np.atleast_2d(part) for part in parts]
-    return np.concatenate([np.broadcast_to(row, (len(row), lanes)) for row in rows])
+        matrix = np.empty((type.size, type.size, lanes), parts[0].dtype)
+        for column, part in enumerate(parts):
+            matrix[column] = part
+        return matrix
+    vector = np.empty((type.size, lanes), parts[0].dtype)
+    row = 0
+    for part in parts:
+        end = row + (1 if part.ndim == 1 else len(part))
+        vector[row:end] = part
+        row = end
+    assert row == type.size, f"{row} components for a {type}"
+    return vector
 
 
 def pick(base: Value, index: Leaf) -> Value:
