@@ -236,7 +236,7 @@ class ReferenceExpressions:
         """Compute each side only in its lanes: in other lanes a loop in it may not end."""
         result: Value | None = None
         for e, taken in ((yes, condition), (no, ~condition)):
-            lanes = np.flatnonzero(taken)
+            lanes = taken.nonzero()[0]
             value = self._evaluate(e, scope.narrowed(lanes), {})
             base = operations.blank(value) if result is None else result
             result = operations.scatter(base, lanes, value, scope.lanes)

@@ -68,7 +68,7 @@ class Interpreter(ReferenceExpressions):
 
     def _call(self, name: str, args: Sequence[Value]) -> Value:
         function = self._functions[name]
-        lanes = max((operations.width(arg) for arg in args), default=1)
+        lanes = max([operations.width(arg) for arg in args], default=1)
         frame = ActiveCall(lanes)
         scope = Scope(frame, lanes)
         for param, arg in zip(function.params, args, strict=True):
@@ -84,7 +84,9 @@ class Interpreter(ReferenceExpressions):
             ways = self._statement(stmt, scope)
             if ways is None:
                 continue
-            staying = np.flatnonzero(ways == Way.ON)
+            if position == len(body) - 1:
+                return ways
+            staying = (ways == Way.ON).nonzero()[0]
             if len(staying) == 0:
                 return ways
             if len(staying) < scope.lanes:
@@ -111,12 +113,12 @@ class Interpreter(ReferenceExpressions):
             case While(_, body):
                 return self._loop(self._conditions(stmt), None, body, scope)
             case Break():
-                return np.full(scope.lanes, Way.BREAK, np.int8)
+                return _all_go(Way.BREAK, scope)
             case Continue():
-                return np.full(scope.lanes, Way.CONTINUE, np.int8)
+                return _all_go(Way.CONTINUE, scope)
             case Return(value):
                 scope.frame.give(self._evaluate(value, scope, {}), scope.absolute)
-                return np.full(scope.lanes, Way.RETURN, np.int8)
+                return _all_go(Way.RETURN, scope)
             case _:
                 assert_never(stmt)
 
@@ -152,7 +154,7 @@ class Interpreter(ReferenceExpressions):
             return self._block(otherwise, scope)
         ways = np.zeros(scope.lanes, np.int8)
         for block, taken in ((then, condition), (otherwise, ~condition)):
-            lanes = np.flatnonzero(taken)
+            lanes = taken.nonzero()[0]
             part = scope.narrowed(lanes)
             left = self._block(block, part)
             part.close()
@@ -217,6 +219,12 @@ class Interpreter(ReferenceExpressions):
             inside.close()
         staying = staying[kept]
         return staying, scope.narrowed(staying)
+
+
+def _all_go(way: np.int8, scope: Scope) -> Ways:
+    ways = np.empty(scope.lanes, np.int8)
+    ways.fill(way)
+    return ways
 
 
 def evaluate(

@@ -7,7 +7,7 @@ depend on nodes.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from enum import IntEnum
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,16 +16,17 @@ from distal.backends.numpy import operations
 from distal.backends.numpy.operations import Value
 
 
-class Way(IntEnum):
+class Way:
     """How a lane continues after a statement; ON continues with the next statement."""
 
-    ON = 0
-    BREAK = 1
-    CONTINUE = 2
-    RETURN = 3
+    # Not an enum: NumPy takes several times as long to compare an array with a member of one.
+    ON: Final = np.int8(0)
+    BREAK: Final = np.int8(1)
+    CONTINUE: Final = np.int8(2)
+    RETURN: Final = np.int8(3)
 
 
-@dataclass
+@dataclass(slots=True)
 class ActiveCall:
     """One call of a function.
 
@@ -48,7 +49,7 @@ class ActiveCall:
         self.result = operations.scatter(self.result, lanes, value, self.lanes)
 
 
-@dataclass
+@dataclass(slots=True)
 class Scope:
     """The locals of some lanes of a call.
 
