@@ -140,13 +140,29 @@ def test_targets_agree(device):
     assert far_off(a, b, 0.02) < 0.01
 
 
+def distance_from_box(points, low, high):
+    return np.linalg.norm(np.maximum(np.maximum(low - points, points - high), 0.0), axis=1)
+
+
 def test_distances_are_those_of_the_parts():
+    """A part whose box is farther than another part may be left out, where its field is less.
+
+    Fields of ellipsoids are less than the distance: both values are lower bounds then. Which one
+    comes depends on the lanes that walk the tree together, and so on the processor.
+    """
     rng = np.random.default_rng(2)
     shapes = [shape_of(rng, 0.3) for _ in range(40)]
     points = rng.uniform(-3, 3, (2000, 3))
-    expected = np.min([s(points) for s in shapes], axis=0)
+    fields = np.array([s(points) for s in shapes])
+    boxes = np.array([distance_from_box(points, *s.bounds()) for s in shapes])
+    least, most = fields.min(axis=0), np.maximum(fields, boxes).min(axis=0)
     whole = shapes[0].union(shapes[1:])
-    assert whole(points) == pytest.approx(expected, abs=2e-6)
+    found = whole(points)
+    assert (found >= least - 2e-6).all()
+    assert (found <= most + 2e-6).all()
+    equal = most - least < 2e-6
+    assert equal.mean() > 0.9
+    assert found[equal] == pytest.approx(least[equal], abs=4e-6)
     low, high = whole.bounds()
     assert low == pytest.approx(np.min([s.bounds()[0] for s in shapes], axis=0), abs=1e-5)
     assert high == pytest.approx(np.max([s.bounds()[1] for s in shapes], axis=0), abs=1e-5)

@@ -117,51 +117,15 @@ def first_scattering(
 
 
 @func
-def path_albedo(
-    ray: Ray,
-    first_hit: Callable[[Ray], Hit],
-    first_within: Callable[[Ray, Hit], int],
-    next_hit: Callable[[Ray, int, float, int], Hit],
-    field_of: Callable[[vec3, int], float],
-    surface: Callable[[vec3, Footprint, int], Surface],
-    numbers: March,
-    bodies: int,
-    common: int,
-    stream: Stream,
-    cone: Cone,
-    normals: int = EXACT,
-    normal_step: float = 1e-3,
-) -> vec4:
-    """Return the color of the first surface that scatters light; arguments as for it."""
-    seen = first_scattering(
-        ray, first_hit, first_within, next_hit, field_of, surface, numbers, bodies, common, stream,
-        cone, normals, normal_step,
-    )  # fmt: skip
+def seen_color(seen: SeenSurface) -> vec4:
+    """Return the color of the first surface that scatters light; alpha is 0 if there is none."""
     return vec4(seen.color, 1.0 if seen.found else 0.0)
 
 
 @func
-def path_normal(
-    ray: Ray,
-    first_hit: Callable[[Ray], Hit],
-    first_within: Callable[[Ray, Hit], int],
-    next_hit: Callable[[Ray, int, float, int], Hit],
-    field_of: Callable[[vec3, int], float],
-    surface: Callable[[vec3, Footprint, int], Surface],
-    numbers: March,
-    bodies: int,
-    common: int,
-    stream: Stream,
-    cone: Cone,
-    normals: int = EXACT,
-    normal_step: float = 1e-3,
-) -> vec4:
-    """Return the normal of the first surface that scatters light; arguments as for it."""
-    seen = first_scattering(
-        ray, first_hit, first_within, next_hit, field_of, surface, numbers, bodies, common, stream,
-        cone, normals, normal_step,
-    )  # fmt: skip
+def seen_normal(seen: SeenSurface) -> vec4:
+    """Return the normal of the first surface that scatters light; alpha is 0 if there is none."""
     return vec4(seen.normal, 1.0 if seen.found else 0.0)
 
 
-PATH_LAYERS = {"normal": path_normal, "albedo": path_albedo}
+PATH_LAYERS = {"normal": seen_normal, "albedo": seen_color}

@@ -470,9 +470,12 @@ class SceneLowering:
             if shown is layers.layer_material:
                 kind = MaterialNumber(self.composer, self._scene.material)
                 asked["identity"] = self._material_number(kind)
+            if of_paths:
+                asked["seen"] = self.composer.call(path_layers.first_scattering, asked)
             return self.composer.call(shown, asked)
 
-        follows = shown is PATHS or shown in PATH_LAYERS.values()
+        of_paths = shown in PATH_LAYERS.values()
+        follows = shown is PATHS or of_paths
         shines = follows or shown in RENDERERS.values()
         struct = self._assembly.struct
         params: list[tuple[str, Type]] = [("ray", struct(Ray)), ("cone", struct(Cone))]
