@@ -172,6 +172,23 @@ def test_a_floor_is_where_nobody_says_otherwise():
     assert has_floor(Scene(ball, lights=sun, floor=True))
 
 
+@pytest.mark.parametrize("mode", ["direct", "path"])
+def test_a_camera_below_the_floor_sees_the_scene(mode):
+    ball = Sphere(0.5).translate(0, 3, 0)
+    camera = Camera((0, 0, 4), target=(0, 3, 0))
+    scene = Scene(ball, camera=camera)
+    assert not has_floor(scene)
+    scene.render(size=(24, 18), mode=mode)  # no warning
+    inside = "inside 'translate' or below the floor"
+    hidden = Scene(ball, camera=camera, floor=True)
+    if mode == "direct":
+        with pytest.warns(UserWarning, match=f"{inside}: give floor=False"):
+            hidden.render(size=(24, 18))
+    else:
+        with pytest.raises(distal.CompileError, match=inside):
+            hidden.render(size=(24, 18), mode=mode)
+
+
 def test_the_floor_touches_the_lowest_point():
     scene = Scene(Box(2.0, 1.0, 2.0).translate(y=7.0))
     floor = next(node for node in scene.shape.node.walk() if node.label == "floor")

@@ -15,6 +15,7 @@ from distal.lang.render_options import Progress, Refinement, RenderOptions
 from distal.lang.runtime_access import executor
 from distal.scene.checks.warnings import (
     check_slopes,
+    hidden_camera,
     shows,
     warn_of_black,
     warn_of_camera,
@@ -103,8 +104,8 @@ def _check_visible(
 ) -> None:
     """Refuse a picture taken from inside a solid; warn of a black picture."""
     if not view.transparent and not shows(picture.array[..., 3]):
-        message = f"the camera is inside '{scene.subject.name}', and no ray finds a way out"
-        refuse(message, "move the camera, or look at the shape with view='slice'", scene.place)
+        where, hint = hidden_camera(scene)
+        refuse(f"the camera is {where}, and no ray finds a way out", hint, scene.place)
     warn_of_black(scene, picture, options.params, options.time)
 
 

@@ -71,8 +71,9 @@ class Scene(Composed, Presentable):
             ``@func`` of the direction.
         look: "studio" (the default), "outdoor", "sunset", "night" or "blueprint"; or one of these
             with other numbers: ``outdoor(exposure=1.2)``.
-        floor: Whether the scene stands on the look's floor. None: if it has no infinite part, and
-            a look is named or neither lights nor background are given.
+        floor: Whether the scene stands on the look's floor. None: if it has no infinite part,
+            no camera below the floor, and a look is named or neither lights nor background are
+            given.
         exposure: A factor on all light, applied before the tone map.
         tone_map: How light beyond the display's range is shown: "none", "reinhard", "aces", "agx"
             or "neutral".
@@ -166,6 +167,7 @@ class Scene(Composed, Presentable):
         made = Dressed(given, as_look(look, place), place, self.__dict__.get("staged"))
         with paused_collection():  # it would traverse all parts
             standing = floor if floor is not None else made.wants_floor(named=look is not None)
+            self.has_floor = standing
             self.shape = made.shown_shape(floor=standing)
             self.subject = made.shape  # without the look's floor
             check_cells(self.shape.node)

@@ -201,12 +201,22 @@ def warn_of_black(scene: Any, picture: Any, params: Mapping[str, Any], time: flo
     eye = _Eye(scene)
     shut = scene.renderer != "refracted"  # from inside glass a camera can see out
     if shut and executor().call(eye, (), {}, params=_read(eye, params), time=time) < 0.0:
-        refuse(
-            f"the camera is inside '{scene.subject.name}', and all around it is dark",
-            "move the camera, or look at the shape with view='slice'",
-            scene.place,
-        )
+        where, hint = hidden_camera(scene)
+        refuse(f"the camera is {where}, and all around it is dark", hint, scene.place)
     _warn("the picture is black: no light comes from what the camera sees", scene)
+
+
+def hidden_camera(scene: Any) -> tuple[str, str]:
+    """Return where a camera is that is inside of a solid, and what to do.
+
+    Args:
+        scene: The scene.
+    """
+    where = f"inside '{scene.subject.name}'"
+    hint = "move the camera, or look at the shape with view='slice'"
+    if scene.has_floor:
+        return f"{where} or below the floor", f"give floor=False, {hint}"
+    return where, hint
 
 
 def warn_of_camera(scene: Any) -> None:
@@ -229,8 +239,8 @@ def warn_of_lost_rays(scene: Any, lost: Mapping[str, float]) -> None:
         lost: The share of such pixels, by reason (``runtime.lost_rays``).
     """
     if lost.get("inside", 0.0) >= 1.0:
-        hint = "move the camera, or look at the shape with view='slice'"
-        _warn(f"the camera is inside '{scene.subject.name}': {hint}", scene)
+        where, hint = hidden_camera(scene)
+        _warn(f"the camera is {where}: {hint}", scene)
     found = {why: share for why, share in lost.items() if share > MOST_LOST and why != "inside"}
     if not found:
         return

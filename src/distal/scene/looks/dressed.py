@@ -86,7 +86,8 @@ class Dressed:
         """
         bare = self._given.lights is None and self._given.background is None
         box = self._dressing.box
-        return (named or bare) and not box.endless and not box.cut
+        fits = not box.endless and not box.cut and not self._dressing.is_seen_from_below
+        return (named or bare) and fits
 
     def shown_shape(self, *, floor: bool) -> BaseShape:
         """Return the shape, and the floor if it stands on it.

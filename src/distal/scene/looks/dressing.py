@@ -74,6 +74,7 @@ class Dressing:
         self.look = look
         self._find_box = find_box
         self._azimuth: Any = look["azimuth"]
+        self._eye_height = math.inf  # of the author's camera, where it is known
 
     @cached_property
     def box(self) -> SubjectBox:
@@ -90,6 +91,8 @@ class Dressing:
             time: Time in seconds.
         """
         values = camera.call.values
+        if "position" in values:
+            self._eye_height = plain_number(values["position"], params, time)[1]
         for name in ("azimuth", "yaw"):
             if name in values:
                 self._azimuth = plain_number(values[name], params, time)
@@ -157,10 +160,18 @@ class Dressing:
         return self._painted(self.look["material"], INK)
 
     @property
+    def is_seen_from_below(self) -> bool:
+        """Whether the author's camera stands below the floor, and sees nothing else."""
+        return self._eye_height < self._floor_height
+
+    @property
+    def _floor_height(self) -> float:
+        return self.box.low[1] - BELOW * self.box.radius
+
+    @property
     def floor(self) -> BaseShape:
         """The floor, at the lowest point of the box."""
-        height = self.box.low[1] - BELOW * self.box.radius
-        floor: BaseShape = Plane(y=height).paint(self.ground).named("floor")
+        floor: BaseShape = Plane(y=self._floor_height).paint(self.ground).named("floor")
         return floor
 
     @property
