@@ -44,7 +44,7 @@ for (const [source, file, paths] of [
     absWorkingDir: here,
     entryPoints: [source],
     outfile: file,
-    define: { PATHS: paths },
+    define: { PATHS: paths, EDITED: "false" },
     bundle: true,
     minify: true,
     format: "esm",

@@ -18,7 +18,7 @@ await build({
   outdir: folder,
   outExtension: { ".js": ".mjs" },
   bundle: true,
-  define: { PATHS: "true" },
+  define: { PATHS: "true", EDITED: "true" },
   platform: "node",
   format: "esm",
   target: "node20",

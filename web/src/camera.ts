@@ -28,7 +28,7 @@ export class Camera {
   #goal: Steering | null = null;
   #asking: Promise<void> | null = null;
 
-  constructor(readonly elevation: number) {}
+  constructor(public elevation: number) {}
 
   get steering(): Steering {
     return copied(this.#state);

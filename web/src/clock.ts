@@ -15,8 +15,8 @@ export class Clock {
   speed = 1;
 
   constructor(
-    readonly start: number,
-    readonly duration: number | null,
+    public start: number,
+    public duration: number | null,
   ) {
     this.time = start;
   }

@@ -13,6 +13,7 @@ import { helpOf } from "./help";
 import { press } from "./keyboard";
 import { Notices } from "./notices";
 import { panelOf } from "./panel";
+import type { Payload } from "./payload";
 import type { Player } from "./player";
 import type { State } from "./renderer";
 import style from "./style.css";
@@ -65,6 +66,18 @@ export class Frame {
       this.#stage.after(make("h2", { className: "title glass" }, payload.name));
       this.#box.append(this.#panel);
     }
+  }
+
+  /** Fits an editor's picture to another payload; an editor has embedded pictures, without panels. */
+  refresh(old: Payload): void {
+    if (!EDITED) return;
+    const { host, payload } = this.#player;
+    host.style.setProperty("--distal-shape", `${payload.size[0]} / ${payload.size[1]}`);
+    this.canvas.ariaLabel = this.#newCanvas().ariaLabel;
+    if (payload.time.animated === old.time.animated && payload.name === old.name) return;
+    const bar = toolbarOf(this.#player);
+    this.#bar.replaceWith(bar);
+    this.#bar = bar;
   }
 
   /** How much of the picture bar and panel cover; the author's frame lies in the rest. */

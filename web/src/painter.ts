@@ -71,6 +71,20 @@ export class Painter {
     return made;
   }
 
+  /** Forgets all other programs, textures and buffers, for an editor. */
+  keep(programs: Program[], resources: Payload["resources"]): void {
+    if (!EDITED) return;
+    for (const [source, made] of this.#programs) {
+      if (programs.includes(source)) continue;
+      this.#programs.delete(source);
+      void made.then(({ handle }) => this.gl.deleteProgram(handle), () => {});
+    }
+    const { sources, textures } = this.#resources;
+    if (resources === sources || JSON.stringify(resources) === JSON.stringify(sources)) return;
+    for (const [, texture] of textures.values()) this.gl.deleteTexture(texture);
+    this.#resources = new Resources(this.gl, resources);
+  }
+
   /** What a program draws that reads nothing, byte by byte, as `pixels`. */
   async bytes(source: Program, width: number, height: number): Promise<Uint8Array | null> {
     const program = await link(this.gl, source);

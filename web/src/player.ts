@@ -16,7 +16,15 @@ import { Hands, movesOf } from "./hands";
 import type { Actions } from "./keyboard";
 import { Mouse } from "./mouse";
 import { failureOf } from "./notices";
-import { programsOf, type Payload, type Program, type Value, type Values } from "./payload";
+import {
+  programsOf,
+  type Parameter,
+  type Payload,
+  type Program,
+  type UniformEntry,
+  type Value,
+  type Values,
+} from "./payload";
 import {
   FINEST_SAMPLES,
   Renderer,
@@ -26,6 +34,9 @@ import {
   type Subject,
 } from "./renderer";
 import { copy, save } from "./taking";
+import type { Given } from "./uniforms";
+
+type Numbers = Record<string, UniformEntry["default"]>;
 import { checked, clamp, same } from "./values";
 
 export interface Options {
@@ -40,7 +51,7 @@ export interface Options {
 }
 
 export class Player {
-  readonly payload: Payload;
+  payload: Payload;
   readonly camera: Camera | null;
   /** What the hand on the canvas does. */
   readonly hands: Hands;
@@ -56,6 +67,10 @@ export class Player {
   #ticked = 0;
   #held = false;
   #isGone = false;
+  /** Of an editor: the scene's numbers that are drawn in place of the payload's. */
+  declare numbers?: Numbers;
+  /** Draws with other numbers of the scene, until the next payload. */
+  declare setNumbers: (numbers: Numbers) => void;
   /** Of a page with paths: whether direct light is shown instead. */
   declare isDirect?: boolean;
 
@@ -98,16 +113,18 @@ export class Player {
         },
       }) as Pick<Actions, "mode">),
     };
-    for (const parameter of parameters) {
-      const given = checked(parameter, payload.values[parameter.name]);
-      this.#values[parameter.name] = given ?? parameter.default;
-    }
-    const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    this.#clock.playing = time.animated && (options.playing ?? !calm);
+    this.#take(parameters, payload.values);
+    this.#clock.playing = time.animated && (options.playing ?? !isCalm());
     this.#frame = new Frame(this, options.theme ?? "auto");
     const { canvas } = this.#frame;
     const transparent = options.transparent ?? false;
     this.#renderer = new Renderer(this.#subject(), payload.resources, transparent, canvas);
+    if (EDITED) {
+      this.setNumbers = (numbers) => {
+        this.numbers = { ...this.numbers, ...numbers };
+        this.#renderer.change();
+      };
+    }
     this.#frame.follow(
       (width, height) => this.#renderer.resize(width, height),
       (isVisible) => this.#see(isVisible),
@@ -119,6 +136,45 @@ export class Player {
   /** Calls `listener` at each event of the kind. Returns what ends that. */
   on<K extends keyof Events>(event: K, listener: (detail: Events[K]) => void): () => void {
     return this.#emitter.on(event, listener);
+  }
+
+  // An editor's own
+
+  /**
+   * Shows another payload in place. Camera, time, view, and the values of parameters that a person
+   * has changed and that still exist, are kept. False where a camera came or went: that needs
+   * another player.
+   */
+  async load(payload: Payload): Promise<boolean> {
+    if (!EDITED || !payload.steering !== !this.camera) return false;
+    const old = this.payload;
+    const { time, parameters } = payload;
+    this.payload = { ...payload, embed: old.embed, poster: null };
+    const programs = kept(this.#programs, await programsOf(payload));
+    if (this.payload.programs !== payload.programs) return true; // A newer one came.
+    if (this.camera) this.camera.elevation = payload.steering!.elevation;
+    Object.assign(this.#clock, { start: time.start, duration: time.duration });
+    if (time.animated !== old.time.animated) this.#run(time.animated && !isCalm());
+    const moved = old.parameters.filter((p) => !same(this.#values[p.name]!, p.default));
+    const values = moved.map(({ name }) => [name, this.#values[name]!]);
+    this.#values = {};
+    this.#take(parameters, Object.fromEntries(values) as Values);
+    this.numbers = {};
+    if (!payload.views.some(({ name }) => name === this.#view)) this.#view = payload.view;
+    this.#frame.refresh(old);
+    this.#renderer.resources = payload.resources;
+    if (this.#state === "waiting") return true;
+    this.#programs = programs;
+    this.#beGuided();
+    this.#compile();
+    return true;
+  }
+
+  #take(parameters: Parameter[], values: Values): void {
+    for (const parameter of parameters) {
+      const given = checked(parameter, values[parameter.name]);
+      this.#values[parameter.name] = given ?? parameter.default;
+    }
   }
 
   // Parameters
@@ -360,7 +416,10 @@ export class Player {
 
   async #start(): Promise<void> {
     try {
-      this.#programs = await programsOf(this.payload);
+      const { payload } = this;
+      const programs = await programsOf(payload);
+      if (EDITED && payload !== this.payload) return void this.#start();
+      this.#programs = programs;
     } catch (error) {
       this.#enter("failed", error);
       return;
@@ -387,6 +446,7 @@ export class Player {
   #compile(): void {
     const view = this.payload.views.find(({ name }) => name === this.#view)!;
     const program = this.#programs[view.program];
+    if (EDITED) this.#renderer.kept = this.#programs;
     if (PATHS && program && view.film) {
       const { trace, show, name, photons } = view.film;
       const at = (number: number) => this.#programs[number]!;
@@ -430,7 +490,7 @@ export class Player {
         const [wide, high] = player.payload.size;
         const covered = isWhole ? NOTHING_COVERED : player.#frame.covered;
         const { size, offset } = frameOn(width, height, covered, wide / high);
-        const steering = player.camera ? numbersOf(player.camera.steering) : {};
+        const steering: Given = player.camera ? numbersOf(player.camera.steering) : {};
         return {
           frame: {
             resolution: size,
@@ -439,7 +499,7 @@ export class Player {
             index: player.#clock.index,
           },
           parameter: player.#values,
-          number: { ...steering, Frame_offset: offset },
+          number: { ...(EDITED && player.numbers), ...steering, Frame_offset: offset },
         };
       },
       drawn: (report) => player.#drawn(report),
@@ -482,6 +542,25 @@ export class Player {
       this.#emitter.emit("error", { message: failure.sentence, log });
     }
   }
+}
+
+/** Whether people asked for less motion. */
+function isCalm(): boolean {
+  return matchMedia("(prefers-reduced-motion: reduce)").matches;
+}
+
+/** The new programs; those whose texts were there before are the old ones with new numbers. */
+function kept(old: Program[], fresh: Program[]): Program[] {
+  return fresh.map((program) => {
+    const same = old.find(
+      (one) => one.fragment === program.fragment && one.uniforms.length === program.uniforms.length,
+    );
+    if (!same) return program;
+    // Linked programs have these entries.
+    same.uniforms.forEach((entry, i) => Object.assign(entry, program.uniforms[i]));
+    const { uniforms } = same;
+    return Object.assign(same, { ...program, uniforms });
+  });
 }
 
 function done(_: void): true {

@@ -106,12 +106,14 @@ export class Renderer {
   #resting: ((isSharp: boolean) => void)[] = [];
   #isBroken = false;
   #times: number[] = [];
+  /** Of an editor: the programs that are still needed. */
+  declare kept?: Program[];
   /** The film of the program in use, if it has one. */
   declare paths?: Paths | null;
 
   constructor(
     readonly subject: Subject,
-    readonly resources: Payload["resources"],
+    public resources: Payload["resources"],
     readonly transparent: boolean,
     canvas: HTMLCanvasElement,
   ) {
@@ -145,6 +147,7 @@ export class Renderer {
       this.#resolution.forget();
       if (PATHS) this.paths = source.film ? new Paths(painter, source.film) : null;
       this.#enter("ready");
+      if (EDITED) painter.keep(this.kept!, this.resources);
       this.change();
       if (PATHS && this.paths) {
         await this.paths.prepare().catch((error: unknown) => {

@@ -21,7 +21,7 @@ const ARRAYS = {
 };
 
 export class Resources {
-  #textures = new Map<string, [target: number, texture: WebGLTexture]>();
+  readonly textures = new Map<string, [target: number, texture: WebGLTexture]>();
 
   constructor(
     readonly gl: GL,
@@ -50,13 +50,13 @@ export class Resources {
   #texture(entry: TextureEntry | BufferEntry): [number, WebGLTexture] {
     // The same pixels may be read with two wraps: they are two textures.
     const key = `${entry.name} ${"wrap" in entry ? entry.wrap : ""}`;
-    const known = this.#textures.get(key);
+    const known = this.textures.get(key);
     if (known) return known;
     const source = this.sources[entry.name];
     if (!source) throw new Error(`The page has no data for '${entry.name}'.`);
     const made: [number, WebGLTexture] =
       "count" in entry ? uploadBuffer(this.gl, source) : uploadTexture(this.gl, entry, source);
-    this.#textures.set(key, made);
+    this.textures.set(key, made);
     return made;
   }
 }

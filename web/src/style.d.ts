@@ -5,3 +5,5 @@ declare module "*.css" {
 
 /** Whether this is the script of pages with paths; a constant of the build. */
 declare const PATHS: boolean;
+/** Whether another payload can take the place of the first, as in an editor. */
+declare const EDITED: boolean;
