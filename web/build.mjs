@@ -1,12 +1,12 @@
 // Builds the player: src/main.ts -> one minified ES module, and another one that also traces paths;
-// and the script and style sheet of a lesson's page, whose script has the player inside.
+// and the scripts and style sheets of a lesson's page and of the studio, which have the player inside.
 //
-//   node build.mjs [FOLDER]     default: ../src/distal/export and ../src/distal/lessons
+//   node build.mjs [FOLDER]     default: export, lessons and editor/app of ../src/distal
 //
 // The output is committed, so that nobody needs Node to export a page; a test builds it again and
 // compares the bytes. Nothing of this machine goes in: no paths, no dates, no source map.
 
-import { readFile, writeFile } from "node:fs/promises";
+import { copyFile, mkdir, readFile, writeFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
 import { argv } from "node:process";
 import { fileURLToPath } from "node:url";
@@ -35,16 +35,19 @@ const styles = {
 
 const folder = argv[2] ?? join(here, "../src/distal/export");
 const lessons = argv[2] ?? join(here, "../src/distal/lessons");
-for (const [source, file, paths] of [
-  ["src/main.ts", join(folder, "player.js"), "false"],
-  ["src/main.ts", join(folder, "path_player.js"), "true"],
-  ["src/lesson/main.ts", join(lessons, "lesson.js"), "false"],
+const studio = argv[2] ?? join(here, "../src/distal/editor/app");
+await mkdir(studio, { recursive: true });
+for (const [source, file, paths, edited] of [
+  ["src/main.ts", join(folder, "player.js"), "false", "false"],
+  ["src/main.ts", join(folder, "path_player.js"), "true", "false"],
+  ["src/lesson/main.ts", join(lessons, "lesson.js"), "false", "false"],
+  ["src/studio/main.ts", join(studio, "studio.js"), "true", "true"],
 ]) {
   await build({
     absWorkingDir: here,
     entryPoints: [source],
     outfile: file,
-    define: { PATHS: paths, EDITED: "false" },
+    define: { PATHS: paths, EDITED: edited },
     bundle: true,
     minify: true,
     format: "esm",
@@ -55,6 +58,12 @@ for (const [source, file, paths] of [
     logLevel: "warning",
   });
 }
-const sheet = await readFile(join(here, "src/lesson/lesson.css"), "utf8");
-const { code } = await transform(sheet, { loader: "css", minify: true, target: "chrome123" });
-await writeFile(join(lessons, "lesson.css"), code);
+for (const [source, file] of [
+  ["src/lesson/lesson.css", join(lessons, "lesson.css")],
+  ["src/studio/studio.css", join(studio, "studio.css")],
+]) {
+  const sheet = await readFile(join(here, source), "utf8");
+  const { code } = await transform(sheet, { loader: "css", minify: true, target: "chrome123" });
+  await writeFile(file, code);
+}
+await copyFile(join(here, "src/studio/studio.html"), join(studio, "studio.html"));

@@ -75,6 +75,7 @@ PACKAGES: Final = (
     Package("fonttools", "text", "letters of fonts", "fontTools"),
     Package("markdown-it-py", "lessons", "pages of lessons", "markdown_it"),
     Package("pygments", "lessons", "pages of lessons"),
+    Package("websockets", "studio", "the studio in a browser"),
 )
 _BY_MODULE: Final = {package.imported_as: package for package in PACKAGES}
 # Texts of errors that loaders and libraries raise when memory runs out; the class varies.

@@ -15,7 +15,7 @@ import typer
 from typer.models import CommandInfo
 
 import distal
-from distal.cli import check, export, probe, render, rerender, video, view
+from distal.cli import check, export, probe, render, rerender, studio, video, view
 from distal.cli.arguments import UsageError, read_scene
 from distal.cli.base import SceneArgument, answer, application, load, reporting
 from distal.compiler.driver import COMPILE_TARGETS, IR_TARGET
@@ -25,10 +25,10 @@ from distal.loading import EXAMPLE_PREFIX
 from distal.version import __version__
 
 # Importing these modules adds their commands.
-COMMANDS = (render, check, probe, export, video, rerender, view)
+COMMANDS = (render, check, probe, export, video, rerender, view, studio)
 # The order in --help: first the commands that new users need.
 _ORDER = (
-    *("render", "view", "video", "export", "rerender"),
+    *("render", "view", "studio", "video", "export", "rerender"),
     *("check", "probe", "compile", "examples", "doctor"),
 )
 

@@ -7,7 +7,7 @@ program stayed. Needs the standard library alone.
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path, PurePath
 from typing import Any, Final, Literal, cast
 
@@ -20,6 +20,7 @@ from distal.editor.messages import (
     LookRequest,
     Mistake,
     NumbersFound,
+    Progress,
     SceneFound,
     ShapePlace,
     SourceLiteral,
@@ -47,10 +48,11 @@ class Looks:
 
     Args:
         folder: Where the modules beside the scene's file are put.
+        tell: Sends a message before the answer.
     """
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    def __init__(self, folder: Path, tell: Callable[[Progress], None] = lambda _: None) -> None:
+        self._folder, self._tell = folder, tell
         self._written: dict[str, str] = {}
         self._programs = KeptPrograms()
 
@@ -74,6 +76,8 @@ class Looks:
         self._put(files, request.main)
         loaded = load_text(self._folder / request.main, files[request.main], request.object, given)
         obj = loaded.picture
+        # From here on no code of the author runs, except functions that compute numbers.
+        self._tell(Progress(id=request.id, revision=request.revision, done=0.0, label="compiling"))
         seen = viewable(obj, self._values_of(obj, request), request.time, request.look)
         return loaded, seen.in_mode(request.mode)
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import itertools
 import os
 import queue
 import sys
@@ -52,17 +53,23 @@ from distal.export.payload import FORMAT
 from distal.packages import explained, is_installed
 from distal.version import __version__
 
+MOST_LINKS: Final = 1000  # entries of the scene's folder
+
 Send = Callable[[Message], None]
 _NAMED: Final = (CompileError, LoadError, DeviceError)
 _REFUSED: Final = (EditError, LiteralError, ValueError, TypeError, OSError)
 
 
 class StudioWorker:
-    """Answers requests. It keeps compiled programs between them."""
+    """Answers requests. It keeps compiled programs between them.
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
-        self._looks = Looks(folder)
+    Args:
+        folder: Where the modules beside the scene's file are put.
+        tell: Sends a message before the answer: that the author's code has ended.
+    """
+
+    def __init__(self, folder: Path, tell: Send = lambda _: None) -> None:
+        self._looks = Looks(folder, tell)
 
     def ready(self) -> Ready:
         """Return the worker's first message."""
@@ -202,7 +209,8 @@ def _read(lines: IO[str], arriving: queue.SimpleQueue[str | None]) -> None:
 def main() -> None:
     """Answer requests on standard input, in a folder that is removed at the end.
 
-    The streams of messages are copies: the author's code has neither.
+    The streams of messages are copies: the author's code has neither. An argument names the folder
+    of the scene, whose other files are linked beside the texts, so that a scene finds its pictures.
     """
     requests = os.fdopen(os.dup(0), "r", encoding="utf-8", newline="\n")
     messages = os.fdopen(os.dup(1), "w", encoding="utf-8", newline="\n")
@@ -215,7 +223,17 @@ def main() -> None:
         messages.flush()
 
     with tempfile.TemporaryDirectory(prefix="distal_studio_") as folder:
-        serve(StudioWorker(Path(folder)), requests, send)
+        if len(sys.argv) > 1:
+            _link_beside(Path(sys.argv[1]), Path(folder))
+        serve(StudioWorker(Path(folder), send), requests, send)
+
+
+def _link_beside(source: Path, folder: Path) -> None:
+    """Link what a folder has, apart from Python files, where links are allowed."""
+    for entry in itertools.islice(source.iterdir(), MOST_LINKS):
+        if entry.suffix != ".py" and entry.name != "__pycache__":
+            with contextlib.suppress(OSError):
+                (folder / entry.name).symlink_to(entry, target_is_directory=entry.is_dir())
 
 
 if __name__ == "__main__":

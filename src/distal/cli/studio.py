@@ -1,0 +1,87 @@
+"""``distal studio``: edit a scene in the browser.
+
+Input: parsed arguments. Output: a server on this machine until it is interrupted.
+"""
+
+from __future__ import annotations
+
+import webbrowser
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from distal.cli.arguments import UsageError
+from distal.cli.base import answer, application, reporting
+from distal.editor.local.files import SceneFiles
+from distal.loading import EXAMPLE_PREFIX, gallery
+
+# What a new file begins with.
+STARTER = '''"""A scene: change a number, or drag it, and see."""
+
+from distal import *
+
+ball = Sphere(0.6).paint("#d97757")
+box = Box(0.5).translate(0.7, 0.0, 0.0).paint("#4f7cac")
+
+scene = Scene(ball.smooth_union(box, 0.2))
+'''
+
+
+@application.command()
+@reporting
+def studio(
+    file: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[FILE]",
+            help="The scene: a Python file, or example:NAME for a copy. A file that is not there "
+            "yet begins with a small scene.",
+            show_default=False,
+        ),
+    ] = None,
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="The port; 0 for any that is free.")
+    ] = 0,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Open the browser.")
+    ] = True,
+    time_limit: Annotated[
+        float,
+        typer.Option(min=0.5, help="Seconds that the scene's own code may run at each change."),
+    ] = 5.0,
+) -> None:
+    """Edit a scene in the browser: code, picture and parameters side by side."""
+    from distal.editor.local.server import StudioServer
+
+    files = _files(file or "scene.py")
+    try:
+        server = StudioServer(files, port, time_limit)
+    except OSError as error:
+        raise UsageError(f"port {port} cannot be used: {error.strerror}") from None
+    address = server.address
+    answer(f"{files.main} at {address}\nCtrl-C ends it; unsaved changes stay in the browser.")
+    if browser:
+        webbrowser.open(address)
+    try:
+        server.serve()
+    except KeyboardInterrupt:
+        pass
+    finally:
+        server.close()
+
+
+def _files(given: str) -> SceneFiles:
+    if given.startswith(EXAMPLE_PREFIX):
+        name = given.removeprefix(EXAMPLE_PREFIX)
+        path = gallery().get(name)
+        if path is None:
+            raise UsageError(f"there is no example '{name}'; 'distal examples' lists them")
+        texts = SceneFiles(path).all().files
+        return SceneFiles(Path.cwd() / path.name, texts)
+    path = Path(given)
+    if path.is_dir() or path.suffix != ".py":
+        raise UsageError(f"'{given}' is not a Python file")
+    if not path.parent.is_dir():
+        raise UsageError(f"there is no folder '{path.parent}'")
+    return SceneFiles(path, None if path.exists() else {path.name: STARTER})

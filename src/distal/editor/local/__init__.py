@@ -1,0 +1,1 @@
+"""``distal studio``: the editor's app, served to a browser on the same machine."""

@@ -1,0 +1,149 @@
+"""One tab of the studio: its worker, what it asked for, and the clock that ends an endless loop.
+
+Input: messages of the app. Output: messages of the worker and of the server. While the author's
+code runs, a worker has a few seconds; once it compiles, it has longer. Needs the standard library
+alone.
+"""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from collections.abc import Callable
+from typing import Final
+
+from distal.diagnostics import LoadError
+from distal.editor.local.files import SceneFiles
+from distal.editor.local.process import WorkerProcess
+from distal.editor.messages import (
+    Answer,
+    AppRequest,
+    Dropped,
+    Message,
+    MessageError,
+    Mistake,
+    Mistakes,
+    Restarted,
+    SaveRequest,
+    StopRequest,
+    encoded,
+    parsed,
+)
+
+# Seconds that the author's code has, and that a compilation, a check or an export has after it.
+CODE_S: Final = 5.0
+WORK_S: Final = 120.0
+_TICK_S: Final = 0.1
+_ANSWERS: Final = ("scene", "numbers", "answer", "mistakes", "dropped")
+
+
+class Session:
+    """A tab and its worker.
+
+    Args:
+        files: The files.
+        send: Sends a text to the app.
+        limit: Seconds that the author's code has.
+        start: Starts a worker; by default a process.
+    """
+
+    def __init__(
+        self,
+        files: SceneFiles,
+        send: Callable[[str], None],
+        limit: float = CODE_S,
+        start: Callable[..., WorkerProcess] = WorkerProcess,
+    ) -> None:
+        self._files, self._send, self._limit, self._start = files, send, limit, start
+        self._lock = threading.RLock()
+        self._waiting: dict[int, int] = {}  # the revision by id, in the order of arrival
+        self._ends = 0.0
+        self._is_over = False
+        self._worker = self._started()
+        threading.Thread(target=self._watch, daemon=True).start()
+
+    def received(self, text: str) -> None:
+        """Take a message of the app."""
+        try:
+            request = parsed(text)
+        except MessageError as error:
+            self._tell(_refusal(-1, -1, str(error)))
+            return
+        if isinstance(request, SaveRequest):
+            self._tell(self._saved(request))
+        elif isinstance(request, AppRequest) and not isinstance(request, StopRequest):
+            with self._lock:
+                if not self._waiting:
+                    self._ends = time.monotonic() + self._limit
+                self._waiting[request.id] = request.revision
+                self._worker.send(encoded(request))
+
+    def end(self) -> None:
+        """End the worker; the app is gone."""
+        with self._lock:
+            self._is_over = True
+            self._worker.kill()
+
+    def _saved(self, request: SaveRequest) -> Message:
+        try:
+            saved = self._files.save(request.file, request.text, request.digest)
+        except LoadError as error:
+            return _refusal(request.id, request.revision, error.reason)
+        return Answer(id=request.id, revision=request.revision, request="save", result=saved)
+
+    def _started(self) -> WorkerProcess:
+        worker: WorkerProcess
+
+        def is_current() -> bool:
+            return not self._is_over and worker is self._worker
+
+        def received(line: str) -> None:
+            with self._lock:
+                if is_current():
+                    self._pass_on(line)
+
+        def ended(reason: str) -> None:
+            with self._lock:
+                if is_current():
+                    self._restart(reason)
+
+        worker = self._start(self._files.folder, received, ended)
+        return worker
+
+    def _pass_on(self, line: str) -> None:
+        """Send a worker's message to the app; its text is not read further than needed."""
+        found = json.loads(line)
+        kind, number = found.get("kind"), found.get("id")
+        if kind in _ANSWERS:
+            self._waiting.pop(number, None)
+            self._ends = time.monotonic() + self._limit
+        elif kind == "progress":
+            self._ends = time.monotonic() + WORK_S
+        self._send(line.rstrip("\n"))
+
+    def _watch(self) -> None:
+        while not self._is_over:
+            time.sleep(_TICK_S)
+            with self._lock:
+                if self._waiting and time.monotonic() > self._ends and not self._is_over:
+                    self._worker.kill()
+                    self._restart(f"the scene's code gave no answer within {self._limit:g} s")
+
+    def _restart(self, reason: str) -> None:
+        """Start another worker; the first request that waits is the one that was not answered."""
+        number, *others = [*self._waiting, None]
+        self._tell(Restarted(id=number, reason=reason))
+        for other in others:
+            if other is not None:
+                self._tell(Dropped(id=other, revision=self._waiting[other]))
+        self._waiting.clear()
+        self._worker = self._started()
+
+    def _tell(self, message: Message) -> None:
+        self._send(encoded(message))
+
+
+def _refusal(number: int, revision: int, text: str) -> Mistakes:
+    mistakes = (Mistake(severity="error", message=text),)
+    return Mistakes(id=number, revision=revision, mistakes=mistakes)

@@ -1,0 +1,73 @@
+/**
+ * Requests with their answers.
+ *
+ * Input: requests without numbers. Output: for each the one message that answers it; null where nobody
+ * will. All other messages are events.
+ */
+
+import type { Changed, Printed, Ready, Request, Response, Restarted } from "../generated/messages";
+import type { Channel } from "./channel";
+
+/** A request without its number, which the client gives. */
+export type Asked = Request extends infer R ? (R extends Request ? Omit<R, "id"> : never) : never;
+
+export interface ClientEvents {
+  ready(message: Ready): void;
+  changed(message: Changed): void;
+  printed(message: Printed): void;
+  restarted(message: Restarted): void;
+  /** Whether somebody is there. */
+  state(isOpen: boolean): void;
+}
+
+export class Client {
+  #count = 0;
+  #waiting = new Map<number, (response: Response | null) => void>();
+
+  constructor(
+    readonly channel: Channel,
+    readonly events: ClientEvents,
+  ) {
+    channel.onMessage = (message) => this.#received(message);
+    channel.onState = (isOpen) => {
+      if (!isOpen) this.#giveUp();
+      events.state(isOpen);
+    };
+  }
+
+  /** Resolves to the answer, or to null where the request is lost. */
+  ask(request: Asked): Promise<Response | null> {
+    const id = ++this.#count;
+    return new Promise((resolve) => {
+      this.#waiting.set(id, resolve);
+      this.channel.post({ ...request, id } as Request);
+    });
+  }
+
+  #giveUp(): void {
+    const waiting = [...this.#waiting.values()];
+    this.#waiting.clear();
+    for (const resolve of waiting) resolve(null);
+  }
+
+  #received(message: Response): void {
+    switch (message.kind) {
+      case "ready":
+      case "changed":
+      case "printed":
+        return this.events[message.kind](message as never);
+      case "restarted":
+        this.events.restarted(message);
+        return this.#answer(message.id ?? -1, null);
+      case "progress":
+        return;
+      default:
+        return this.#answer(message.id, message);
+    }
+  }
+
+  #answer(id: number, message: Response | null): void {
+    this.#waiting.get(id)?.(message);
+    this.#waiting.delete(id);
+  }
+}

@@ -1,0 +1,211 @@
+/**
+ * The code: an editor with a state for each file, mistakes at their lines, marks of literals.
+ *
+ * Input: texts, mistakes, literals, edits. Output: what a person types. It knows no messages but the
+ * records in them.
+ */
+
+import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } from "@codemirror/autocomplete";
+import { defaultKeymap, history, historyKeymap, indentWithTab, isolateHistory } from "@codemirror/commands";
+import { python } from "@codemirror/lang-python";
+import {
+  HighlightStyle,
+  bracketMatching,
+  foldKeymap,
+  indentOnInput,
+  indentUnit,
+  syntaxHighlighting,
+} from "@codemirror/language";
+import { lintGutter, lintKeymap, setDiagnostics, type Diagnostic } from "@codemirror/lint";
+import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
+import { EditorState, StateEffect, StateField, type Extension } from "@codemirror/state";
+import {
+  Decoration,
+  EditorView,
+  drawSelection,
+  highlightActiveLine,
+  highlightActiveLineGutter,
+  keymap,
+  lineNumbers,
+  type DecorationSet,
+} from "@codemirror/view";
+import { tags } from "@lezer/highlight";
+import type { Edit, Mistake, SourceLiteral } from "../generated/messages";
+import { literals, setLiterals, type Turning } from "./literals";
+
+export interface EditorEvents extends Turning {
+  /** A person changed a file's text. */
+  typed(name: string, text: string): void;
+  /** The caret is on another line, from 1. */
+  moved(name: string, line: number): void;
+  save(): void;
+  run(): void;
+}
+
+const HIGHLIGHT = HighlightStyle.define([
+  { tag: [tags.keyword, tags.operatorKeyword, tags.modifier], color: "var(--word)" },
+  { tag: [tags.string, tags.special(tags.string)], color: "var(--text)" },
+  { tag: [tags.comment, tags.docString], color: "var(--quiet)", fontStyle: "italic" },
+  { tag: [tags.number, tags.bool, tags.null], color: "var(--number)" },
+  { tag: [tags.definition(tags.variableName), tags.function(tags.definition(tags.variableName))], color: "var(--name)" },
+  { tag: [tags.className, tags.meta], color: "var(--name)" },
+]);
+
+const setLinked = StateEffect.define<readonly number[]>();
+
+/** Lines that another place points to. */
+const linked = StateField.define<DecorationSet>({
+  create: () => Decoration.none,
+  update(now, transaction) {
+    let set = now.map(transaction.changes);
+    for (const effect of transaction.effects) {
+      if (!effect.is(setLinked)) continue;
+      const { doc } = transaction.state;
+      const lines = effect.value.filter((line) => line >= 1 && line <= doc.lines);
+      const mark = Decoration.line({ class: "linked" });
+      set = Decoration.set(lines.map((line) => mark.range(doc.line(line).from)), true);
+    }
+    return set;
+  },
+  provide: (field) => EditorView.decorations.from(field),
+});
+
+export class Editor {
+  readonly view: EditorView;
+  #states = new Map<string, EditorState>();
+  #name = "";
+  #extensions: Extension;
+
+  constructor(
+    parent: HTMLElement,
+    readonly events: EditorEvents,
+    nonce: string,
+  ) {
+    this.#extensions = [
+      EditorView.cspNonce.of(nonce),
+      lineNumbers(),
+      highlightActiveLineGutter(),
+      lintGutter(),
+      history(),
+      drawSelection(),
+      indentOnInput(),
+      indentUnit.of("    "),
+      syntaxHighlighting(HIGHLIGHT),
+      bracketMatching(),
+      closeBrackets(),
+      autocompletion(),
+      highlightActiveLine(),
+      highlightSelectionMatches(),
+      linked,
+      python(),
+      literals(events),
+      keymap.of([
+        { key: "Mod-s", run: () => (events.save(), true), preventDefault: true },
+        { key: "Mod-Enter", run: () => (events.run(), true) },
+        ...closeBracketsKeymap,
+        ...defaultKeymap,
+        ...searchKeymap,
+        ...historyKeymap,
+        ...foldKeymap,
+        ...completionKeymap,
+        ...lintKeymap,
+        indentWithTab,
+      ]),
+      EditorView.contentAttributes.of({ "aria-label": "Code" }),
+      EditorView.updateListener.of((update) => {
+        const { state } = update;
+        if (update.docChanged) events.typed(this.#name, state.doc.toString());
+        if (update.selectionSet || update.docChanged) {
+          events.moved(this.#name, state.doc.lineAt(state.selection.main.head).number);
+        }
+      }),
+    ];
+    this.view = new EditorView({ parent, state: this.#fresh("") });
+  }
+
+  get name(): string {
+    return this.#name;
+  }
+
+  #fresh(text: string): EditorState {
+    return EditorState.create({ doc: text, extensions: this.#extensions });
+  }
+
+  /** Shows a file; each has its own history and place. */
+  show(name: string, text: string): void {
+    if (name === this.#name) return this.replace(name, text);
+    if (this.#name) this.#states.set(this.#name, this.view.state);
+    this.#name = name;
+    this.view.setState(this.#states.get(name) ?? this.#fresh(text));
+    this.replace(name, text);
+  }
+
+  /** Gives a file another text, as one step that can be undone. */
+  replace(name: string, text: string): void {
+    const state = name === this.#name ? this.view.state : this.#states.get(name);
+    if (!state || state.doc.toString() === text) return;
+    const changes = smallest(state.doc.toString(), text);
+    if (name === this.#name) this.view.dispatch({ changes, annotations: isolateHistory.of("full") });
+    else this.#states.set(name, state.update({ changes }).state);
+  }
+
+  /** Makes edits in the file that is shown, as one step that can be undone. */
+  apply(edits: readonly Edit[]): void {
+    const own = edits.filter(({ file }) => file === this.#name);
+    if (!own.length) return;
+    const changes = own.map(({ start, end, text }) => ({ from: start, to: end, insert: text }));
+    this.view.dispatch({ changes, userEvent: "input.dial", annotations: isolateHistory.of("full") });
+  }
+
+  setLiterals(found: readonly SourceLiteral[]): void {
+    this.view.dispatch({ effects: setLiterals.of(found.filter(({ file }) => file === this.#name)) });
+  }
+
+  setMistakes(mistakes: readonly Mistake[]): void {
+    const { state } = this.view;
+    const own = mistakes.filter(({ file, line }) => file === this.#name && line !== null);
+    const found = own.map((mistake): Diagnostic => {
+      const { message, hint, severity } = mistake;
+      const at = (line: number, column: number) => {
+        const { from, to } = state.doc.line(Math.min(Math.max(line, 1), state.doc.lines));
+        return Math.min(from + column, to);
+      };
+      const from = at(mistake.line!, mistake.column);
+      const to = Math.max(at(mistake.end_line || mistake.line!, mistake.end_column), from);
+      return {
+        from,
+        to,
+        severity: severity === "note" ? "info" : severity,
+        message: hint ? `${message}\nHint: ${hint}` : message,
+      };
+    });
+    this.view.dispatch(setDiagnostics(state, found));
+  }
+
+  /** Marks lines of the file that is shown. */
+  link(lines: readonly number[]): void {
+    this.view.dispatch({ effects: setLinked.of(lines) });
+  }
+
+  /** Puts the caret on a line, which comes into view. */
+  goTo(line: number, column = 0, isFocused = true): void {
+    const { doc } = this.view.state;
+    const { from, to } = doc.line(Math.min(Math.max(line, 1), doc.lines));
+    const anchor = Math.min(from + column, to);
+    this.view.dispatch({
+      selection: { anchor },
+      effects: EditorView.scrollIntoView(anchor, { y: "center" }),
+    });
+    if (isFocused) this.view.focus();
+  }
+}
+
+/** The smallest change that makes one text of another. */
+function smallest(old: string, text: string): { from: number; to: number; insert: string } {
+  let from = 0;
+  while (from < old.length && from < text.length && old[from] === text[from]) from++;
+  let last = 0;
+  const most = Math.min(old.length, text.length) - from;
+  while (last < most && old[old.length - 1 - last] === text[text.length - 1 - last]) last++;
+  return { from, to: old.length - last, insert: text.slice(from, text.length - last) };
+}

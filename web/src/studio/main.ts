@@ -1,0 +1,600 @@
+/**
+ * The studio: code, picture and parameters side by side.
+ *
+ * Input: the settings in the page, a channel to the worker. Output: the running app. Here what a person
+ * does becomes requests, and answers become what is seen; how either looks is in the other modules.
+ */
+
+import { make } from "../dom";
+import type {
+  Change,
+  Changed,
+  Edit,
+  LiteralValue,
+  Mistake,
+  NumbersFound,
+  Ready,
+  Response,
+  SceneFound,
+  SourceLiteral,
+} from "../generated/messages";
+import type { Value } from "../payload";
+import { SocketChannel } from "./channel";
+import { Client } from "./client";
+import { Editor } from "./editor";
+import { Emitted } from "./emitted";
+import { Page } from "./page";
+import { Picture } from "./picture";
+import { exports, gallery, help, sheet, type Example } from "./sheets";
+import { Texts } from "./texts";
+
+interface Settings {
+  main: string;
+  folder: string;
+  isNew: boolean;
+  gallery: Example[];
+  nonce: string;
+  version: string;
+}
+
+/** What a hand is turning. */
+interface Turn {
+  literal: SourceLiteral;
+  value: LiteralValue;
+  revision: number;
+  /** The name of the program's input that it is; of a number in a `@func`. */
+  held: string | null;
+  edits: Edit[];
+  isDone: boolean;
+  isBusy: boolean;
+  /** The value of the last answer. */
+  answered: LiteralValue | null;
+}
+
+/** After the last key, so long until the code is run. */
+const TYPING_MS = 120;
+const SIZE: [number, number] = [640, 480];
+const TEXT_TAB = "Emitted text";
+
+class Studio {
+  readonly texts: Texts;
+  readonly page = new Page(document.body);
+  readonly client: Client;
+  readonly editor: Editor;
+  readonly picture: Picture;
+  readonly emitted: Emitted;
+  #ready: Ready | null = null;
+  #key: string | null = null;
+  #object: string | null = null;
+  #isLooking = false;
+  #isStopped = false;
+  #wanted = -1;
+  #done = -1;
+  #timer = 0;
+  #turn: Turn | null = null;
+  #mistakes: readonly Mistake[] = [];
+  #tab = "";
+  #line = 0;
+  #keepsCamera = false;
+
+  constructor(readonly settings: Settings) {
+    const { folder, main, nonce } = settings;
+    this.texts = new Texts(folder);
+    this.picture = new Picture({
+      view: () => this.look(),
+      clicked: (x, y) => void this.#probe(x, y),
+      keepParameter: (name, value) => void this.#write({ what: "parameter", name, value: value as LiteralValue }),
+      keepCamera: (text) => {
+        this.#keepsCamera = true;
+        void this.#write({ what: "camera", text });
+      },
+      drawn: (text) => (this.page.drawn.textContent = text),
+    });
+    this.page.show.append(this.picture.element, this.picture.strip, this.picture.knobs);
+    this.editor = new Editor(
+      this.page.code,
+      {
+        typed: (name, text) => this.#typed(name, text),
+        moved: (name, line) => this.#moved(name, line),
+        save: () => void this.save(),
+        run: () => {
+          this.#isStopped = false;
+          this.look();
+        },
+        turn: (literal, value) => this.#turned(literal, value),
+        release: () => this.#released(),
+      },
+      nonce,
+    );
+    this.emitted = new Emitted(
+      nonce,
+      (file, line) => {
+        if (file in this.texts.files) this.#goTo(file, line);
+      },
+      () => void this.#emit(),
+    );
+    this.page.code.append(this.emitted.element);
+    this.#fillButtons();
+    this.client = new Client(new SocketChannel(`ws://${location.host}/socket`), {
+      ready: (message) => this.#started(message),
+      changed: (message) => this.#changed(message),
+      printed: ({ text }) => this.#print(text),
+      restarted: ({ reason }) => this.#restarted(reason),
+      state: (isOpen) => this.#connected(isOpen),
+    });
+    document.title = `${main} · distal`;
+    addEventListener("beforeunload", () => this.texts.names.forEach((name) => this.texts.keepDraft(name)));
+  }
+
+  // Requests
+
+  get #source() {
+    const { player } = this.picture;
+    const { files, revision } = this.texts;
+    const moved = player?.payload.parameters.filter(
+      ({ name, default: fallback }) => JSON.stringify(player.parameters()[name]) !== JSON.stringify(fallback),
+    );
+    const values = Object.fromEntries((moved ?? []).map(({ name }) => [name, player!.parameters()[name]!]));
+    return {
+      revision,
+      files,
+      main: this.settings.main,
+      object: this.#object,
+      view: player?.view ?? "color",
+      values: values as Record<string, Value>,
+      time: 0,
+      size: SIZE,
+    };
+  }
+
+  /** Runs the code as it is now; while one run is under way, once more after it. */
+  look(): void {
+    clearTimeout(this.#timer);
+    this.#wanted = Math.max(this.#wanted, 0) + 1;
+    void this.#lookOn();
+  }
+
+  async #lookOn(): Promise<void> {
+    if (this.#isLooking || this.#isStopped || !this.#ready || this.#turn) return;
+    this.#isLooking = true;
+    while (this.#done !== this.#wanted && !this.#isStopped && !this.#turn) {
+      const wanted = this.#wanted;
+      const { revision } = this.texts;
+      for (const name of this.texts.names) this.texts.keepDraft(name);
+      this.page.work.textContent = "…";
+      const answer = await this.client.ask({ kind: "look", ...this.#source, known: this.#key });
+      this.#done = wanted;
+      if (answer) await this.#take(answer, revision);
+    }
+    this.#isLooking = false;
+  }
+
+  /** Shows an answer. */
+  async #take(answer: Response, revision: number): Promise<void> {
+    if (answer.kind === "scene") {
+      await this.#scene(answer);
+    } else if (answer.kind === "numbers") {
+      this.#key = answer.key;
+      this.picture.setNumbers(answer);
+    } else if (answer.kind !== "mistakes") return;
+    const mistakes = answer.kind === "mistakes" ? answer.mistakes : [];
+    if (answer.kind === "mistakes") this.page.work.textContent = "Mistakes";
+    else this.page.work.textContent = workOf(answer);
+    this.picture.isOld = mistakes.length > 0;
+    if (this.texts.revision !== revision) return; // The text has gone on: its places would be wrong.
+    this.#showMistakes(mistakes);
+    if (answer.literals) this.editor.setLiterals(answer.literals);
+    if (this.#tab === TEXT_TAB) void this.#emit();
+    if (!mistakes.length && this.#keepsCamera) {
+      this.#keepsCamera = false;
+      this.picture.player?.resetCamera();
+    }
+  }
+
+  async #scene(answer: SceneFound): Promise<void> {
+    this.#key = answer.key;
+    const { objects } = this.page;
+    objects.hidden = answer.objects.length < 2;
+    objects.replaceChildren(...answer.objects.map((name) => make("option", { value: name }, name)));
+    if (this.#object) objects.value = this.#object;
+    await this.picture.show(answer.payload);
+  }
+
+  async #write(change: Partial<Change> & Pick<Change, "what">): Promise<void> {
+    const full = { file: null, start: null, end: null, name: null, value: null, text: null, ...change };
+    const { revision } = this.texts;
+    const answer = await this.client.ask({ kind: "write", ...this.#source, changes: [full as Change] });
+    if (answer?.kind === "mistakes") {
+      this.#keepsCamera = false;
+      return this.page.tell(answer.mistakes[0]!.message, ["Close", () => {}]);
+    }
+    if (answer?.kind !== "answer" || answer.request !== "write" || revision !== this.texts.revision) return;
+    this.#apply(answer.result.edits);
+  }
+
+  #apply(edits: readonly Edit[]): void {
+    const file = edits[0]?.file;
+    if (!file) return;
+    this.#showFile(file);
+    this.editor.apply(edits);
+    this.look();
+  }
+
+  // Literals
+
+  #turned(literal: SourceLiteral, value: LiteralValue): void {
+    this.#turn ??= {
+      literal,
+      value,
+      revision: this.texts.revision,
+      held: null,
+      edits: [],
+      isDone: false,
+      isBusy: false,
+      answered: null,
+    };
+    this.#turn.value = value;
+    this.#turn.isDone = false;
+    void this.#turnOn();
+  }
+
+  /** While a literal is turned, the worker's last answer decides when the next request goes out. */
+  async #turnOn(): Promise<void> {
+    const turn = this.#turn;
+    if (!turn || turn.isBusy) return;
+    turn.isBusy = true;
+    if (turn.literal.way === "hold" && turn.answered === null) await this.#hold(turn);
+    while (!same(turn.answered, turn.value) || (turn.isDone && this.#turn === turn)) {
+      if (turn.held && !turn.isDone) {
+        turn.answered = turn.value;
+        this.picture.setNumber(turn.held, turn.value as number);
+        break;
+      }
+      const { value } = turn;
+      const answer = await this.client.ask({
+        kind: "look",
+        ...this.#source,
+        known: this.#key,
+        changes: [this.#changeOf(turn, value)],
+        lean: true,
+      });
+      turn.answered = value;
+      if (!answer || answer.kind === "dropped") {
+        if (turn.isDone) this.#turn = null;
+        break;
+      }
+      if ("edits" in answer) turn.edits = answer.edits;
+      await this.#take(answer, -1);
+      if (turn.isDone && same(turn.answered, turn.value)) {
+        this.#turn = null;
+        this.#done = this.#wanted;
+        this.#apply(turn.edits);
+      }
+    }
+    turn.isBusy = false;
+  }
+
+  #changeOf({ literal }: Turn, value: LiteralValue): Change {
+    const { file, start, end } = literal;
+    return { what: "literal", file, start, end, value, name: null, text: null };
+  }
+
+  /** A number of a `@func` becomes an input of the program, if it can. */
+  async #hold(turn: Turn): Promise<void> {
+    const { file, start, end, type } = turn.literal;
+    if (type !== "number") return;
+    const answer = await this.client.ask({ kind: "hold", ...this.#source, file, start, end });
+    if (answer?.kind !== "scene" || !answer.held || this.#turn !== turn) return;
+    await this.#scene(answer);
+    turn.held = answer.held;
+  }
+
+  #released(): void {
+    const turn = this.#turn;
+    if (!turn) return;
+    turn.isDone = true;
+    void this.#turnOn();
+  }
+
+  // Texts
+
+  #changed({ files, digests }: Changed): void {
+    const kept: string[] = [];
+    for (const [name, text] of Object.entries(files)) {
+      const isNew = !(name in this.texts.files);
+      const mine = this.texts.take(name, text, digests[name] ?? "");
+      if (mine !== null) kept.push(name);
+      else if (isNew) {
+        const draft = this.texts.draft(name);
+        if (draft !== null && draft !== text) {
+          this.texts.set(name, draft);
+          this.page.tell(`Unsaved changes of ${name} are here again.`, ["Keep them", () => {}], [
+            "Discard them",
+            () => this.#replace(name, text),
+          ]);
+        }
+        if (this.editor.name === name) this.editor.replace(name, this.texts.files[name]!);
+      } else this.editor.replace(name, text);
+    }
+    if (!this.editor.name) this.#showFile(this.settings.main);
+    for (const name of kept) {
+      this.page.tell(
+        `${name} was changed by another program; your changes are still here.`,
+        ["Keep mine", () => {}],
+        ["Take the other", () => this.#replace(name, files[name]!)],
+      );
+    }
+    this.#fillFiles();
+    this.look();
+  }
+
+  #replace(name: string, text: string): void {
+    this.texts.set(name, text);
+    this.editor.replace(name, text);
+    this.texts.keepDraft(name);
+    this.look();
+  }
+
+  #typed(name: string, text: string): void {
+    if (!name || this.texts.files[name] === text) return;
+    this.texts.set(name, text);
+    this.#isStopped = false;
+    this.#fillFiles();
+    clearTimeout(this.#timer);
+    this.#timer = window.setTimeout(() => this.look(), TYPING_MS);
+  }
+
+  async save(): Promise<void> {
+    for (const name of this.texts.names.filter((one) => this.texts.isChanged(one))) {
+      const text = this.texts.files[name]!;
+      const { revision } = this.texts;
+      const digest = this.texts.digest(name) || null;
+      const answer = await this.client.ask({ kind: "save", revision, file: name, text, digest });
+      if (!answer) return this.page.tell("The file is not saved: nobody answers.", ["Close", () => {}]);
+      if (answer.kind === "mistakes") return this.page.tell(answer.mistakes[0]!.message, ["Close", () => {}]);
+      if (answer.kind !== "answer" || answer.request !== "save") return;
+      const { conflict, digest: now } = answer.result;
+      if (conflict !== null) return this.#conflict(name, conflict, now);
+      this.texts.saved(name, text, now);
+      this.page.announcer.textContent = `${name} is saved`;
+    }
+    this.#fillFiles();
+  }
+
+  #conflict(name: string, theirs: string, digest: string): void {
+    const overwrite = make("button", { type: "button" }, "Overwrite the file");
+    const take = make("button", { type: "button" }, "Take the file's text");
+    const dialog = sheet(
+      `${name} is another text on the disk`,
+      make("p", {}, "Nothing was overwritten. Undo brings either text back."),
+      make("pre", { className: "theirs", tabIndex: 0 }, theirs),
+      make("div", { className: "choices" }, overwrite, take),
+    );
+    overwrite.onclick = () => {
+      dialog.close();
+      this.texts.saved(name, theirs, digest);
+      void this.save();
+    };
+    take.onclick = () => {
+      dialog.close();
+      this.texts.saved(name, theirs, digest);
+      this.#replace(name, theirs);
+      this.#fillFiles();
+    };
+  }
+
+  // Places
+
+  #fillFiles(): void {
+    const names = [...this.texts.names, TEXT_TAB];
+    this.page.files.replaceChildren(
+      ...names.map((name) => {
+        const isHere = name === this.#tab;
+        const isChanged = name !== TEXT_TAB && this.texts.isChanged(name);
+        const tab = make("button", { type: "button", role: "tab" }, isChanged ? `${name} •` : name);
+        tab.setAttribute("aria-selected", String(isHere));
+        if (isChanged) tab.setAttribute("aria-label", `${name}, not saved`);
+        tab.tabIndex = isHere ? 0 : -1;
+        tab.onclick = () => this.#showFile(name);
+        tab.onkeydown = ({ key }) => {
+          const step = key === "ArrowRight" ? 1 : key === "ArrowLeft" ? -1 : 0;
+          if (!step) return;
+          this.#showFile(names[(names.indexOf(name) + step + names.length) % names.length]!);
+          this.page.files.querySelector<HTMLElement>("[aria-selected=true]")!.focus();
+        };
+        return tab;
+      }),
+      this.emitted.menu,
+    );
+    const isText = this.#tab === TEXT_TAB;
+    this.emitted.menu.hidden = !isText;
+    this.emitted.element.hidden = !isText;
+    this.page.code.classList.toggle("beside", isText);
+    this.page.name.textContent = this.settings.main;
+  }
+
+  #showFile(name: string): void {
+    const was = this.#tab;
+    this.#tab = name;
+    if (name === TEXT_TAB) void this.#emit();
+    else this.editor.show(name, this.texts.files[name]!);
+    if (was !== name) this.#fillFiles();
+    if (was !== name && name !== TEXT_TAB) this.#showMistakes(this.#mistakes);
+  }
+
+  #goTo(file: string, line: number, column = 0, isFocused = false): void {
+    if (this.editor.name !== file) this.#showFile(file);
+    this.editor.goTo(line, column, isFocused);
+  }
+
+  #moved(name: string, line: number): void {
+    if (line === this.#line) return;
+    this.#line = line;
+    if (this.#tab === TEXT_TAB) this.emitted.link(name, line);
+  }
+
+  async #probe(x: number, y: number): Promise<void> {
+    if (!this.#can("probe")) return;
+    const { player } = this.picture;
+    const { yaw = 0, pitch = 0, zoom = 1, pan = [0, 0] } = player?.steering() ?? {};
+    const steering = { yaw, pitch, zoom, pan_x: pan[0]!, pan_y: pan[1]! };
+    const { revision } = this.texts;
+    const time = player?.time ?? 0;
+    const answer = await this.client.ask({ kind: "probe", ...this.#source, time, x, y, steering });
+    if (answer?.kind !== "answer" || answer.request !== "probe" || revision !== this.texts.revision) return;
+    const { shape, material, file, line, numbers } = answer.result;
+    const what = shape ? [shape, material].filter(Boolean).join(", ") : "The background";
+    const steps = numbers["steps"] === undefined ? "" : ` · ${numbers["steps"]} steps`;
+    this.page.announcer.textContent = `${what}${steps}`;
+    this.page.work.textContent = `${what}${steps}`;
+    if (file && line) {
+      this.#goTo(file, line);
+      this.editor.link([line]);
+    } else this.editor.link([]);
+  }
+
+  async #emit(): Promise<void> {
+    const { target } = this.emitted;
+    const answer = await this.client.ask({ kind: "text", ...this.#source, target });
+    if (answer?.kind !== "answer" || answer.request !== "text") return;
+    this.emitted.show(answer.result);
+    this.emitted.link(this.editor.name, this.#line);
+  }
+
+  // What is seen besides
+
+  #showMistakes(mistakes: readonly Mistake[]): void {
+    this.#mistakes = mistakes;
+    this.editor.setMistakes(mistakes);
+    this.page.mistakes.replaceChildren(
+      ...mistakes.slice(0, 20).map(({ file, line, column, message, hint, severity }) => {
+        const place = line === null ? "" : `${file === this.settings.main ? "" : `${file} `}line ${line}: `;
+        const text = make("span", {}, make("b", {}, place), message);
+        const about = hint && make("em", {}, hint);
+        if (line === null || !file) return make("div", { className: severity }, text, about);
+        const button = make("button", { type: "button", className: severity }, text, about);
+        button.onclick = () => this.#goTo(file, line, column, true);
+        return button;
+      }),
+    );
+    const [first] = mistakes;
+    if (first) this.page.announcer.textContent = `${first.line === null ? "" : `Line ${first.line}: `}${first.message}`;
+  }
+
+  #print(text: string): void {
+    this.page.printed.hidden = !text;
+    this.page.printed.textContent = text;
+  }
+
+  #started(message: Ready): void {
+    this.#ready = message;
+    this.emitted.targets = message.targets;
+    this.#key = null;
+    this.look();
+  }
+
+  #restarted(reason: string): void {
+    this.#ready = null;
+    this.#isStopped = true;
+    this.#turn = null;
+    this.picture.isOld = true;
+    this.page.work.textContent = "Stopped";
+    this.page.tell(`Stopped: ${reason}. Change the code, or run it again.`, [
+      "Run again",
+      () => {
+        this.#isStopped = false;
+        this.look();
+      },
+    ]);
+  }
+
+  #connected(isOpen: boolean): void {
+    if (isOpen) return this.page.tell(null);
+    this.#ready = null;
+    this.#turn = null;
+    this.page.tell("The studio's server has ended; your text is kept in this browser.");
+  }
+
+  #can(ability: string): boolean {
+    return !!this.#ready?.abilities.includes(ability);
+  }
+
+  #fillButtons(): void {
+    const button = (text: string, title: string, act: () => void) => {
+      const made = make("button", { type: "button", title, onclick: act }, text);
+      return made;
+    };
+    this.page.objects.onchange = () => {
+      this.#object = this.page.objects.value;
+      this.look();
+    };
+    this.page.buttons.append(
+      button("Gallery", "Open a copy of an example", () =>
+        gallery(this.settings.gallery, (name) => void this.#open(name)),
+      ),
+      button("Export", "Make a page or a shader of it", () => this.#export()),
+      button("Save", "Save the file (Mod S)", () => void this.save()),
+      button("?", "Keys", () => help(this.settings.version)),
+    );
+  }
+
+  /** An example takes the place of the text; undo brings the old one back. */
+  async #open(name: string): Promise<void> {
+    const response = await fetch(`gallery/${encodeURIComponent(name)}`);
+    if (!response.ok) return this.page.tell(`There is no example ${name}.`, ["Close", () => {}]);
+    const { main, files } = (await response.json()) as { main: string; files: Record<string, string> };
+    for (const [file, text] of Object.entries(files)) {
+      const into = file === main ? this.settings.main : file;
+      if (into in this.texts.files) this.#replace(into, text);
+      else this.texts.take(into, text, "");
+    }
+    this.#object = null;
+    this.picture.player?.resetCamera();
+    this.#showFile(this.settings.main);
+    this.#fillFiles();
+    this.look();
+  }
+
+  #export(): void {
+    const stem = this.settings.main.replace(/\.py$/, "");
+    exports(
+      this.#ready?.formats ?? [],
+      async (format) => {
+        const poster = format === "page" ? await this.#poster() : null;
+        const answer = await this.client.ask({ kind: "export", ...this.#source, format, poster });
+        if (answer?.kind === "mistakes") return answer.mistakes[0]!.message;
+        if (answer?.kind !== "answer" || answer.request !== "export") return "Nobody answers.";
+        const { name, media_type, text, base64, command } = answer.result;
+        const data = text ?? Uint8Array.from(atob(base64 ?? ""), (letter) => letter.charCodeAt(0));
+        download(new Blob([data], { type: media_type }), name);
+        return `${name} is saved. The same: ${command}`;
+      },
+      () => download(new Blob([this.texts.files[this.settings.main]!]), `${stem}.py`),
+    );
+  }
+
+  /** The picture that a page shows first, as base64. */
+  async #poster(): Promise<string | null> {
+    const blob = await this.picture.player?.screenshot(4);
+    if (!blob) return null;
+    const bytes = new Uint8Array(await blob.arrayBuffer());
+    return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
+  }
+}
+
+function download(blob: Blob, name: string): void {
+  const link = make("a", { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}
+
+function workOf({ ms }: SceneFound | NumbersFound): string {
+  return `${Math.round(ms["all"] ?? 0)} ms`;
+}
+
+function same(a: LiteralValue | null, b: LiteralValue | null): boolean {
+  return JSON.stringify(a) === JSON.stringify(b);
+}
+
+const settings = JSON.parse(document.getElementById("settings")!.textContent!) as Settings;
+(window as unknown as { studio: Studio }).studio = new Studio(settings);

@@ -1,0 +1,230 @@
+/**
+ * The picture beside the code: a player, its views and time, what the camera and the parameters keep.
+ *
+ * Input: payloads and numbers. Output: elements, and what a person did: a click, a view, a Keep.
+ */
+
+import { rowOf, type Row } from "../controls";
+import { ICONS, icon, iconButton, make, rename } from "../dom";
+import type { NumbersFound } from "../generated/messages";
+import type { Parameter, Payload, Value } from "../payload";
+import { Player } from "../player";
+import { same } from "../values";
+
+export interface PictureEvents {
+  /** Another view is wanted, which may not be compiled yet. */
+  view(): void;
+  /** A click, in pixels of the author's frame from its top left. */
+  clicked(x: number, y: number): void;
+  keepParameter(name: string, value: Value): void;
+  keepCamera(text: string): void;
+  drawn(text: string): void;
+}
+
+/** A press that moves farther is a drag. */
+const CLICK_PX = 4;
+const STEPS = 1000;
+
+export class Picture {
+  readonly element = make("div", { className: "picture" });
+  readonly strip = make("div", { className: "strip", role: "toolbar", "aria-label": "Picture" });
+  readonly knobs = make("div", { className: "knobs" });
+  player: Player | null = null;
+  #host = make("div", { className: "host" });
+  #rows = new Map<string, { row: Row; keep: HTMLElement }>();
+  #declared = "";
+  #ends: (() => void)[] = [];
+
+  constructor(readonly events: PictureEvents) {
+    this.element.append(this.#host);
+    this.#listenToClicks();
+  }
+
+  /** Shows a payload, in the player that is there if it can. */
+  async show(payload: Payload): Promise<void> {
+    const shown = { ...payload, embed: true, panel: false };
+    if (!(await this.player?.load(shown))) this.#begin(shown);
+    this.#declare(payload.parameters);
+    this.#fillStrip(payload);
+  }
+
+  /** Draws with other numbers; the program stays. */
+  setNumbers({ numbers, parameters }: Pick<NumbersFound, "numbers" | "parameters">): void {
+    const { player } = this;
+    if (!player) return;
+    const old = player.payload.parameters;
+    const now = player.parameters();
+    player.payload = { ...player.payload, parameters };
+    for (const parameter of parameters) {
+      const before = old.find(({ name }) => name === parameter.name);
+      // What a person has not moved follows the code.
+      const isFree = before && same(now[parameter.name]!, before.default);
+      if (isFree) player.setParameter(parameter.name, parameter.default);
+    }
+    player.setNumbers(numbers);
+    this.#declare(parameters);
+  }
+
+  /** One number of the program, while a literal is turned. */
+  setNumber(name: string, value: number): void {
+    this.player?.setNumbers({ [name]: value });
+  }
+
+  set isOld(isOld: boolean) {
+    this.element.classList.toggle("old", isOld);
+  }
+
+  #begin(payload: Payload): void {
+    const steering = this.player?.steering();
+    for (const end of this.#ends.splice(0)) end();
+    this.player?.dispose();
+    const host = make("div", { className: "host", "data-distal": "" });
+    this.#host.replaceWith(host);
+    this.#host = host;
+    const player = new Player(host, payload, { embed: true });
+    (host as unknown as { distal: Player }).distal = player;
+    this.player = player;
+    if (steering) player.setSteering(steering);
+    this.#ends.push(
+      player.on("view", () => this.events.view()),
+      player.on("parameter", ({ name, value }) => this.#moved(name, value)),
+      player.on("frame", ({ ms, fps, width, height, samples, rate }) => {
+        const speed = fps ? `${fps.toFixed(0)} fps` : `${ms.toFixed(0)} ms`;
+        const paths = rate === undefined ? "" : ` · ${samples} samples`;
+        this.events.drawn(`${width} × ${height} · ${speed}${paths}`);
+      }),
+    );
+  }
+
+  // Parameters
+
+  #declare(parameters: readonly Parameter[]): void {
+    const declared = JSON.stringify(parameters);
+    if (declared === this.#declared) return;
+    this.#declared = declared;
+    this.#rows.clear();
+    const player = this.player!;
+    const values = player.parameters();
+    const groups = new Map<string, HTMLElement[]>();
+    for (const parameter of parameters) {
+      const { name, label, group } = parameter;
+      const row = rowOf(parameter, (value) => player.change(name, value));
+      const keep = make("button", { type: "button", className: "keep" }, "Keep");
+      keep.title = `Write this value of ${label} into the code`;
+      keep.onclick = () => this.events.keepParameter(name, player.parameters()[name]!);
+      row.element.append(keep);
+      this.#rows.set(name, { row, keep });
+      groups.set(group, [...(groups.get(group) ?? []), row.element]);
+      row.show(values[name]!);
+      keep.hidden = same(values[name]!, parameter.default);
+    }
+    const made = [...groups].map(([title, rows]) => {
+      const heading = title && make("h3", {}, title);
+      return make("div", { role: "group", "aria-label": title || "Parameters" }, heading, ...rows);
+    });
+    this.knobs.replaceChildren(...made);
+    this.knobs.hidden = !made.length;
+  }
+
+  #moved(name: string, value: Value): void {
+    const found = this.#rows.get(name);
+    const parameter = this.player!.payload.parameters.find((one) => one.name === name);
+    if (!found || !parameter) return;
+    found.row.show(value);
+    found.keep.hidden = same(value, parameter.default);
+  }
+
+  // The strip under the picture
+
+  #fillStrip(payload: Payload): void {
+    const key = JSON.stringify([payload.views.map(({ name }) => name), payload.time.animated, !!payload.steering]);
+    if (this.strip.dataset["key"] === key) return;
+    this.strip.dataset["key"] = key;
+    const player = this.player!;
+    const parts: HTMLElement[] = [];
+    if (payload.time.animated) parts.push(...this.#time(player));
+    if (payload.views.length > 1) parts.push(this.#views(player, payload));
+    if (payload.steering) parts.push(this.#keepCamera(player), this.#reset(player));
+    parts.push(iconButton("Save a picture", ICONS.camera, () => void player.saveScreenshot()));
+    if (document.fullscreenEnabled) {
+      parts.push(iconButton("Full screen", ICONS.full, () => player.toggleFullScreen()));
+    }
+    this.strip.replaceChildren(...parts);
+  }
+
+  #views(player: Player, { views }: Payload): HTMLElement {
+    const items = views.map(({ name, label }) => make("option", { value: name }, label));
+    const menu = make("select", { "aria-label": "View", title: "View" }, ...items);
+    menu.value = player.view;
+    menu.onchange = () => player.setView(menu.value);
+    this.#ends.push(player.on("view", ({ name }) => (menu.value = name)));
+    return menu;
+  }
+
+  #keepCamera(player: Player): HTMLElement {
+    const button = make("button", { type: "button", className: "text" }, "Keep camera");
+    button.title = "Write the camera's place into the code";
+    button.disabled = !player.camera?.moved;
+    button.onclick = async () => {
+      const text = await player.cameraText();
+      if (text) this.events.keepCamera(text);
+    };
+    this.#ends.push(player.on("steering", () => (button.disabled = !player.camera?.moved)));
+    return button;
+  }
+
+  #reset(player: Player): HTMLElement {
+    return iconButton("Reset the camera", ICONS.reset, () => player.resetCamera());
+  }
+
+  #time(player: Player): HTMLElement[] {
+    const button = iconButton("", ICONS.play, () => player.toggle());
+    const slider = make("input", { type: "range", min: "0", max: String(STEPS), step: "1" });
+    slider.className = "time";
+    slider.setAttribute("aria-label", "Time");
+    const text = make("span", { className: "seconds" });
+    let isHeld = false;
+    let was: boolean | null = null;
+    const show = () => {
+      const [low, high] = player.timeRange;
+      if (!isHeld) slider.valueAsNumber = ((player.time - low) / (high - low)) * STEPS;
+      text.textContent = `${player.time.toFixed(2)} s`;
+      if (was === player.playing) return;
+      was = player.playing;
+      button.replaceChildren(icon(was ? ICONS.pause : ICONS.play));
+      rename(button, was ? "Pause" : "Play");
+    };
+    slider.oninput = () => {
+      const [low, high] = player.timeRange;
+      player.setTime(low + ((high - low) * slider.valueAsNumber) / STEPS);
+    };
+    const hold = (held: boolean) => player.hold((isHeld = held));
+    slider.onpointerdown = () => hold(true);
+    slider.onpointerup = slider.onpointercancel = slider.onblur = () => hold(false);
+    this.#ends.push(player.on("time", show));
+    show();
+    return [button, slider, text];
+  }
+
+  // Clicks
+
+  #listenToClicks(): void {
+    let from: [number, number] | null = null;
+    this.element.addEventListener("pointerdown", ({ clientX, clientY, button }) => {
+      from = button === 0 ? [clientX, clientY] : null;
+    });
+    this.element.addEventListener("pointerup", (event) => {
+      const { clientX: x, clientY: y } = event;
+      if (!from || Math.hypot(x - from[0], y - from[1]) > CLICK_PX || !this.player) return;
+      const canvas = event.composedPath()[0];
+      if (!(canvas instanceof HTMLCanvasElement)) return;
+      const box = canvas.getBoundingClientRect();
+      // The author's frame lies whole in the middle of the canvas.
+      const [wide, high] = this.player.payload.size;
+      const scale = Math.min(box.width / wide, box.height / high);
+      const left = (box.width - wide * scale) / 2;
+      const top = (box.height - high * scale) / 2;
+      this.events.clicked((x - box.left - left) / scale, (y - box.top - top) / scale);
+    });
+  }
+}

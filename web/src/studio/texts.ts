@@ -1,0 +1,98 @@
+/**
+ * The texts that are edited: what the disk has, what is unsaved, and a draft that outlives the tab.
+ *
+ * Input: texts of the disk, texts of the editor. Output: the revision, what is unsaved, drafts. A draft
+ * is kept before each compilation, because a scene may stop the page.
+ */
+
+import type { Edit } from "../generated/messages";
+
+interface Draft {
+  text: string;
+  /** The digest of the text on the disk that it began with. */
+  digest: string;
+}
+
+export class Texts {
+  /** Grows with each change. */
+  revision = 0;
+  #now: Record<string, string> = {};
+  #saved: Record<string, string> = {};
+  #digests: Record<string, string> = {};
+
+  constructor(readonly key: string) {}
+
+  get files(): Record<string, string> {
+    return this.#now;
+  }
+
+  get names(): string[] {
+    return Object.keys(this.#now);
+  }
+
+  digest(name: string): string {
+    return this.#digests[name] ?? "";
+  }
+
+  isChanged(name: string): boolean {
+    return this.#now[name] !== this.#saved[name] || !this.#digests[name];
+  }
+
+  /** A file as the disk has it. Returns the unsaved text that is in its way, if there is one. */
+  take(name: string, text: string, digest: string): string | null {
+    const now = this.#now[name];
+    const isKept = now !== undefined && now !== this.#saved[name] && now !== text;
+    this.#saved[name] = text;
+    this.#digests[name] = digest;
+    if (isKept) return now;
+    this.set(name, text);
+    return null;
+  }
+
+  set(name: string, text: string): void {
+    if (this.#now[name] === text) return;
+    this.#now = { ...this.#now, [name]: text };
+    this.revision += 1;
+  }
+
+  saved(name: string, text: string, digest: string): void {
+    this.#saved[name] = text;
+    this.#digests[name] = digest;
+    this.keepDraft(name);
+  }
+
+  /** Remembers an unsaved text, and forgets one that is saved. */
+  keepDraft(name: string): void {
+    const key = this.#keyOf(name);
+    try {
+      if (!this.isChanged(name) || this.#now[name] === this.#saved[name]) {
+        return localStorage.removeItem(key);
+      }
+      const draft: Draft = { text: this.#now[name]!, digest: this.digest(name) };
+      localStorage.setItem(key, JSON.stringify(draft));
+    } catch {
+      // No storage, or a full one: the text is still in the editor.
+    }
+  }
+
+  /** The draft of a text that the disk still has as it was then. */
+  draft(name: string): string | null {
+    try {
+      const found = JSON.parse(localStorage.getItem(this.#keyOf(name)) ?? "null") as Draft | null;
+      return found && found.digest === this.digest(name) ? found.text : null;
+    } catch {
+      return null;
+    }
+  }
+
+  #keyOf(name: string): string {
+    return `distal:${this.key}/${name}`;
+  }
+}
+
+/** A text with edits made; their offsets are those of the text as it was. */
+export function edited(text: string, edits: readonly Edit[]): string {
+  return [...edits]
+    .sort((a, b) => b.start - a.start)
+    .reduce((all, { start, end, text }) => all.slice(0, start) + text + all.slice(end), text);
+}
