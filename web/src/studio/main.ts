@@ -68,6 +68,8 @@ class Studio {
   #object: string | null = null;
   #isLooking = false;
   #isStopped = false;
+  /** Whether the notice that it was stopped is to be seen. */
+  #isStoppedTold = false;
   #wanted = -1;
   #done = -1;
   #timer = 0;
@@ -177,6 +179,8 @@ class Studio {
       this.#key = answer.key;
       this.picture.setNumbers(answer);
     } else if (answer.kind !== "mistakes") return;
+    if (this.#isStoppedTold) this.page.tell(null);
+    this.#isStoppedTold = false;
     const mistakes = answer.kind === "mistakes" ? answer.mistakes : [];
     if (answer.kind === "mistakes") this.page.work.textContent = "Mistakes";
     else this.page.work.textContent = workOf(answer);
@@ -444,7 +448,8 @@ class Studio {
     if (answer?.kind !== "answer" || answer.request !== "probe" || revision !== this.texts.revision) return;
     const { shape, material, file, line, numbers } = answer.result;
     const what = shape ? [shape, material].filter(Boolean).join(", ") : "The background";
-    const steps = numbers["steps"] === undefined ? "" : ` · ${numbers["steps"]} steps`;
+    const count = numbers["steps"];
+    const steps = count === undefined ? "" : ` · ${count} ${count === 1 ? "step" : "steps"}`;
     this.page.announcer.textContent = `${what}${steps}`;
     this.page.work.textContent = `${what}${steps}`;
     if (file && line) {
@@ -496,6 +501,7 @@ class Studio {
   #restarted(reason: string): void {
     this.#ready = null;
     this.#isStopped = true;
+    this.#isStoppedTold = true;
     this.#turn = null;
     this.picture.isOld = true;
     this.page.work.textContent = "Stopped";

@@ -144,11 +144,8 @@ export class Picture {
     const parts: HTMLElement[] = [];
     if (payload.time.animated) parts.push(...this.#time(player));
     if (payload.views.length > 1) parts.push(this.#views(player, payload));
-    if (payload.steering) parts.push(this.#keepCamera(player), this.#reset(player));
+    if (payload.steering) parts.push(this.#keepCamera(player));
     parts.push(iconButton("Save a picture", ICONS.camera, () => void player.saveScreenshot()));
-    if (document.fullscreenEnabled) {
-      parts.push(iconButton("Full screen", ICONS.full, () => player.toggleFullScreen()));
-    }
     this.strip.replaceChildren(...parts);
   }
 
@@ -171,10 +168,6 @@ export class Picture {
     };
     this.#ends.push(player.on("steering", () => (button.disabled = !player.camera?.moved)));
     return button;
-  }
-
-  #reset(player: Player): HTMLElement {
-    return iconButton("Reset the camera", ICONS.reset, () => player.resetCamera());
   }
 
   #time(player: Player): HTMLElement[] {

@@ -105,7 +105,9 @@ class StudioServer:
                 connection.send(text)
 
         send(encoded(self._files.all()))
-        session = Session(self._files, send, self._limit)
+        session = Session(
+            self._files, send, self._limit, lambda saved: self._tell(saved, connection)
+        )
         with self._lock:
             self._tabs[connection] = session
         try:
@@ -128,9 +130,9 @@ class StudioServer:
             if changed is not None:
                 self._tell(changed)
 
-    def _tell(self, changed: Changed) -> None:
+    def _tell(self, changed: Changed, source: Any = None) -> None:
         with self._lock:
-            tabs = list(self._tabs)
+            tabs = [connection for connection in self._tabs if connection is not source]
         for connection in tabs:
             try:
                 connection.send(encoded(changed))

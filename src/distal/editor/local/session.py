@@ -19,6 +19,7 @@ from distal.editor.local.process import WorkerProcess
 from distal.editor.messages import (
     Answer,
     AppRequest,
+    Changed,
     Dropped,
     Message,
     MessageError,
@@ -45,6 +46,7 @@ class Session:
         files: The files.
         send: Sends a text to the app.
         limit: Seconds that the author's code has.
+        saved: Called with what was saved, for the other tabs.
         start: Starts a worker; by default a process.
     """
 
@@ -53,9 +55,11 @@ class Session:
         files: SceneFiles,
         send: Callable[[str], None],
         limit: float = CODE_S,
+        saved: Callable[[Changed], None] = lambda _: None,
         start: Callable[..., WorkerProcess] = WorkerProcess,
     ) -> None:
         self._files, self._send, self._limit, self._start = files, send, limit, start
+        self._on_saved = saved
         self._lock = threading.RLock()
         self._waiting: dict[int, int] = {}  # the revision by id, in the order of arrival
         self._ends = 0.0
@@ -90,6 +94,9 @@ class Session:
             saved = self._files.save(request.file, request.text, request.digest)
         except LoadError as error:
             return _refusal(request.id, request.revision, error.reason)
+        if saved.conflict is None:
+            name = request.file
+            self._on_saved(Changed(files={name: request.text}, digests={name: saved.digest}))
         return Answer(id=request.id, revision=request.revision, request="save", result=saved)
 
     def _started(self) -> WorkerProcess:
