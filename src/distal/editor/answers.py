@@ -32,6 +32,7 @@ from distal.export import page, texts
 from distal.export.page_options import PageOptions, TextOptions
 from distal.lang.lazy_module import LazyModule
 from distal.scene.objects.field import BaseShape
+from distal.scene.steering import Steering
 
 probing: Final = cast(Any, LazyModule("distal.scene.checks.probe"))  # needs NumPy
 validation: Final = cast(Any, LazyModule("distal.scene.checks.validation"))
@@ -139,7 +140,8 @@ def _probe(work: AnswerWork) -> Result:
         raise ValueError("pixels of scenes and shapes are probed; this is an @image")
     values = known_values(seen.parameters, request.values)
     pixel = (int(request.x), int(request.y))
-    found = probing.probe(seen.scene, pixel, request.size, values, request.time)
+    moved = _steering(request.steering)
+    found = probing.probe(seen.scene, pixel, request.size, values, request.time, moved)
     if not found.hit:
         return ProbeResult(numbers={"steps": float(found.seen.steps)})
     shape = found.path[-1]
@@ -154,6 +156,14 @@ def _probe(work: AnswerWork) -> Result:
         normal=tuple(map(float, found.seen.normal)),
         numbers={"steps": float(found.seen.steps), "distance": float(found.seen.t)},
     )
+
+
+def _steering(numbers: Mapping[str, float]) -> Steering | None:
+    """Return how the app's camera was moved: "yaw", "pitch", "zoom", "pan_x" and "pan_y"."""
+    if not numbers:
+        return None
+    plain = {name: numbers[name] for name in ("yaw", "pitch", "zoom") if name in numbers}
+    return Steering(**plain, pan=(numbers.get("pan_x", 0.0), numbers.get("pan_y", 0.0)))
 
 
 _SEVERITIES: Final[Mapping[str, Literal["error", "warning", "note"]]] = {

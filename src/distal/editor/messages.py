@@ -329,7 +329,11 @@ class CountRequest(SourceRequest):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProbeRequest(SourceRequest):
-    """Tell what the pixel at ``x``, ``y`` shows (from the top left), with the camera as moved."""
+    """Tell what the pixel at ``x``, ``y`` shows (from the top left), with the camera as moved.
+
+    Attributes:
+        steering: "yaw", "pitch", "zoom", "pan_x", "pan_y"; empty where it was not moved.
+    """
 
     kind: ClassVar[str] = "probe"
     result: ClassVar[type | None] = ProbeResult

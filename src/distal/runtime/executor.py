@@ -269,6 +269,7 @@ class PythonExecutor(StandardExecutor):
         params: Mapping[str, Any] | None = None,
         time: float = 0.0,
         device: str = CPU,
+        settings: Mapping[str, Any] | None = None,
     ) -> Any:
         """Evaluate the function for numbers, vectors, or arrays with one row per point.
 
@@ -279,6 +280,7 @@ class PythonExecutor(StandardExecutor):
             params: Values of parameters by name; the others have their defaults.
             time: Seconds.
             device: The name of a device, as for ``render``.
+            settings: Values of the scene's numbers by name; the others have their defaults.
 
         Raises:
             TypeError: No overload accepts the values.
@@ -292,7 +294,7 @@ class PythonExecutor(StandardExecutor):
         lowered = self.lower(function, types)
         module = lowered.module
         result_type = module.function(module.entry).result
-        uniforms = all_values(DeclaredUniforms([module]), params or {}, seconds)
+        uniforms = all_values(DeclaredUniforms([module]), params or {}, seconds, settings)
         if points == 0:
             return with_names(empty(result_type, dtype), result_type)
         kernel: Kernel

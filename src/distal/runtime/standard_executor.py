@@ -143,10 +143,13 @@ class ValueOf(Composed):
 
 
 def all_values(
-    declared: DeclaredUniforms, params: Mapping[str, Any], seconds: float
+    declared: DeclaredUniforms,
+    params: Mapping[str, Any],
+    seconds: float,
+    settings: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
     """Return the uniforms of a function that is called from Python."""
-    others = {**declared.numbers, "time": seconds}
+    others = {**declared.number_values(settings or {}), "time": seconds}
     return declared.for_kernel(0, declared.parameter_values(params), others)
 
 

@@ -301,6 +301,7 @@ export interface ProbeRequest {
   size?: [number, number];
   x: number;
   y: number;
+  /** "yaw", "pitch", "zoom", "pan_x", "pan_y"; empty where it was not moved. */
   steering?: Record<string, number>;
 }
 

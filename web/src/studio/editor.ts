@@ -111,7 +111,7 @@ export class Editor {
         ...lintKeymap,
         indentWithTab,
       ]),
-      EditorView.contentAttributes.of({ "aria-label": "Code" }),
+      EditorView.contentAttributes.of({ "aria-label": "Code", tabindex: "0" }),
       EditorView.updateListener.of((update) => {
         const { state } = update;
         if (update.docChanged) events.typed(this.#name, state.doc.toString());

@@ -5,8 +5,7 @@
  * code are marked, and a press on one goes to its line.
  */
 
-import { EditorState } from "@codemirror/state";
-import { StateEffect, StateField } from "@codemirror/state";
+import { EditorState, StateEffect, StateField } from "@codemirror/state";
 import { Decoration, EditorView, lineNumbers, type DecorationSet } from "@codemirror/view";
 import { make } from "../dom";
 import type { EmittedText } from "../generated/messages";
@@ -47,7 +46,7 @@ export class Emitted {
           lineNumbers(),
           marked,
           EditorState.readOnly.of(true),
-          EditorView.contentAttributes.of({ "aria-label": "Emitted text", "aria-readonly": "true" }),
+          EditorView.contentAttributes.of({ "aria-label": "Emitted text", "aria-readonly": "true", tabindex: "0" }),
           EditorView.updateListener.of((update) => {
             const isByHand = update.transactions.some((one) => one.isUserEvent("select"));
             if (!update.selectionSet || !isByHand || !this.#text) return;

@@ -41,6 +41,11 @@ class Swatch extends WidgetType {
     made.style.background = this.color;
     return made;
   }
+
+  /** A press on it is one on the color. */
+  override ignoreEvent(): boolean {
+    return false;
+  }
 }
 
 interface Marks {
@@ -153,9 +158,9 @@ export function literals(turning: Turning): Extension {
     opened,
     EditorView.domEventHandlers({
       click(event, view) {
-        const { main } = view.state.selection;
-        const isMark = (event.target as HTMLElement).closest?.(".literal, .swatch");
-        open(view, isMark && main.empty ? main.head : -1, false);
+        const pressed = (event.target as HTMLElement).closest?.(".literal, .swatch");
+        const isPressed = pressed && view.state.selection.main.empty;
+        open(view, isPressed ? view.posAtDOM(pressed) : -1, false);
       },
     }),
     keymap.of([

@@ -116,6 +116,7 @@ class Studio {
       () => void this.#emit(),
     );
     this.page.code.append(this.emitted.element);
+    this.page.tabRow.append(this.emitted.menu);
     this.#fillButtons();
     this.client = new Client(new SocketChannel(`ws://${location.host}/socket`), {
       ready: (message) => this.#started(message),
@@ -408,7 +409,6 @@ class Studio {
         };
         return tab;
       }),
-      this.emitted.menu,
     );
     const isText = this.#tab === TEXT_TAB;
     this.emitted.menu.hidden = !isText;

@@ -11,6 +11,7 @@ export class Page {
   readonly objects = make("select", { "aria-label": "Picture of the file", hidden: true });
   readonly buttons = make("div", { className: "buttons" });
   readonly files = make("div", { className: "tabs", role: "tablist", "aria-label": "Files" });
+  readonly tabRow = make("div", { className: "tab-row" }, this.files);
   readonly code = make("div", { className: "code-area" });
   readonly mistakes = make("div", { className: "mistakes", role: "region", "aria-label": "Mistakes" });
   readonly printed = make("pre", { className: "printed", hidden: true, tabIndex: 0 });
@@ -25,7 +26,7 @@ export class Page {
   constructor(parent: HTMLElement) {
     const brand = make("strong", { className: "brand" }, "distal");
     const header = make("header", { className: "top" }, brand, this.name, this.objects, this.buttons);
-    this.left.append(this.files, this.code, this.printed, this.mistakes);
+    this.left.append(this.tabRow, this.code, this.printed, this.mistakes);
     const main = make("main", { className: "panes" }, this.left, this.show);
     const status = make("footer", { className: "status" }, this.work, this.drawn);
     parent.append(header, this.#narrow, this.notice, main, status, this.announcer);
@@ -36,7 +37,7 @@ export class Page {
       const parts = [this.left, this.show];
       const at = parts.findIndex((part) => part.contains(document.activeElement));
       const next = parts[(at + 1) % parts.length]!;
-      (next.querySelector<HTMLElement>(".cm-content, canvas, button, input") ?? next).focus();
+      (next.querySelector<HTMLElement>(".cm-content") ?? next.querySelector("select") ?? next).focus();
     });
   }
 

@@ -24,6 +24,7 @@ from distal.scene.checks.validation import guarantee_names
 from distal.scene.lowering.attributes import ListedMaterial, Part
 from distal.scene.lowering.picture import SceneLowering
 from distal.scene.scene import Scene
+from distal.scene.steering import Steering
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
 
@@ -96,6 +97,7 @@ def probe(
     size: tuple[int, int] = (640, 480),
     params: Mapping[str, Any] | None = None,
     time: float = 0.0,
+    steering: Steering | None = None,
 ) -> Probed:
     """Return the ray, the hit and the shading of a pixel.
 
@@ -105,14 +107,18 @@ def probe(
         size: Width and height of the picture in pixels.
         params: Values of parameters by name; the others have their defaults.
         time: Time in seconds.
+        steering: How a person has moved the camera; None if it was not moved.
 
     Raises:
         ValueError: The picture has no such pixel.
     """
     place = place_of_pixel(pixel, size)
-    program = _Program(scene)
+    program = _Program(scene, steered=steering is not None)
     resolution = (float(size[0]), float(size[1]))
-    seen = executor().call(program, (place, resolution), {}, params=params, time=time)
+    settings = steering.settings if steering is not None else None
+    seen = executor().call(
+        program, (place, resolution), {}, params=params, time=time, settings=settings
+    )
     slope = float(
         executor().call(scene.shape._bounds_function, (), {}, params=params, time=time)[0]
     )
@@ -149,8 +155,8 @@ def _path(root: Node, leaf: Node) -> tuple[Node, ...]:
 class _Program(Composed):
     """The function that evaluates one place of a picture; lists shapes and materials by number."""
 
-    def __init__(self, scene: Scene) -> None:
-        self._scene = scene
+    def __init__(self, scene: Scene, *, steered: bool) -> None:
+        self._scene, self._steered = scene, steered
         self.name = f"probe of {scene.name}"
         self.signature = (("coord", VEC2), ("resolution", VEC2))
         self.parts: Sequence[Node] = ()
@@ -161,7 +167,7 @@ class _Program(Composed):
         body = StatementList(taken={"coord", "resolution"})
         made = SceneLowering(assembly, self._scene)
         resolution = Read("resolution", VEC2)
-        given = made.given(body, resolution)
+        given = made.given(body, resolution, steered=self._steered)
         given |= {"coord": Read("coord", VEC2), "resolution": resolution}
         part, paint = Part(made.composer), ListedMaterial(made.composer, self._scene.material)
         given["part"] = made.known_of_place("part", part)

@@ -1,0 +1,419 @@
+"""The studio in a browser: typing, mistakes, dials, Keep, clicks, loops, drafts, phones, keys."""
+
+from __future__ import annotations
+
+import re
+import threading
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from distal.editor.local.files import SceneFiles
+from distal.editor.local.server import StudioServer
+from distal.loading import load
+from distal.scene.viewing.viewable import viewable
+from tests.browser import BrowserUnavailableError, Watched, browser
+from tests.page.looking import Looked
+
+pytest.importorskip("websockets")
+
+AXE = Path(__file__).parents[2] / "web" / "node_modules" / "axe-core" / "axe.min.js"
+RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]
+SLOW_MS = 90_000  # software WebGL on a loaded machine
+LIMIT_S = 5.0
+DESK = {"viewport": {"width": 1180, "height": 640}}
+PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
+
+SCENE = '''"""A ball and a box."""
+
+from distal import *
+from distal.lang import slider
+
+size = slider("Size", 0.6, 0.1, 1.0)
+ball = Sphere(size).paint("#d97757")
+box = Box(0.50).translate(0.9, 0.0, 0.0)
+
+scene = Scene(ball | box, lights=DistantLight((1, 2, 3)), background="#123456",
+              camera=Camera((1.0, 1.5, 4.0), target=(0.3, 0.0, 0.0)))
+'''
+FUNC = """from distal.lang import Frame, image, vec3
+
+@image
+def picture(frame: Frame) -> vec3:
+    level = 0.25
+    for _ in range(3):
+        level = level * 0.9
+    return vec3(level, 0.5, 0.0)
+"""
+
+_PLAYER = "() => document.querySelector('.picture .host')?.distal"
+_SETTLED = "() => document.querySelector('.picture .host').distal.settled()"
+_IDLE = "() => /\\d ms$/.test(document.querySelector('.work').textContent)"
+_TEXT = "() => studio.editor.view.state.doc.toString()"
+_VALUES = "() => document.querySelector('.picture .host').distal.parameters()"
+
+
+class Shown:
+    """The app in a page."""
+
+    def __init__(self, watched: Watched, file: Path) -> None:
+        self.watched, self.page, self.file = watched, watched.page, file
+
+    def wait(self, condition: str) -> None:
+        self.page.wait_for_function(condition, timeout=SLOW_MS)
+
+    def idle(self) -> None:
+        """Until the last text is answered."""
+        self.page.wait_for_timeout(200)  # typing ends
+        self.wait(_IDLE)
+
+    @property
+    def text(self) -> str:
+        return self.page.evaluate(_TEXT)
+
+    @property
+    def mistakes(self) -> str:
+        return self.page.locator(".mistakes").inner_text()
+
+    def dial(self, literal: str) -> None:
+        """Open the dial of the first literal with a text."""
+        self.page.locator(".literal", has_text=re.compile(f"^{re.escape(literal)}$")).first.click()
+        self.page.locator(".dial").wait_for()
+
+    def turn(self, value: float, steps: int = 4) -> None:
+        """Drag the dial's slider to a value, and let go."""
+        self.page.locator(".dial input[type=range]").first.evaluate(
+            """async (slider, [value, steps]) => {
+              const from = slider.valueAsNumber;
+              for (let i = 1; i <= steps; i++) {
+                slider.value = from + ((value - from) * i) / steps;
+                slider.dispatchEvent(new Event("input", { bubbles: true }));
+                await new Promise((resolve) => setTimeout(resolve, 30));
+              }
+              slider.dispatchEvent(new Event("change", { bubbles: true }));
+            }""",
+            [value, steps],
+        )
+
+    def saved(self) -> str:
+        """Save; return what the disk has."""
+        self.page.evaluate("() => studio.save()")
+        return self.file.read_text()
+
+    def equals_the_cpu(self) -> bool:
+        """Whether the picture is what the CPU draws of the saved file."""
+        self.saved()
+        self.page.evaluate(_SETTLED)
+        found = Looked(self.watched).beside(viewable(load(self.file)))
+        return found.is_agreement
+
+
+@contextmanager
+def studio(folder: Path, text: str = SCENE, tabs: int = 1, **options):
+    """The app on a file, in one context of the browser; nothing else may be asked for."""
+    file = folder / "scene.py"
+    if not file.exists():
+        file.write_text(text)
+    server = StudioServer(SceneFiles(file), limit=LIMIT_S)
+    thread = threading.Thread(target=server.serve, daemon=True)
+    thread.start()
+    try:
+        context = browser().new_context(reduced_motion="reduce", **{**DESK, **options})
+    except BrowserUnavailableError as error:
+        server.close()
+        pytest.skip(str(error))
+    messages: list[str] = []
+    asked: list[str] = []
+    context.on("console", lambda said: messages.append(f"{said.type}: {said.text}"))
+    context.on("weberror", lambda thrown: messages.append(f"error: {thrown.error}"))
+    context.on("request", lambda request: asked.append(request.url))
+    try:
+        address = server.address
+        origin = address.split("/?")[0]
+        made = []
+        for _ in range(tabs):
+            page = context.new_page()
+            page.goto(address if not made else origin)
+            shown = Shown(Watched(page), file)
+            shown.wait(_PLAYER)
+            shown.wait(_IDLE)
+            made.append(shown)
+        yield made[0] if tabs == 1 else made
+        assert [line for line in messages if line.startswith(("error", "warning"))] == []
+        assert [url for url in asked if not url.startswith((origin, "blob:", "data:"))] == []
+    finally:
+        context.close()
+        server.close()
+
+
+def test_a_mistake_is_shown_at_its_line_and_the_picture_stays(tmp_path):
+    with studio(tmp_path) as app:
+        app.page.evaluate("() => studio.editor.goTo(8)")
+        app.page.keyboard.press("End")
+        app.page.keyboard.type(".foo(1)")
+        app.wait("() => document.querySelector('.mistakes').childElementCount")
+        assert app.mistakes.startswith("line 8: AttributeError: 'Shape' has no 'foo'")
+        assert app.page.locator(".cm-lintRange-error").inner_text().startswith("Box(")
+        assert "old" in app.page.locator(".picture").get_attribute("class")
+        assert app.page.locator(".announcer").inner_text().startswith("Line 8: ")
+        app.page.keyboard.press("F8")
+        caret = app.page.evaluate("() => studio.editor.view.state.selection.main.from")
+        assert caret == SCENE.index("Box(0.50)")
+        app.page.keyboard.press("End")
+        for _ in ".foo(1)":
+            app.page.keyboard.press("Backspace")
+        app.wait("() => !document.querySelector('.mistakes').childElementCount")
+        app.idle()
+        assert "old" not in app.page.locator(".picture").get_attribute("class")
+        assert app.text == SCENE
+
+
+def test_a_dragged_number_changes_its_bytes_and_the_picture_and_is_one_undo(tmp_path):
+    with studio(tmp_path) as app:
+        app.dial("0.50")
+        app.turn(0.82)
+        app.wait("() => studio.editor.view.state.doc.toString().includes('0.82')")
+        app.idle()
+        assert app.text == SCENE.replace("Box(0.50)", "Box(0.82)")
+        assert app.page.locator(".dial input[type=number]").input_value() == "0.82"
+        assert app.equals_the_cpu()
+        assert app.file.read_text() == SCENE.replace("Box(0.50)", "Box(0.82)")
+        app.page.keyboard.press("Escape")
+        app.page.evaluate("() => studio.editor.view.focus()")
+        app.page.keyboard.press("Control+z")
+        app.idle()
+        assert app.text == SCENE
+
+
+def test_a_number_of_a_function_is_turned_without_compiling(tmp_path):
+    with studio(tmp_path, FUNC) as app:
+        app.page.evaluate(
+            "() => { studio.sent = []; const post = studio.client.channel.post.bind("
+            "studio.client.channel); studio.client.channel.post = (m) => {"
+            " studio.sent.push(m.kind); post(m); } }"
+        )
+        app.dial("0.25")
+        app.turn(0.75, steps=30)
+        app.wait("() => studio.editor.view.state.doc.toString().includes('level = 0.75')")
+        app.idle()
+        kinds = app.page.evaluate("() => studio.sent")
+        assert kinds[0] == "hold"
+        assert len(kinds) < 8, kinds
+        assert app.text == FUNC.replace("0.25", "0.75")
+        assert app.equals_the_cpu()
+
+
+def test_the_bound_of_a_loop_is_turned_too(tmp_path):
+    with studio(tmp_path, FUNC) as app:
+        app.dial("3")
+        app.turn(7)
+        app.wait("() => studio.editor.view.state.doc.toString().includes('range(7)')")
+        app.idle()
+        assert app.equals_the_cpu()
+
+
+def test_a_color_is_picked(tmp_path):
+    with studio(tmp_path) as app:
+        app.page.locator(".swatch").first.click()
+        app.page.locator(".dial input[type=color]").evaluate(
+            """(picker) => {
+              picker.value = "#33aa55";
+              picker.dispatchEvent(new Event("input", { bubbles: true }));
+              picker.dispatchEvent(new Event("change", { bubbles: true }));
+            }"""
+        )
+        app.wait("() => studio.editor.view.state.doc.toString().includes('#33aa55')")
+        app.idle()
+        assert app.text == SCENE.replace("#d97757", "#33aa55")
+        assert app.equals_the_cpu()
+
+
+def test_keep_writes_a_slider_and_the_camera(tmp_path):
+    with studio(tmp_path) as app:
+        keep = app.page.get_by_role("button", name="Keep", exact=True)
+        assert not keep.is_visible()
+        app.page.locator(".knobs input[type=range]").evaluate(
+            "(s) => { s.value = s.max; s.dispatchEvent(new Event('input', { bubbles: true })); }"
+        )
+        keep.click()
+        app.wait("() => studio.editor.view.state.doc.toString().includes('\"Size\", 1.0, 0.1')")
+        app.idle()
+        assert not keep.is_visible()
+        assert app.page.evaluate(_VALUES) == {"size": 1}
+        app.page.evaluate("() => studio.picture.player.hands.drag(0.2, 0.1, false)")
+        app.page.get_by_role("button", name="Keep camera").click()
+        app.wait("() => !studio.editor.view.state.doc.toString().includes('(1.0, 1.5, 4.0)')")
+        app.idle()
+        app.wait("() => studio.picture.player.steering().yaw === 0")
+        assert "fov_deg=40" in app.text
+        assert app.equals_the_cpu()
+
+
+def test_a_click_on_the_picture_selects_the_line(tmp_path):
+    with studio(tmp_path) as app:
+        app.page.evaluate(_SETTLED)
+        box = app.page.locator(".picture canvas").bounding_box()
+        x, y = box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"]
+        app.page.mouse.click(x, y)
+        app.wait("() => document.querySelector('.work').textContent.includes('step')")
+        assert app.page.locator(".work").inner_text().startswith(("Sphere", "ball"))
+        assert app.page.locator(".cm-activeLine").inner_text().startswith("ball = Sphere")
+        # After the camera has moved, too: the box is in the middle then.
+        app.page.evaluate(
+            "() => studio.picture.player.setSteering({ pan: [-0.75, 0.0], yaw: 0, pitch: 0 })"
+        )
+        app.page.mouse.click(x, y)
+        app.wait("() => document.querySelector('.cm-activeLine').textContent.startsWith('box = ')")
+
+
+def test_an_endless_loop_is_ended_and_typing_goes_on(tmp_path):
+    with studio(tmp_path) as app:
+        app.page.evaluate("() => studio.editor.goTo(3)")
+        app.page.keyboard.type("while True: pass\n")
+        app.wait("() => !document.querySelector('.notice').hidden")
+        assert "gave no answer within 5 s" in app.page.locator(".notice").inner_text()
+        assert "while True" in app.text
+        app.page.evaluate("(text) => studio.editor.replace('scene.py', text)", SCENE)
+        app.wait(_IDLE)
+        app.wait("() => document.querySelector('.notice').hidden")
+
+
+def test_a_reload_keeps_the_draft(tmp_path):
+    with studio(tmp_path) as app:
+        app.page.evaluate("() => studio.editor.goTo(2)")
+        app.page.keyboard.type("# mine\n")
+        app.idle()
+        app.page.reload()
+        app.wait(_PLAYER)
+        assert "# mine" in app.text
+        assert "Unsaved changes of scene.py" in app.page.locator(".notice").inner_text()
+        app.page.get_by_role("button", name="Discard them").click()
+        assert app.text == SCENE
+
+
+def test_two_tabs_and_another_editor(tmp_path):
+    with studio(tmp_path, tabs=2) as (first, second):
+        first.page.evaluate("(text) => studio.editor.replace('scene.py', text)", f"# a\n{SCENE}")
+        first.saved()
+        second.wait("() => studio.editor.view.state.doc.toString().startsWith('# a')")
+        second.page.evaluate("(text) => studio.editor.replace('scene.py', text)", f"# b\n{SCENE}")
+        first.file.write_text(f"# c\n{SCENE}")
+        first.wait("() => studio.editor.view.state.doc.toString().startsWith('# c')")
+        second.wait("() => !document.querySelector('.notice').hidden")
+        assert "changed by another program" in second.page.locator(".notice").inner_text()
+        assert second.text.startswith("# b")
+        second.page.get_by_role("button", name="Take the other").click()
+        assert second.text.startswith("# c")
+
+
+def test_a_conflict_overwrites_nothing(tmp_path):
+    with studio(tmp_path) as app:
+        app.page.evaluate("(text) => studio.editor.replace('scene.py', text)", f"# mine\n{SCENE}")
+        # The server is asked before it looks at its files again.
+        app.file.write_text(f"# theirs\n{SCENE}")
+        app.page.evaluate("() => studio.texts.saved('scene.py', 'x', 'another')")
+        app.page.evaluate("() => studio.save()")
+        app.page.locator("dialog .theirs").wait_for()
+        assert app.file.read_text().startswith("# theirs")
+        app.page.get_by_role("button", name="Overwrite the file").click()
+        app.page.wait_for_function("() => !document.querySelector('dialog')")
+        app.wait("() => !studio.texts.isChanged('scene.py')")
+        assert app.file.read_text().startswith("# mine")
+
+
+def test_texts_of_targets_are_linked_to_lines(tmp_path):
+    with studio(tmp_path) as app:
+        app.page.evaluate("() => studio.editor.goTo(7)")
+        app.page.get_by_role("tab", name="Emitted text").click()
+        app.page.locator(".emitted .linked").first.wait_for(timeout=SLOW_MS)
+        assert "sphere" in app.page.locator(".emitted .linked").first.inner_text()
+        app.page.locator(".emitted .cm-line", has_text="box_").first.click()
+        app.page.locator(".tab-row select").select_option("wgsl")
+        app.wait("() => document.querySelector('.emitted .cm-content').textContent.includes('fn ')")
+
+
+def test_exports_and_examples(tmp_path):
+    with studio(tmp_path) as app:
+        app.page.get_by_role("button", name="Export").click()
+        with app.page.expect_download(timeout=SLOW_MS) as found:
+            app.page.get_by_role("button", name=re.compile("^page")).click()
+        assert found.value.suggested_filename == "scene.html"
+        assert "distal export scene.py -o scene.html" in app.page.locator(".result").inner_text()
+        app.page.keyboard.press("Escape")
+        app.page.get_by_role("button", name="Gallery").click()
+        app.page.get_by_label("Search the gallery").fill("melt")
+        app.page.get_by_role("button", name=re.compile("^melting")).click()
+        app.wait("() => studio.picture.player.payload.parameters.length === 2")
+        assert "sd_sphere" in app.text
+        app.page.evaluate("() => studio.editor.view.focus()")
+        app.page.keyboard.press("Control+z")
+        assert app.text == SCENE
+
+
+def test_a_phone_by_touch(tmp_path):
+    with studio(tmp_path, **PHONE) as app:
+        app.page.locator(".literal", has_text="0.50").first.tap()
+        app.page.locator(".dial").wait_for()
+        app.page.locator(".dial").get_by_role("button", name="More").tap()
+        app.wait("() => studio.editor.view.state.doc.toString().includes('Box(0.51)')")
+        app.page.get_by_role("button", name="Controls").tap()
+        assert app.page.locator(".knobs").is_visible()
+        assert not app.page.locator(".cm-editor").first.is_visible()
+        wide = app.page.evaluate("() => document.documentElement.scrollWidth")
+        assert wide <= PHONE["viewport"]["width"]
+
+
+def test_by_keys_alone(tmp_path):
+    with studio(tmp_path) as app:
+        app.page.keyboard.press("F6")
+        assert app.page.evaluate("() => document.activeElement.ariaLabel") == "Code"
+        app.page.evaluate("() => studio.editor.goTo(8, 11)")  # in 0.50
+        app.page.keyboard.press("Control+.")
+        app.page.wait_for_function("() => document.activeElement.type === 'range'")
+        app.page.keyboard.press("ArrowRight")
+        app.wait("() => studio.editor.view.state.doc.toString().includes('Box(0.51)')")
+        app.page.keyboard.press("Escape")
+        assert app.page.evaluate("() => document.activeElement.ariaLabel") == "Code"
+        app.page.keyboard.press("Control+s")
+        app.wait("() => !studio.texts.isChanged('scene.py')")
+        assert "Box(0.51)" in app.file.read_text()
+        app.page.keyboard.press("Escape")
+        app.page.keyboard.press("Tab")
+        assert app.page.evaluate("() => document.activeElement.ariaLabel") != "Code"
+        app.page.keyboard.press("F6")
+        assert app.page.evaluate("() => !!document.activeElement.closest('.left, .show')")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("size", [DESK, PHONE], ids=["desk", "phone"])
+def test_every_screen_is_accessible(tmp_path, scheme, size):
+    if not AXE.exists():
+        pytest.skip("axe-core is not installed: run `npm ci` in web/")
+    with studio(tmp_path, color_scheme=scheme, bypass_csp=True, **size) as app:
+        app.page.add_script_tag(path=str(AXE))
+
+        def violations() -> list[str]:
+            return app.page.evaluate(
+                "(rules) => axe.run(document, { runOnly: rules }).then(({ violations }) =>"
+                " violations.map((v) => v.id + ' ' + v.nodes.map((n) => n.target).join(' ')))",
+                RULES,
+            )
+
+        assert violations() == []
+        for name in ("Gallery", "Export", "?"):
+            app.page.get_by_role("button", name=name, exact=True).click()
+            assert violations() == [], name
+            app.page.keyboard.press("Escape")
+        app.page.get_by_role("tab", name="Emitted text").click()
+        assert violations() == []
+        app.page.get_by_role("tab", name="scene.py").click()
+        app.page.evaluate("() => studio.editor.goTo(8, 11)")
+        app.page.keyboard.press("Control+.")
+        app.page.locator(".dial").wait_for()
+        assert violations() == []
+        app.page.keyboard.press("Escape")
+        app.page.evaluate("() => studio.editor.goTo(3)")
+        app.page.keyboard.type("x = = 3\n")
+        app.wait("() => document.querySelector('.mistakes').childElementCount")
+        assert violations() == []
