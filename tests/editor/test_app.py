@@ -261,7 +261,7 @@ def test_a_click_on_the_picture_selects_the_line(tmp_path):
         assert app.page.locator(".cm-activeLine").inner_text().startswith("ball = Sphere")
         # After the camera has moved, too: the box is in the middle then.
         app.page.evaluate(
-            "() => studio.picture.player.setSteering({ pan: [-0.75, 0.0], yaw: 0, pitch: 0 })"
+            "() => studio.picture.player.setSteering({ pan: [-0.3, 0.0], yaw: 0, pitch: 0 })"
         )
         app.page.mouse.click(x, y)
         app.wait("() => document.querySelector('.cm-activeLine').textContent.startsWith('box = ')")
@@ -269,8 +269,8 @@ def test_a_click_on_the_picture_selects_the_line(tmp_path):
 
 def test_an_endless_loop_is_ended_and_typing_goes_on(tmp_path):
     with studio(tmp_path) as app:
-        app.page.evaluate("() => studio.editor.goTo(3)")
-        app.page.keyboard.type("while True: pass\n")
+        loop = f"while True: pass\n{SCENE}"
+        app.page.evaluate("(text) => studio.editor.replace('scene.py', text)", loop)
         app.wait("() => !document.querySelector('.notice').hidden")
         assert "gave no answer within 5 s" in app.page.locator(".notice").inner_text()
         assert "while True" in app.text

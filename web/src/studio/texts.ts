@@ -5,8 +5,6 @@
  * is kept before each compilation, because a scene may stop the page.
  */
 
-import type { Edit } from "../generated/messages";
-
 interface Draft {
   text: string;
   /** The digest of the text on the disk that it began with. */
@@ -88,11 +86,4 @@ export class Texts {
   #keyOf(name: string): string {
     return `distal:${this.key}/${name}`;
   }
-}
-
-/** A text with edits made; their offsets are those of the text as it was. */
-export function edited(text: string, edits: readonly Edit[]): string {
-  return [...edits]
-    .sort((a, b) => b.start - a.start)
-    .reduce((all, { start, end, text }) => all.slice(0, start) + text + all.slice(end), text);
 }
