@@ -29,13 +29,14 @@ from distal.editor.messages import (
 from distal.editor.places import column, shapes_of
 from distal.editor.programs import KeptPrograms, key_of, numbers_of
 from distal.export.page_options import PageOptions
-from distal.export.payload import lowered, parameter_entry, payload
+from distal.export.payload import Facts, lowered, parameter_entry, payload
 from distal.ir.nodes import Module, Origin
 from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.parameters import Parameter, slider
 from distal.loading import LoadedFile, load_text
+from distal.runtime.standard_executor import reads_time
 from distal.scene.viewing.viewable import COLOR, Viewable, view_label, viewable
 
 HELD: Final = "held_value"
@@ -134,7 +135,7 @@ class Looks:
                 parameters=tuple(parameter_entry(p) for p in _parameters_of(module)),
                 ms=_times(begin, loaded_at),
             )
-        content = self._content(seen, request, module)
+        content = self._content(seen, request, module, key, guided=request.guided)
         shapes: tuple[ShapePlace, ...] | None = None
         if not request.lean:
             shapes = () if seen.scene is None else shapes_of(seen.scene, files)
@@ -164,7 +165,8 @@ class Looks:
         try:
             loaded, seen = self.load(request, files, given)
             module = lowered(_image(seen, request.view))
-            content = self._content(seen, request, module)
+            key = key_of(module)
+            content = self._content(seen, request, module, key)
         except (CompileError, LoadError):
             if held is None:
                 raise
@@ -172,18 +174,27 @@ class Looks:
             held = None
             loaded, seen = self.load(request, request.files)
             module = lowered(_image(seen, request.view))
-            content = self._content(seen, request, module)
+            key = key_of(module)
+            content = self._content(seen, request, module, key)
         return SceneFound(
             id=request.id,
             revision=request.revision,
-            key=key_of(module),
+            key=key,
             payload=_without_held(content) if held else content,
             objects=loaded.names,
             held=held,
             ms=_times(begin, begin),
         )
 
-    def _content(self, seen: Viewable, request: SourceRequest, module: Module) -> dict[str, Any]:
+    def _content(
+        self,
+        seen: Viewable,
+        request: SourceRequest,
+        module: Module,
+        key: str,
+        *,
+        guided: bool = True,
+    ) -> dict[str, Any]:
         """Return the payload of a view, with all views listed."""
         if request.view not in seen.views and not request.view.startswith("local:"):
             raise ValueError(
@@ -193,19 +204,23 @@ class Looks:
 
         def compiled(image: Func | Composed) -> Any:
             if image is chosen:
-                return self._programs.of(module), module
+                return self._programs.of(module, key), module
             return self._programs.compiled(image)
 
-        parameters = _parameters_of(module) if request.view == COLOR else seen.parameters
+        # Those of the picture: a view may read fewer, and no time.
+        if request.view == COLOR:
+            facts = Facts(_parameters_of(module), reads_time(module))
+        else:
+            facts = Facts(seen.parameters, seen.animated)
         options = PageOptions(
             size=request.size,
             time=request.time,
-            params=known_values(parameters, request.values),
+            params=known_values(facts.parameters, request.values),
             view=request.view,
             views=[request.view],
             poster=False,
         )
-        content = payload(seen, options, compile=compiled, packed=False)
+        content = payload(seen, options, compile=compiled, packed=False, facts=facts, guided=guided)
         shown = {view["name"]: view for view in content["views"]}
         content["views"] = [
             shown.get(name, {"name": name, "label": view_label(name), "program": -1})

@@ -287,12 +287,15 @@ class LookRequest(SourceRequest):
             answer is ``numbers``. None for a ``scene`` in any case.
         changes: Changes to make in the text first; the answer has their edits.
         lean: Whether to leave out literals and shapes, as while a literal is dragged.
+        guided: Whether the camera's guide is among the programs. Without it the camera moves
+            freely; while one types, the picture comes sooner.
     """
 
     kind: ClassVar[str] = "look"
     known: str | None = None
     changes: tuple[Change, ...] = ()
     lean: bool = False
+    guided: bool = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

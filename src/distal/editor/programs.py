@@ -33,9 +33,9 @@ class KeptPrograms:
         module = lowered(image)
         return self.of(module), module
 
-    def of(self, module: Module) -> Artifact:
-        """Return the text of a module with its own numbers."""
-        key = key_of(module)
+    def of(self, module: Module, key: str | None = None) -> Artifact:
+        """Return the text of a module with its own numbers; ``key`` is ``key_of`` it, if known."""
+        key = key or key_of(module)
         artifact = self._kept.pop(key, None)
         if artifact is None:
             artifact = compiled_module(module)

@@ -9,6 +9,7 @@ alone; ``check``, ``probe`` and textures need NumPy.
 from __future__ import annotations
 
 import contextlib
+import gc
 import io
 import itertools
 import os
@@ -54,6 +55,7 @@ from distal.packages import explained, is_installed
 from distal.version import __version__
 
 MOST_LINKS: Final = 1000  # entries of the scene's folder
+PAUSE_S: Final = 1.0  # without a request, until memory is tidied
 
 Send = Callable[[Message], None]
 _NAMED: Final = (CompileError, LoadError, DeviceError)
@@ -161,10 +163,12 @@ def serve(worker: StudioWorker, lines: IO[str], send: Send) -> None:
     threading.Thread(target=_read, args=(lines, arriving), daemon=True).start()
     mailbox = Mailbox()
     send(worker.ready())
+    # Collections take a fifth of a compilation: they are left to the pauses between requests.
+    gc.disable()
     while True:
         waiting = mailbox.take()
         if waiting is None:
-            if not _received(arriving.get(), mailbox, send):
+            if not _received(_next(arriving), mailbox, send):
                 return
         else:
             # What arrived meanwhile may be newer.
@@ -177,6 +181,15 @@ def serve(worker: StudioWorker, lines: IO[str], send: Send) -> None:
         if request is not None:
             for message in worker.answers(request):
                 send(message)
+
+
+def _next(arriving: queue.SimpleQueue[str | None]) -> str | None:
+    """Return the next line; memory is tidied when none comes for a while."""
+    try:
+        return arriving.get(timeout=PAUSE_S)
+    except queue.Empty:
+        gc.collect()
+        return arriving.get()
 
 
 def _received(line: str | None, mailbox: Mailbox, send: Send) -> bool:

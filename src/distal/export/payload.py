@@ -12,7 +12,8 @@ import json
 import re
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, Final
 
@@ -56,6 +57,19 @@ Places = tuple[tuple[str, int] | None, ...]
 Compile = Callable[[Func | Composed], tuple[Artifact, Module]]
 
 
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """What a page says of its object besides the programs.
+
+    Attributes:
+        parameters: The parameters.
+        animated: Whether the picture depends on the time.
+    """
+
+    parameters: Sequence[Parameter]
+    animated: bool
+
+
 def payload(
     seen: Viewable,
     options: PageOptions,
@@ -63,6 +77,8 @@ def payload(
     compile: Compile | None = None,
     *,
     packed: bool = True,
+    facts: Facts | None = None,
+    guided: bool = True,
 ) -> dict[str, Any]:
     """Return all data that the player needs.
 
@@ -72,6 +88,8 @@ def payload(
         omit: Called with the name and error of each view that WebGL 2 cannot show.
         compile: Compiles each program; None: ``compiled``.
         packed: Whether to compress the programs.
+        facts: What is known of the object; None: what ``seen`` finds out.
+        guided: Whether the camera's guide is among the programs.
 
     Raises:
         CompileError: WebGL 2 cannot show the first view.
@@ -95,6 +113,7 @@ def payload(
         if seen.film is not None and seen.is_traced(name):
             shown[-1]["film"] = programs.add_film(*seen.film)
     name = options.title or name_of(seen)
+    facts = facts or Facts(seen.parameters, seen.animated)
     return {
         "format": FORMAT,
         "distal": __version__,
@@ -103,14 +122,14 @@ def payload(
         "size": list(options.size),
         "embed": options.embed,
         "panel": options.panel and not options.embed,
-        "steering": _steering(seen, programs),
+        "steering": _steering(seen, programs, guided=guided),
         "time": {
             "start": options.time,
             "duration": options.duration,
-            "animated": seen.animated,
+            "animated": facts.animated,
         },
-        "parameters": [parameter_entry(p) for p in seen.parameters],
-        "values": _start_values(seen.parameters, options.params),
+        "parameters": [parameter_entry(p) for p in facts.parameters],
+        "values": _start_values(facts.parameters, options.params),
         "views": shown,
         "view": options.view,
         "poster": None,
@@ -120,13 +139,14 @@ def payload(
     }
 
 
-def _steering(seen: Viewable, programs: PagePrograms) -> dict[str, Any] | None:
+def _steering(seen: Viewable, programs: PagePrograms, *, guided: bool) -> dict[str, Any] | None:
     """Return what the player needs to move the camera; ``guide`` is a program's index, or -1."""
     if seen.guide is None:
         return None
     form = seen.guide.form
     camera = {"name": form.name, "mirror": form.mirror, "extent": form.extent}
-    return {"elevation": seen.elevation, "guide": programs.add_guide(seen.guide), "camera": camera}
+    guide = programs.add_guide(seen.guide) if guided else -1
+    return {"elevation": seen.elevation, "guide": guide, "camera": camera}
 
 
 def name_of(seen: Viewable) -> str:
@@ -379,6 +399,7 @@ class PagePrograms:
         return self.files.index(name)
 
 
+@cache
 def _is_library(file: str) -> bool:
     """Return whether a line is part of distal: no author edits it, and half of all lines are."""
     path = PurePath(file)

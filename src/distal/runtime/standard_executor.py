@@ -57,12 +57,7 @@ class StandardExecutor:
 
     def reads_time(self, image: Image | Composed) -> bool:
         """Return whether the picture depends on the time."""
-        target = get_target("glsl-es300")
-        for part in self.parts(image).parts:
-            entered = run_passes(part.module, target, after="entry")
-            if any(u.origin is Origin.FRAME and u.name == "time" for u in entered.uniforms):
-                return True
-        return False
+        return any(reads_time(part.module) for part in self.parts(image).parts)
 
     def lowered(self, function: Func | Composed) -> Lowered:
         """Return the IR of a function that has the types of its own parameters."""
@@ -140,6 +135,12 @@ class ValueOf(Composed):
         value = assembly.expression(self._expression)
         name: str = assembly.define("value", (), self.result, (Return(value),))
         return name
+
+
+def reads_time(module: Module) -> bool:
+    """Return whether a picture's module, before the passes, reads the time."""
+    entered = run_passes(module, get_target("glsl-es300"), after="entry")
+    return any(u.origin is Origin.FRAME and u.name == "time" for u in entered.uniforms)
 
 
 def all_values(

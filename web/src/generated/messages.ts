@@ -181,6 +181,8 @@ export interface LookRequest {
   changes?: Change[];
   /** Whether to leave out literals and shapes, as while a literal is dragged. */
   lean?: boolean;
+  /** Whether the camera's guide is among the programs. Without it the camera moves freely; while one types, the picture comes sooner. */
+  guided?: boolean;
 }
 
 /**

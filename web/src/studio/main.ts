@@ -53,6 +53,8 @@ interface Turn {
 
 /** After the last key, so long until the code is run. */
 const TYPING_MS = 120;
+/** After the last answer, so long until the camera's guide is compiled as well. */
+const GUIDE_MS = 500;
 const SIZE: [number, number] = [640, 480];
 const TEXT_TAB = "Emitted text";
 
@@ -73,6 +75,9 @@ class Studio {
   #wanted = -1;
   #done = -1;
   #timer = 0;
+  #guiding = 0;
+  /** The revision whose guide was asked for. */
+  #guided = -1;
   #turn: Turn | null = null;
   #mistakes: readonly Mistake[] = [];
   #tab = "";
@@ -165,11 +170,27 @@ class Studio {
       const { revision } = this.texts;
       for (const name of this.texts.names) this.texts.keepDraft(name);
       this.page.work.textContent = "…";
-      const answer = await this.client.ask({ kind: "look", ...this.#source, known: this.#key });
+      const answer = await this.client.ask({ kind: "look", ...this.#source, guided: false });
       this.#done = wanted;
       if (answer) await this.#take(answer, revision);
     }
     this.#isLooking = false;
+    this.#guideSoon();
+  }
+
+  /** While one types, the camera moves freely; in a pause the program that guides it follows. */
+  #guideSoon(): void {
+    clearTimeout(this.#guiding);
+    const { revision } = this.texts;
+    const steering = this.picture.player?.payload.steering;
+    if (!steering || (steering.guide ?? -1) >= 0 || this.#guided === revision) return;
+    this.#guiding = window.setTimeout(async () => {
+      if (this.#isLooking || this.#turn || this.#isStopped || this.texts.revision !== revision) return;
+      this.#guided = revision;
+      const answer = await this.client.ask({ kind: "look", ...this.#source, lean: true });
+      const isStale = this.texts.revision !== revision || this.#turn;
+      if (answer?.kind === "scene" && !isStale) await this.picture.show(answer.payload);
+    }, GUIDE_MS);
   }
 
   /** Shows an answer. */
