@@ -33,6 +33,19 @@ const styles = {
   },
 };
 
+// The cell of the playground: a page whose script has the worker's script as a text.
+async function cell(file) {
+  const script = async (source, define) => {
+    const options = { bundle: true, minify: true, format: "iife", target: "es2022", write: false };
+    const made = await build({ absWorkingDir: here, entryPoints: [source], define, ...options });
+    return made.outputFiles[0].text;
+  };
+  const worker = await script("src/cell/worker.ts", {});
+  const frame = await script("src/cell/cell.ts", { WORKER: JSON.stringify(worker) });
+  const page = await readFile(join(here, "src/cell/cell.html"), "utf8");
+  await writeFile(file, page.replace("{script}", () => frame.trim().replaceAll("</script", "<\\/script")));
+}
+
 const folder = argv[2] ?? join(here, "../src/distal/export");
 const lessons = argv[2] ?? join(here, "../src/distal/lessons");
 const studio = argv[2] ?? join(here, "../src/distal/editor/app");
@@ -66,4 +79,5 @@ for (const [source, file] of [
   const { code } = await transform(sheet, { loader: "css", minify: true, target: "chrome123" });
   await writeFile(file, code);
 }
+await cell(join(studio, "cell.html"));
 await copyFile(join(here, "src/studio/studio.html"), join(studio, "studio.html"));

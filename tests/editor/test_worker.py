@@ -60,13 +60,17 @@ class Child:
         return self._next
 
     def message(self, timeout: float = 120.0) -> dict[str, Any]:
-        return json.loads(self.lines.get(timeout=timeout))
+        """The next message but ``progress``."""
+        while True:
+            found = json.loads(self.lines.get(timeout=timeout))
+            if found["kind"] != "progress":
+                return found
 
     def ask(self, kind: str, text: str = SPHERE, **fields: Any) -> dict[str, Any]:
         number = self.post(kind, text, **fields)
         while True:
             found = self.message()
-            if found["kind"] not in ("printed", "progress"):
+            if found["kind"] != "printed":
                 assert found["id"] == number, found
                 return found
 

@@ -184,6 +184,6 @@ def test_help_begins_with_what_a_newcomer_asks_for():
     words = [sys.executable, "-m", "distal.cli", "--help"]
     told = subprocess.run(words, env=environment(), capture_output=True, text=True, check=True)
     commands = re.findall(r"^\W*(\w+)  +[A-Z]", told.stdout.partition("Commands")[2], re.MULTILINE)
-    assert commands[:4] == ["render", "view", "video", "export"]
+    assert commands[:4] == ["render", "view", "studio", "video"]
     assert commands[-1] == "doctor"
-    assert len(commands) == 10
+    assert len(commands) == 11

@@ -8,6 +8,8 @@
 import type { Request, Response } from "../generated/messages";
 
 export interface Channel {
+  /** Makes ready for requests, where that costs something; `ready` follows. */
+  start?(): Promise<void>;
   post(request: Request): void;
   /** Called with every response. */
   onMessage: (response: Response) => void;

@@ -18,14 +18,16 @@ import type {
   SceneFound,
   SourceLiteral,
 } from "../generated/messages";
-import type { Value } from "../payload";
-import { SocketChannel } from "./channel";
+import type { Payload, Value } from "../payload";
+import { CellChannel } from "./cell_channel";
+import { SocketChannel, type Channel } from "./channel";
 import { Client } from "./client";
 import { Editor } from "./editor";
 import { Emitted } from "./emitted";
+import { linkOf, sharedOf, type Shared } from "./links";
 import { Page } from "./page";
 import { Picture } from "./picture";
-import { exports, gallery, help, sheet, type Example } from "./sheets";
+import { exports, gallery, help, share, sheet, type Example } from "./sheets";
 import { Texts } from "./texts";
 
 interface Settings {
@@ -35,6 +37,16 @@ interface Settings {
   gallery: Example[];
   nonce: string;
   version: string;
+  /** Of the playground: the folder of Python's files, and what it begins with. */
+  python?: string;
+  start?: Opened;
+}
+
+/** A scene that is opened; its picture needs no Python where there is a payload. */
+interface Opened {
+  main: string;
+  files: Record<string, string>;
+  payload?: Payload;
 }
 
 /** What a hand is turning. */
@@ -61,6 +73,7 @@ const TEXT_TAB = "Emitted text";
 class Studio {
   readonly texts: Texts;
   readonly page = new Page(document.body);
+  readonly channel: Channel;
   readonly client: Client;
   readonly editor: Editor;
   readonly picture: Picture;
@@ -85,7 +98,7 @@ class Studio {
   #keepsCamera = false;
 
   constructor(readonly settings: Settings) {
-    const { folder, main, nonce } = settings;
+    const { folder, main, nonce, python } = settings;
     this.texts = new Texts(folder);
     this.picture = new Picture({
       view: () => this.look(),
@@ -123,7 +136,8 @@ class Studio {
     this.page.code.append(this.emitted.element);
     this.page.tabRow.append(this.emitted.menu);
     this.#fillButtons();
-    this.client = new Client(new SocketChannel(`ws://${location.host}/socket`), {
+    this.channel = python ? this.#cell(python) : new SocketChannel(`ws://${location.host}/socket`);
+    this.client = new Client(this.channel, {
       ready: (message) => this.#started(message),
       changed: (message) => this.#changed(message),
       printed: ({ text }) => this.#print(text),
@@ -131,7 +145,59 @@ class Studio {
       state: (isOpen) => this.#connected(isOpen),
     });
     document.title = `${main} · distal`;
+    if (settings.start) void this.#begin(settings.start);
     addEventListener("beforeunload", () => this.texts.names.forEach((name) => this.texts.keepDraft(name)));
+  }
+
+  // The playground
+
+  #cell(folder: string): CellChannel {
+    const cell = new CellChannel(folder);
+    cell.onProgress = (part) => {
+      this.page.work.textContent = part < 1 ? `Loading Python: ${Math.round(100 * part)} %` : "Starting Python …";
+    };
+    // Python is large: it comes when somebody wants to change something.
+    for (const kind of ["pointerdown", "focusin"]) {
+      this.page.left.addEventListener(kind, () => void cell.start(), { once: true });
+    }
+    return cell;
+  }
+
+  /** Shows what a link shares, an example, or the start; its picture before Python is there. */
+  async #begin(start: Opened): Promise<void> {
+    const name = /^#example=(\w+)$/.exec(location.hash)?.[1];
+    const shared = await sharedOf(location.hash);
+    const opened: Opened = shared ?? (name ? await this.#example(name) : undefined) ?? start;
+    const given = opened.payload;
+    this.settings.main = opened.main;
+    const digests = Object.fromEntries(Object.keys(opened.files).map((file) => [file, location.hash || "start"]));
+    if (given) await this.picture.show(given);
+    this.#changed({ kind: "changed", files: opened.files, digests });
+    const isNew = this.texts.names.some((file) => this.texts.files[file] !== opened.files[file]);
+    if (!given || isNew) void this.channel.start?.();
+    if (!shared || !this.picture.player) return;
+    if (shared.camera) this.picture.player.setSteering(shared.camera);
+  }
+
+  async #share(): Promise<void> {
+    const { player } = this.picture;
+    const { files } = this.texts;
+    const plain: Shared = { files, main: this.settings.main };
+    const full: Shared = { ...plain };
+    if (player) {
+      full.values = player.parameters();
+      full.time = player.time;
+      const camera = player.steering();
+      if (camera) full.camera = camera;
+    }
+    const address = location.href.split("#")[0]!;
+    const links = await Promise.all([plain, full].map(async (what) => address + (await linkOf(what))));
+    share(links[0]!, links[1]!);
+  }
+
+  async #example(name: string): Promise<Opened | undefined> {
+    const response = await fetch(`gallery/${encodeURIComponent(name)}.json`);
+    return response.ok ? ((await response.json()) as Opened) : undefined;
   }
 
   // Requests
@@ -371,6 +437,11 @@ class Studio {
   }
 
   async save(): Promise<void> {
+    if (this.settings.python) {
+      for (const name of this.texts.names) this.texts.keepDraft(name);
+      this.page.announcer.textContent = "Kept in this browser";
+      return;
+    }
     for (const name of this.texts.names.filter((one) => this.texts.isChanged(one))) {
       const text = this.texts.files[name]!;
       const { revision } = this.texts;
@@ -539,6 +610,7 @@ class Studio {
     if (isOpen) return this.page.tell(null);
     this.#ready = null;
     this.#turn = null;
+    if (this.settings.python) return;
     this.page.tell("The studio's server has ended; your text is kept in this browser.");
   }
 
@@ -559,17 +631,23 @@ class Studio {
       button("Gallery", "Open a copy of an example", () =>
         gallery(this.settings.gallery, (name) => void this.#open(name)),
       ),
-      button("Export", "Make a page or a shader of it", () => this.#export()),
-      button("Save", "Save the file (Mod S)", () => void this.save()),
+      button("Export", "Make a page or a shader of it", () => {
+        void this.channel.start?.();
+        this.#export();
+      }),
+      this.settings.python
+        ? button("Share", "A link that has the code in it", () => void this.#share())
+        : button("Save", "Save the file (Mod S)", () => void this.save()),
       button("?", "Keys", () => help(this.settings.version)),
     );
   }
 
   /** An example takes the place of the text; undo brings the old one back. */
   async #open(name: string): Promise<void> {
-    const response = await fetch(`gallery/${encodeURIComponent(name)}`);
-    if (!response.ok) return this.page.tell(`There is no example ${name}.`, ["Close", () => {}]);
-    const { main, files } = (await response.json()) as { main: string; files: Record<string, string> };
+    const found = await this.#example(name);
+    if (!found) return this.page.tell(`There is no example ${name}.`, ["Close", () => {}]);
+    const { main, files } = found;
+    void this.channel.start?.();
     for (const [file, text] of Object.entries(files)) {
       const into = file === main ? this.settings.main : file;
       if (into in this.texts.files) this.#replace(into, text);

@@ -97,6 +97,28 @@ export function exports(
   sheet("Export", make("ul", { className: "examples" }, ...items, make("li", {}, source)), status);
 }
 
+/** A link with the code, and one that has values, camera and time too. */
+export function share(plain: string, full: string): void {
+  const field = make("input", { type: "text", readOnly: true, "aria-label": "Link" });
+  const isFull = make("input", { type: "checkbox" });
+  const length = make("p", { className: "quiet" });
+  const copied = make("button", { type: "button" }, "Copy");
+  const show = () => {
+    field.value = isFull.checked ? full : plain;
+    length.textContent = `${field.value.length.toLocaleString("en")} characters. The link has the code in it: nothing is stored elsewhere.`;
+    copied.textContent = "Copy";
+  };
+  isFull.onchange = show;
+  copied.onclick = async () => {
+    field.select();
+    await navigator.clipboard?.writeText(field.value).catch(() => document.execCommand("copy"));
+    copied.textContent = "Copied";
+  };
+  show();
+  const option = make("label", { className: "option" }, isFull, "With the sliders' values, the camera and the time");
+  sheet("Share", make("div", { className: "choices" }, field, copied), option, length);
+}
+
 const KEYS: [string, string][] = [
   ["Mod S", "Save the file"],
   ["Mod Enter", "Run the code now"],

@@ -18,7 +18,7 @@ from urllib.parse import unquote, urlsplit
 from distal.diagnostics import LoadError
 from distal.editor.local.files import SceneFiles
 from distal.editor.local.guard import HOST, Guard
-from distal.editor.local.session import CODE_S, Session
+from distal.editor.local.tab import CODE_S, StudioTab
 from distal.editor.messages import LONGEST_MESSAGE, Changed, encoded
 from distal.loading import gallery
 from distal.packages import imported
@@ -36,7 +36,7 @@ _USED: Final = (
 
 
 @dataclass(frozen=True, slots=True)
-class Reply:
+class HttpReply:
     """What a request gets."""
 
     status: int
@@ -63,7 +63,7 @@ class StudioServer:
         self._http11 = imported("websockets.http11")
         self._headers = imported("websockets.datastructures").Headers
         self._closed: type[Exception] = imported("websockets.exceptions").ConnectionClosed
-        self._tabs: dict[Any, Session] = {}
+        self._tabs: dict[Any, StudioTab | None] = {}
         self._lock = threading.Lock()
         self._over = threading.Event()
         self._server = imported("websockets.sync.server").serve(
@@ -94,7 +94,8 @@ class StudioServer:
         with self._lock:
             tabs = list(self._tabs.values())
         for session in tabs:
-            session.end()
+            if session is not None:
+                session.end()
         self._server.shutdown()
 
     # Sockets
@@ -104,8 +105,10 @@ class StudioServer:
             with contextlib.suppress(self._closed):  # the tab is gone: the loop below ends
                 connection.send(text)
 
+        with self._lock:
+            self._tabs[connection] = None  # from now on it is told what changes
         send(encoded(self._files.all()))
-        session = Session(
+        session = StudioTab(
             self._files, send, self._limit, lambda saved: self._tell(saved, connection)
         )
         with self._lock:
@@ -146,30 +149,30 @@ class StudioServer:
         path = urlsplit(request.path).path
         is_socket = path == "/socket"
         if not self._guard.is_ours(request.headers, needs_origin=is_socket):
-            return self._response(Reply(403, b"This server answers its own pages only.\n"))
+            return self._response(HttpReply(403, b"This server answers its own pages only.\n"))
         if not self._guard.knows(request.headers):
             cookie = self._guard.welcomed(request.path) if path == "/" else None
             if cookie is None:
-                return self._response(Reply(403, _USED.encode()))
+                return self._response(HttpReply(403, _USED.encode()))
             more = (("Set-Cookie", cookie), ("Location", "/"))
-            return self._response(Reply(303, b"", more=more))
+            return self._response(HttpReply(303, b"", more=more))
         if is_socket:
             if len(self._tabs) >= _MOST_TABS:
-                return self._response(Reply(503, b"Too many tabs are open: close one.\n"))
+                return self._response(HttpReply(503, b"Too many tabs are open: close one.\n"))
             return None
         return self._response(self._file(path))
 
-    def _file(self, path: str) -> Reply:
+    def _file(self, path: str) -> HttpReply:
         if path == "/":
             return self._page()
         if path.startswith("/gallery/"):
-            return self._example(unquote(path.removeprefix("/gallery/")))
+            return self._example(unquote(path.removeprefix("/gallery/")).removesuffix(".json"))
         name = path.removeprefix("/")
         if name in ("studio.js", "studio.css"):
-            return Reply(200, (APP / name).read_bytes(), _TYPES[Path(name).suffix])
-        return Reply(404, b"There is no such page.\n")
+            return HttpReply(200, (APP / name).read_bytes(), _TYPES[Path(name).suffix])
+        return HttpReply(404, b"There is no such page.\n")
 
-    def _page(self) -> Reply:
+    def _page(self) -> HttpReply:
         nonce = secrets.token_urlsafe(16)
         settings = {
             "main": self._files.main,
@@ -189,17 +192,17 @@ class StudioServer:
             f"'nonce-{nonce}'; img-src 'self' data: blob:; connect-src {sources}; "
             "frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
         )
-        return Reply(200, body, "text/html", (("Content-Security-Policy", policy),))
+        return HttpReply(200, body, "text/html", (("Content-Security-Policy", policy),))
 
-    def _example(self, name: str) -> Reply:
+    def _example(self, name: str) -> HttpReply:
         path = gallery().get(name)
         if path is None:
-            return Reply(404, b"There is no such example.\n")
+            return HttpReply(404, b"There is no such example.\n")
         files = SceneFiles(path)
         body = json.dumps({"main": files.main, "files": files.all().files}).encode()
-        return Reply(200, body, "application/json")
+        return HttpReply(200, body, "application/json")
 
-    def _response(self, reply: Reply) -> Any:
+    def _response(self, reply: HttpReply) -> Any:
         headers = self._headers(
             [
                 ("Content-Type", f"{reply.media_type}; charset=utf-8"),

@@ -39,7 +39,7 @@ _TICK_S: Final = 0.1
 _ANSWERS: Final = ("scene", "numbers", "answer", "mistakes", "dropped")
 
 
-class Session:
+class StudioTab:
     """A tab and its worker.
 
     Args:

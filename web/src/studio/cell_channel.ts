@@ -1,0 +1,112 @@
+/**
+ * The channel of the playground: Python in a sealed frame of the page.
+ *
+ * Input: requests. Output: responses. It fetches the files of Python once somebody needs it, and ends a
+ * worker that does not answer, as the local studio's server does.
+ */
+
+import { make } from "../dom";
+import type { Request, Response } from "../generated/messages";
+import type { Channel } from "./channel";
+
+const FILES = ["pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json", "distal.zip"];
+/** Milliseconds that the author's code has, and that the work after it has. */
+const CODE_MS = 5_000;
+const WORK_MS = 120_000;
+const ANSWERS = ["scene", "numbers", "answer", "mistakes", "dropped"];
+/** What comes out of the cell is a stranger's: longer messages are not read. */
+const LONGEST = 64_000_000;
+
+export class CellChannel implements Channel {
+  onMessage: Channel["onMessage"] = () => {};
+  onState: Channel["onState"] = () => {};
+  /** Called with what is loaded, from 0 to 1. */
+  onProgress: (part: number) => void = () => {};
+  #port: MessagePort | null = null;
+  #isStarted = false;
+  #waiting = new Map<number, number>();
+  #timer = 0;
+
+  /** `folder`: where the files of Python are. */
+  constructor(readonly folder: string) {}
+
+  /** Loads Python; later calls do nothing. */
+  async start(): Promise<void> {
+    if (this.#isStarted) return;
+    this.#isStarted = true;
+    try {
+      const [files, frame] = await Promise.all([this.#files(), this.#frame()]);
+      const { port1, port2 } = new MessageChannel();
+      port1.onmessage = ({ data }) => this.#received(data);
+      this.#port = port1;
+      frame.contentWindow!.postMessage({ files }, "*", [port2, ...Object.values(files)]);
+    } catch (error) {
+      this.#isStarted = false;
+      this.#fail(String((error as Error).message));
+    }
+  }
+
+  post(request: Request): void {
+    if (!this.#port) return;
+    this.#waiting.set(request.id, request.revision);
+    if (this.#waiting.size === 1) this.#wait(CODE_MS);
+    this.#port.postMessage(JSON.stringify(request));
+  }
+
+  async #files(): Promise<Record<string, ArrayBuffer>> {
+    let done = 0;
+    const load = async (name: string) => {
+      const response = await fetch(`${this.folder}${name}`);
+      if (!response.ok) throw new Error(`${name} is not there (${response.status})`);
+      const data = await response.arrayBuffer();
+      this.onProgress((done += 1) / FILES.length);
+      return [name, data] as const;
+    };
+    return Object.fromEntries(await Promise.all(FILES.map(load)));
+  }
+
+  #frame(): Promise<HTMLIFrameElement> {
+    const frame = make("iframe", { src: `${this.folder}cell.html`, title: "Python", hidden: true });
+    frame.setAttribute("sandbox", "allow-scripts");
+    return new Promise((resolve) => {
+      frame.onload = () => resolve(frame);
+      document.body.append(frame);
+    });
+  }
+
+  #received(data: unknown): void {
+    if (typeof data !== "string") {
+      return this.#fail(String((data as { failed?: unknown } | null)?.failed).slice(0, 400));
+    }
+    if (data.length > LONGEST) return;
+    const message = JSON.parse(data) as Response;
+    if (ANSWERS.includes(message.kind)) {
+      this.#waiting.delete((message as { id: number }).id);
+      clearTimeout(this.#timer);
+      if (this.#waiting.size) this.#wait(CODE_MS);
+    } else if (message.kind === "progress") this.#wait(WORK_MS);
+    this.onMessage(message);
+  }
+
+  #wait(ms: number): void {
+    clearTimeout(this.#timer);
+    this.#timer = window.setTimeout(() => {
+      this.#restart(`the scene's code gave no answer within ${ms / 1000} s`);
+    }, ms);
+  }
+
+  #restart(reason: string): void {
+    clearTimeout(this.#timer);
+    const [first, ...others] = this.#waiting;
+    this.#waiting.clear();
+    this.onMessage({ kind: "restarted", id: first?.[0] ?? null, reason });
+    for (const [id, revision] of others) this.onMessage({ kind: "dropped", id, revision });
+    this.#port?.postMessage("restart");
+  }
+
+  #fail(reason: string): void {
+    if (this.#port && this.#waiting.size) return this.#restart(reason);
+    this.onState(false);
+    this.onMessage({ kind: "restarted", id: null, reason: `Python could not be loaded: ${reason}` });
+  }
+}
