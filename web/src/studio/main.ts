@@ -175,6 +175,8 @@ class Studio {
     this.#changed({ kind: "changed", files: opened.files, digests });
     const isNew = this.texts.names.some((file) => this.texts.files[file] !== opened.files[file]);
     if (!given || isNew) void this.channel.start?.();
+    // Where pages from disk or old browsers have none, everything works but without a network.
+    void navigator.serviceWorker?.register("offline.js").catch(() => {});
     if (!shared || !this.picture.player) return;
     if (shared.camera) this.picture.player.setSteering(shared.camera);
   }

@@ -1,0 +1,1 @@
+"""The parts of ``make site``: playground, lessons, gallery, documents, search."""

@@ -1,0 +1,125 @@
+"""The playground: the studio's app as a folder of files, with Python in a sealed cell.
+
+Input: the app as ``web/build.mjs`` makes it, the files of Pyodide, the examples. Output: a folder that
+any server of files can serve, and that works without a network after the first visit.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+import tempfile
+import zipfile
+from pathlib import Path
+
+from distal.editor.local.files import SceneFiles
+from distal.editor.local.server import APP, examples
+from distal.editor.messages import LookRequest, SceneFound
+from distal.editor.worker import StudioWorker
+from distal.loading import gallery
+from distal.version import __version__
+
+ROOT = Path(__file__).parents[2]
+PYODIDE = ROOT / "web" / "node_modules" / "pyodide"
+OFFLINE = ROOT / "web" / "src" / "offline.js"
+PYTHON = (
+    *("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm"),
+    *("python_stdlib.zip", "pyodide-lock.json"),
+)
+START = "melting"
+# Of distal, what the compile path needs: not what only devices, windows and videos use.
+_LEFT_OUT = ("cli", "gallery", "notebook", "video", "window", "editor/local")
+_POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
+    "img-src 'self' data: blob:; connect-src 'self'; frame-src 'self'; worker-src 'self'; "
+    "base-uri 'none'; form-action 'none'"
+)
+
+
+def build(folder: Path) -> None:
+    """Write the playground.
+
+    Raises:
+        FileNotFoundError: Pyodide is not installed: ``npm ci`` in ``web/`` does it.
+    """
+    (folder / "python").mkdir(parents=True)
+    (folder / "gallery").mkdir()
+    for name in ("studio.js", "studio.css"):
+        shutil.copyfile(APP / name, folder / name)
+    shutil.copyfile(APP / "cell.html", folder / "python" / "cell.html")
+    for name in PYTHON:
+        shutil.copyfile(PYODIDE / name, folder / "python" / name)
+    write_package(folder / "python" / "distal.zip")
+    for name, opened in opened_examples().items():
+        (folder / "gallery" / f"{name}.json").write_text(json.dumps(opened), encoding="utf-8")
+    (folder / "index.html").write_text(_page(folder), encoding="utf-8")
+    _write_offline(folder)
+
+
+def write_package(path: Path) -> None:
+    """Write the part of distal that the compiler and the editor's worker need, as an archive."""
+    source = ROOT / "src" / "distal"
+    with zipfile.ZipFile(path, "w") as archive:
+        for file in sorted(source.rglob("*.py")):
+            inner = file.relative_to(source).as_posix()
+            if not any(inner.startswith(f"{left}/") for left in _LEFT_OUT):
+                _add(archive, f"distal/{inner}", file.read_bytes())
+        for name in ("player.js", "path_player.js"):
+            _add(archive, f"distal/export/{name}", (source / "export" / name).read_bytes())
+
+
+def _add(archive: zipfile.ZipFile, name: str, data: bytes) -> None:
+    info = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))  # the same archive on all days
+    archive.writestr(info, data, zipfile.ZIP_DEFLATED, 9)
+
+
+def opened_examples() -> dict[str, dict[str, object]]:
+    """Return the examples with the payload of their first picture, which needs no Python then."""
+    found: dict[str, dict[str, object]] = {}
+    with tempfile.TemporaryDirectory() as folder:
+        worker = StudioWorker(Path(folder))
+        for number, (name, path) in enumerate(gallery().items()):
+            files = SceneFiles(path)
+            texts = files.all().files
+            request = LookRequest(
+                id=number, revision=number, files=texts, main=files.main, guided=False
+            )
+            answer = worker.answers(request)[-1]
+            opened: dict[str, object] = {"main": files.main, "files": texts}
+            if isinstance(answer, SceneFound) and not answer.payload["resources"]:
+                opened["payload"] = answer.payload
+            found[name] = opened
+    return found
+
+
+def _page(folder: Path) -> str:
+    settings = {
+        "main": f"{START}.py",
+        "folder": "playground",
+        "isNew": False,
+        "gallery": examples(),
+        "nonce": "",
+        "version": __version__,
+        "python": "python/",
+        "start": json.loads((folder / "gallery" / f"{START}.json").read_text(encoding="utf-8")),
+    }
+    text = (APP / "studio.html").read_text(encoding="utf-8")
+    filled = json.dumps(settings).replace("<", "\\u003c")
+    policy = f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">'
+    made = text.replace(' nonce="{nonce}"', "").replace("{settings}", filled)
+    made = made.replace('<meta name="viewport"', f'{policy}\n<meta name="viewport"')
+    return made.replace("<title>distal</title>", "<title>Playground · distal</title>")
+
+
+def _write_offline(folder: Path) -> None:
+    """Write the service worker that keeps all files; its name for them changes when one does."""
+    names = sorted(p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file())
+    digest = hashlib.sha256()
+    for name in names:
+        digest.update(name.encode() + (folder / name).read_bytes())
+    script = OFFLINE.read_text(encoding="utf-8")
+    listed = json.dumps(["./", *names])
+    script = script.replace("FILES = []", f"FILES = {listed}")
+    script = script.replace('NAME = ""', f'NAME = "distal-{digest.hexdigest()[:16]}"')
+    (folder / "offline.js").write_text(script, encoding="utf-8")
