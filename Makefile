@@ -7,6 +7,7 @@
 # make parity    draws every example in every place and writes docs/parity.md
 # make mutate    changes the source in small ways and reports what no test notices:
 #                MODULES="distal/fields distal/scene" COUNT=200 SEED=7
+# make site      writes the site, with the playground, to site/; needs Node
 # make versions  runs the tests on every other supported Python that is installed
 #
 # Needs Python 3.11 or newer (with venv) and make. Everything else goes into .venv. System packages
@@ -29,7 +30,7 @@ SEED ?=
 SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers glslang-tools \
 	chromium xvfb xdotool imagemagick
 
-.PHONY: picture test lint units system bench sweep sweep-fields sweep-segments parity mutate versions clean
+.PHONY: picture test lint units system bench site sweep sweep-fields sweep-segments parity mutate versions clean
 .NOTPARALLEL:
 
 picture: $(VENV)/.setup-run
@@ -46,7 +47,7 @@ lint: $(VENV)/.setup-test
 
 # Generated files are proved fresh by tests beside the rest, so that one run names every fault.
 # A worker begins with a half of the files, and so compiles few programs that another compiles too.
-units: $(VENV)/.setup-test
+units: $(VENV)/.setup-test web/node_modules/.ready
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -rs
 
 bench: $(VENV)/.setup-test
@@ -64,6 +65,9 @@ sweep-fields: $(VENV)/.setup-test
 
 sweep-segments: $(VENV)/.setup-test
 	DISTAL_SEGMENTS=$(SEGMENTS) $(BIN)/python -m pytest -s tests/paths/test_segment_leaks.py
+
+site: $(VENV)/.setup-test web/node_modules/.ready
+	$(BIN)/python tools/build_site.py
 
 # Every example in every place it can be drawn in, against the CPU; writes docs/parity.md.
 parity: system $(VENV)/.setup-test
@@ -100,6 +104,12 @@ $(VENV)/.setup-test: $(VENV)/.setup-venv pyproject.toml
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[test]' && \
 	echo "set-up: $$(($$(date +%s) - begin)) s"
 	@touch $@ $(VENV)/.setup-run
+
+# Tools of the browser's side: the compiler in WebAssembly, the checker of accessibility. Never fatal.
+web/node_modules/.ready: web/package-lock.json
+	@if command -v npm >/dev/null 2>&1 && (cd web && npm ci --ignore-scripts --no-audit --no-fund \
+		--prefer-offline >/dev/null 2>&1); then touch $@; else \
+		echo "npm ci failed in web/: tests that need its packages are skipped aloud"; fi
 
 $(VENV)/.setup-venv:
 	@test -n "$(PYTHON)" || { echo "distal needs Python 3.11 or newer, and none was found." \

@@ -1,7 +1,7 @@
 """The playground: the studio's app as a folder of files, with Python in a sealed cell.
 
-Input: the app as ``web/build.mjs`` makes it, the files of Pyodide, the examples. Output: a folder that
-any server of files can serve, and that works without a network after the first visit.
+Input: the app as ``web/build.mjs`` makes it, the files of Pyodide, the examples. Output: a folder
+that any server of files can serve, and that works without a network after the first visit.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import json
 import shutil
 import tempfile
 import zipfile
+from collections.abc import Sequence
 from pathlib import Path
 
 from distal.editor.local.files import SceneFiles
@@ -37,8 +38,8 @@ _POLICY = (
 )
 
 
-def build(folder: Path) -> None:
-    """Write the playground.
+def build(folder: Path, names: Sequence[str]) -> None:
+    """Write the playground, with the examples of these names.
 
     Raises:
         FileNotFoundError: Pyodide is not installed: ``npm ci`` in ``web/`` does it.
@@ -51,7 +52,7 @@ def build(folder: Path) -> None:
     for name in PYTHON:
         shutil.copyfile(PYODIDE / name, folder / "python" / name)
     write_package(folder / "python" / "distal.zip")
-    for name, opened in opened_examples().items():
+    for name, opened in opened_examples([START, *names]).items():
         (folder / "gallery" / f"{name}.json").write_text(json.dumps(opened), encoding="utf-8")
     (folder / "index.html").write_text(_page(folder), encoding="utf-8")
     _write_offline(folder)
@@ -74,13 +75,13 @@ def _add(archive: zipfile.ZipFile, name: str, data: bytes) -> None:
     archive.writestr(info, data, zipfile.ZIP_DEFLATED, 9)
 
 
-def opened_examples() -> dict[str, dict[str, object]]:
+def opened_examples(names: Sequence[str]) -> dict[str, dict[str, object]]:
     """Return the examples with the payload of their first picture, which needs no Python then."""
     found: dict[str, dict[str, object]] = {}
     with tempfile.TemporaryDirectory() as folder:
         worker = StudioWorker(Path(folder))
-        for number, (name, path) in enumerate(gallery().items()):
-            files = SceneFiles(path)
+        for number, name in enumerate(dict.fromkeys(names)):
+            files = SceneFiles(gallery()[name])
             texts = files.all().files
             request = LookRequest(
                 id=number, revision=number, files=texts, main=files.main, guided=False
@@ -94,11 +95,12 @@ def opened_examples() -> dict[str, dict[str, object]]:
 
 
 def _page(folder: Path) -> str:
+    known = {path.stem for path in (folder / "gallery").iterdir()}
     settings = {
         "main": f"{START}.py",
         "folder": "playground",
         "isNew": False,
-        "gallery": examples(),
+        "gallery": [row for row in examples() if row["name"] in known],
         "nonce": "",
         "version": __version__,
         "python": "python/",

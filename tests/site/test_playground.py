@@ -1,0 +1,252 @@
+"""The playground in a browser: Python in its cell, links, loops, drafts, offline, sealed."""
+
+from __future__ import annotations
+
+import functools
+import http.server
+import json
+import re
+import threading
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from distal.editor.messages import LookRequest
+from distal.editor.worker import StudioWorker
+from distal.loading import gallery
+from tests.browser import BrowserUnavailableError, browser
+from tools.site import playground
+
+SLOW_MS = 120_000
+NAMES = ["melting", "raymarcher", "sdfray_row"]
+DESK = {"viewport": {"width": 1180, "height": 640}}
+
+pytestmark = pytest.mark.skipif(
+    not playground.PYODIDE.exists(), reason="pyodide is not installed: run `npm ci` in web/"
+)
+
+_PLAYER = "() => document.querySelector('.picture .host')?.distal"
+_IDLE = "() => /\\d ms$/.test(document.querySelector('.work').textContent)"
+
+
+class Quiet(http.server.SimpleHTTPRequestHandler):
+    """A server of files that writes no log."""
+
+    def log_message(self, *_: object) -> None:
+        """Say nothing."""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    made = tmp_path_factory.mktemp("site") / "playground"
+    playground.build(made, NAMES)
+    return made
+
+
+@pytest.fixture
+def address(folder):
+    handler = functools.partial(Quiet, directory=str(folder.parent))
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{server.server_port}/playground/"
+    server.shutdown()
+    server.server_close()
+
+
+@contextmanager
+def context(origin: str, **options):
+    """A browser's context; what it asks for elsewhere, and what it complains of, is a fault."""
+    try:
+        made = browser().new_context(reduced_motion="reduce", **{**DESK, **options})
+    except BrowserUnavailableError as error:
+        pytest.skip(str(error))
+    messages: list[str] = []
+    asked: list[str] = []
+    made.on("console", lambda said: messages.append(f"{said.type}: {said.text}"))
+    made.on("weberror", lambda thrown: messages.append(f"error: {thrown.error}"))
+    made.on("request", lambda request: asked.append(request.url))
+    try:
+        yield made
+        assert [m for m in messages if m.startswith(("error", "warning"))] == []
+        assert [u for u in asked if not u.startswith((origin, "blob:", "data:"))] == []
+    finally:
+        made.close()
+
+
+def shown(made, address: str, *, wakes: bool = True):
+    page = made.new_page()
+    page.goto(address)
+    page.wait_for_function(_PLAYER, timeout=SLOW_MS)
+    if wakes:
+        page.locator(".cm-content").first.click()
+        page.wait_for_function(_IDLE, timeout=SLOW_MS)
+    return page
+
+
+def ask(page, text: str, kind: str = "look", **more):
+    """The answer of the worker in the cell to a request about a text."""
+    fields = {"kind": kind, "revision": 1, "files": {"scene.py": text}, "main": "scene.py", **more}
+    return page.evaluate("(request) => studio.client.ask(request)", fields)
+
+
+def test_the_first_picture_needs_no_python(address):
+    with context(address) as made:
+        page = made.new_page()
+        asked: list[str] = []
+        page.on("request", lambda request: asked.append(request.url))
+        page.goto(address)
+        page.wait_for_function(_PLAYER, timeout=SLOW_MS)
+        page.evaluate("() => document.querySelector('.picture .host').distal.settled()")
+        page.locator(".knobs input[type=range]").first.press("ArrowRight")
+        assert not [url for url in asked if url.endswith((".wasm", "distal.zip"))]
+
+
+def test_texts_are_those_of_this_python(address, tmp_path):
+    worker = StudioWorker(tmp_path)
+    with context(address) as made:
+        page = shown(made, address)
+        for name in NAMES:
+            text = gallery()[name].read_text(encoding="utf-8")
+            if "numpy" in text:
+                continue
+            request = LookRequest(
+                id=1, revision=1, files={"scene.py": text}, main="scene.py", view="color"
+            )
+            ours = worker.answers(request)[-1].payload["programs"]["data"]
+            theirs = ask(page, text)["payload"]["programs"]["data"]
+            assert [p["fragment"] for p in theirs] == [p["fragment"] for p in ours], name
+
+
+def test_typing_mistakes_and_a_dial(address):
+    with context(address) as made:
+        page = shown(made, address)
+        page.locator(".literal", has_text=re.compile(r"^12\.0$")).click()
+        page.locator(".dial").get_by_role("button", name="More").click()
+        changed = "() => studio.editor.view.state.doc.toString().includes('FAR = 12.1')"
+        page.wait_for_function(changed, timeout=SLOW_MS)
+        page.keyboard.press("Escape")
+        page.evaluate("() => studio.editor.goTo(28)")
+        page.keyboard.press("End")
+        page.keyboard.type(" +")
+        page.wait_for_function("() => document.querySelector('.mistakes').childElementCount")
+        assert "line 28" in page.locator(".mistakes").inner_text()
+
+
+def test_an_endless_loop_is_ended(address):
+    with context(address) as made:
+        page = shown(made, address)
+        page.evaluate("() => studio.editor.replace('melting.py', 'while True: pass\\n')")
+        page.wait_for_function("() => !document.querySelector('.notice').hidden", timeout=SLOW_MS)
+        assert "gave no answer within 5 s" in page.locator(".notice").inner_text()
+        text = gallery()["melting"].read_text(encoding="utf-8")
+        page.evaluate("(text) => studio.editor.replace('melting.py', text)", text)
+        page.wait_for_function(_IDLE, timeout=SLOW_MS)
+
+
+def test_a_link_has_the_code_values_and_camera(address):
+    text = (
+        "from distal import *\nfrom distal.lang import slider\n"
+        'size = slider("Size", 0.5, 0.1, 1.0)\nscene = Scene(Sphere(size))\n'
+    )
+    with context(address) as made:
+        page = shown(made, address)
+        page.evaluate("(text) => studio.editor.replace('melting.py', text)", text)
+        page.wait_for_function("() => studio.picture.player.payload.steering", timeout=SLOW_MS)
+        page.evaluate("() => studio.picture.player.setSteering({ yaw: 0.5 })")
+        page.evaluate("() => studio.picture.player.change('size', 0.75)")
+        page.get_by_role("button", name="Share").click()
+        page.locator("dialog input[type=checkbox]").check()
+        link = page.locator("dialog input[type=text]").input_value()
+        assert link.startswith(f"{address}#c=")
+        other = shown(made, link)
+        assert other.evaluate("() => studio.editor.view.state.doc.toString()") == text
+        moved = "() => studio.picture.player.steering().yaw === 0.5"
+        other.wait_for_function(moved, timeout=SLOW_MS)
+        assert other.evaluate("() => studio.picture.player.parameters().size") == 0.75
+
+
+@pytest.mark.parametrize("fragment", ["#c=", "#c=AAAA", "#c=!!", "#example=none", "#x"])
+def test_a_broken_link_shows_the_start(address, fragment):
+    with context(address) as made:
+        page = made.new_page()
+        page.goto(address + fragment)
+        page.wait_for_function(_PLAYER, timeout=SLOW_MS)
+        assert "sd_sphere" in page.evaluate("() => studio.editor.view.state.doc.toString()")
+
+
+def test_a_draft_outlives_a_reload_and_it_works_offline(address):
+    with context(address) as made:
+        page = shown(made, address)
+        page.evaluate("() => navigator.serviceWorker.ready.then(() => 1)")
+        page.evaluate("() => studio.editor.goTo(6)")
+        page.keyboard.type("# mine\n")
+        page.wait_for_timeout(500)
+        page.wait_for_function(_IDLE, timeout=SLOW_MS)
+        made.set_offline(True)
+        page.reload()
+        page.wait_for_function(_PLAYER, timeout=SLOW_MS)
+        page.wait_for_function(_IDLE, timeout=SLOW_MS)
+        assert "# mine" in page.evaluate("() => studio.editor.view.state.doc.toString()")
+        made.set_offline(False)
+
+
+ATTEMPTS = """
+found = []
+def attempt(name, act):
+    try:
+        act()
+    except BaseException as error:
+        found.append(f"{name}: {type(error).__name__}")
+    else:
+        found.append(f"{name}: DONE")
+
+def import_js():
+    import js
+    js.fetch
+def post_parent():
+    import js
+    js.parent.postMessage("x", "*")
+def storage():
+    import js
+    js.localStorage.setItem("a", "b")
+def evaluate():
+    from pyodide.code import run_js
+    run_js("1 + 1")
+def request():
+    import urllib.request
+    urllib.request.urlopen("https://example.com/", timeout=2)
+def socket():
+    import socket
+    socket.create_connection(("example.com", 80), timeout=2)
+def package():
+    import pyodide_js
+    pyodide_js.loadPackage
+    pyodide_js.globals
+    raise RuntimeError("only the interpreter's own")
+
+for act in (import_js, post_parent, storage, evaluate, request, socket):
+    attempt(act.__name__, act)
+print(found)
+from distal import *
+scene = Scene(Sphere(0.5))
+"""
+
+
+def test_the_cell_is_sealed(address):
+    with context(address) as made:
+        page = shown(made, address)
+        page.evaluate(
+            "() => { window.heard = []; addEventListener('message', (e) => heard.push(e.data)); }"
+        )
+        page.evaluate(
+            "() => { studio.client.events.printed = ({ text }) => { studio.told = text; }; }"
+        )
+        ask(page, ATTEMPTS)
+        told = page.evaluate("() => studio.told")
+        assert told.count(":") == 6, told
+        assert "DONE" not in told, told
+        assert page.evaluate("() => heard") == []
+        assert page.evaluate("() => Object.keys(localStorage)") in ([], None) or not json.dumps(
+            page.evaluate("() => localStorage.getItem('a')")
+        ).count("b")

@@ -1,0 +1,139 @@
+"""The front page, the gallery and the lessons of the site.
+
+Input: examples, their pictures, lessons. Output: pages. Each scene of the gallery is a page of its
+own that needs neither Python nor a network.
+"""
+
+from __future__ import annotations
+
+import io
+import shutil
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+
+from PIL import Image
+
+from distal.editor.local.files import SceneFiles
+from distal.editor.local.server import examples
+from distal.export.page import page as scene_page
+from distal.export.page_options import PageOptions
+from distal.lessons.page import LessonLinks, write
+from distal.lessons.reading import read
+from distal.loading import gallery, load
+from distal.scene.viewing.viewable import viewable
+from tools.site.documents import Found, page, playground_link
+
+ROOT = Path(__file__).parents[2]
+PICTURES = ROOT / "docs" / "pictures"
+LESSONS = ROOT / "lessons"
+CARD = (480, 360)
+HERO = "bunny"
+# More views would make the pages larger and the build longer; the playground has all.
+VIEWS = ("color", "normal", "steps")
+
+
+def build_gallery(folder: Path, names: Sequence[str]) -> list[Found]:
+    """Write a live page for each example, and the page of all."""
+    (folder / "gallery").mkdir()
+    titles = {row["name"]: row["title"] for row in examples()}
+    cards, found = [], []
+    for name in names:
+        poster = _poster(PICTURES / f"{name}.png")
+        (folder / "gallery" / f"{name}.webp").write_bytes(poster)
+        (folder / "gallery" / f"{name}.html").write_text(_live(name, poster), encoding="utf-8")
+        shown = name.replace("_", " ")
+        cards.append(
+            f'<li><a href="{name}.html"><img src="{name}.webp" alt="" width="480" height="360" '
+            f'loading="lazy"><strong>{escape(shown)}</strong><span>{escape(titles[name])}</span></a>'
+            f'<a class="edit" href="../playground/index.html#example={name}">Edit</a></li>'
+        )
+        found.append(Found(shown, "Gallery", f"gallery/{name}.html", titles[name]))
+    body = f'<h1>Gallery</h1>\n<p>Each opens live.</p>\n<ul class="cards">{"".join(cards)}</ul>'
+    text = page("Gallery", body, "../", "wide")
+    (folder / "gallery" / "index.html").write_text(text, encoding="utf-8")
+    return found
+
+
+def _poster(picture: Path) -> bytes:
+    with Image.open(picture) as image:
+        small = image.convert("RGB")
+        small.thumbnail(CARD)
+        held = io.BytesIO()
+        small.save(held, "webp", quality=78)
+    return held.getvalue()
+
+
+def _live(name: str, poster: bytes) -> str:
+    seen = viewable(load(f"example:{name}"))
+    views = [view for view in VIEWS if view in seen.views]
+    return scene_page(seen, PageOptions(views=views), poster, "webp").text
+
+
+def build_lessons(folder: Path, files: Sequence[Path]) -> list[Found]:
+    """Write the pages of lessons, and the page of all."""
+    (folder / "lessons").mkdir()
+    heads = [read(file).head for file in files]
+    names = [f"{file.parent.name}.html" for file in files]
+    found, rows = [], []
+    for i, file in enumerate(files):
+        neighbours = [
+            (names[j], heads[j].title) if 0 <= j < len(files) else ("", "") for j in (i - 1, i + 1)
+        ]
+        scene = heads[i].scene
+        path = gallery()[scene[8:]] if scene.startswith("example:") else file.parent / scene
+        texts = SceneFiles(path)
+        editor = playground_link(texts.all().files, texts.main, "../")
+        links = LessonLinks("index.html", *neighbours, editor)
+        write(file, folder / "lessons" / names[i], links)
+        title = f"{heads[i].number}. {heads[i].title}"
+        rows.append(
+            f'<li><a href="{names[i]}"><strong>{escape(title)}</strong>'
+            f"<span>{escape(heads[i].summary)}</span></a></li>"
+        )
+        found.append(Found(title, "Lessons", f"lessons/{names[i]}", heads[i].summary))
+    body = (
+        "<h1>Lessons</h1>\n<p>From the first ray to glass: each with a live picture, sliders and "
+        f'experiments.</p>\n<ol class="list">{"".join(rows)}</ol>'
+    )
+    text = page("Lessons", body, "../", "wide")
+    (folder / "lessons" / "index.html").write_text(text, encoding="utf-8")
+    return found
+
+
+def build_front(folder: Path, names: Sequence[str]) -> None:
+    """Write the front page, with a live scene."""
+    poster = _poster(PICTURES / f"{HERO}.png")
+    options = PageOptions(views=["color"], embed=True)
+    live = scene_page(viewable(load(f"example:{HERO}")), options, poster, "webp").text
+    shown = [name for name in ("still_life", "city", "bunny", "gyroid_part") if name in names]
+    cards = "".join(
+        f'<li><a href="gallery/{name}.html"><img src="gallery/{name}.webp" alt="'
+        f'{escape(name.replace("_", " "))}" width="480" height="360" loading="lazy"></a></li>'
+        for name in shown
+    )
+    body = f"""<section class="hero"><div><h1>3D scenes, written as ordinary Python</h1>
+<p>A function answers “how far is the nearest surface from here?”. distal compiles it to vector code
+for the CPU, to GLSL for browsers and to WGSL for GPUs: one source, everywhere.</p>
+<p class="acts"><a class="act" href="playground/index.html">Open the playground</a>
+<a href="lessons/index.html">Learn it</a> <a href="docs/index.html">Read about it</a></p></div>
+<div class="live">{live}</div></section>
+<ul class="cards four">{cards}</ul>"""
+    (folder / "index.html").write_text(page("Scenes in Python", body, "", "wide"), encoding="utf-8")
+
+
+def all_lessons() -> list[Path]:
+    """Return the files of all lessons, in order."""
+    return sorted(LESSONS.glob("*/lesson.md"))
+
+
+def all_examples() -> list[str]:
+    """Return the names of the gallery that have a picture."""
+    return [name for name in gallery() if (PICTURES / f"{name}.png").exists()]
+
+
+def copy_style(folder: Path, style: str) -> None:
+    """Write the style sheet and the script that all pages have."""
+    sheet = (ROOT / "web" / "src" / "site" / "site.css").read_text(encoding="utf-8")
+    (folder / "site.css").write_text(sheet + style, encoding="utf-8")
+    shutil.copyfile(ROOT / "web" / "src" / "site" / "site.js", folder / "site.js")
