@@ -41,7 +41,7 @@ def build(folder: Path, names: list[str], lessons: list[Path], *, has_playground
         raise SystemExit(f"{folder} is there and holds something else")
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    pages.copy_style(folder, documents.highlight_style())
+    pages.copy_style(folder)
     found = documents.build(folder, documents.Tried())
     found += pages.build_gallery(folder, names)
     found += pages.build_lessons(folder, lessons)

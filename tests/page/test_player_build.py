@@ -5,6 +5,7 @@ Node and its packages are needed to build it, and only here: who installs distal
 
 from __future__ import annotations
 
+import gzip
 import json
 import re
 import shutil
@@ -20,12 +21,16 @@ PATH_PLAYER = PLAYER.with_name("path_player.js")
 SCRIPTS = (PLAYER, PATH_PLAYER)
 LESSON_SCRIPT = ROOT / "src" / "distal" / "lessons" / "lesson.js"
 LESSON_STYLE = LESSON_SCRIPT.with_suffix(".css")
+APP = ROOT / "src" / "distal" / "editor" / "app"
+APP_FILES = [APP / name for name in ("studio.js", "studio.css", "studio.html", "cell.html")]
 # Packed it has 31 kB, so that the page of the raymarcher stays below its 60 kB.
 LARGEST_BYTES = 60_000
 # What the other player has besides.
 PATHS_BYTES = 9_000
 # What a lesson's page has besides: sliders, stills, experiments, goals, presentation.
 LESSON_BYTES = 8_000
+# The studio with its editor, packed.
+APP_BYTES = 230_000
 INSTALL_S = 100
 RUN_S = 60
 
@@ -63,7 +68,7 @@ def run(folder: Path, *command: str) -> str:
 
 
 @pytest.mark.parametrize(
-    "script", [*SCRIPTS, LESSON_SCRIPT, LESSON_STYLE], ids=lambda script: script.name
+    "script", [*SCRIPTS, LESSON_SCRIPT, LESSON_STYLE, *APP_FILES], ids=lambda script: script.name
 )
 def test_the_committed_scripts_are_fresh(built: Path, script: Path) -> None:
     assert (built / "out" / script.name).read_bytes() == script.read_bytes(), (
@@ -95,6 +100,17 @@ def test_it_is_small_and_asks_for_nothing(script: Path) -> None:
     for word in ("fetch(", "XMLHttpRequest", "WebSocket", "import(", "innerHTML", "sourceMapping"):
         assert word not in text, word
     assert "</script" not in text
+
+
+def test_the_studio_is_small_and_complete() -> None:
+    script, style = ((APP / name).read_bytes() for name in ("studio.js", "studio.css"))
+    assert len(gzip.compress(script)) + len(gzip.compress(style)) <= APP_BYTES
+    text = script.decode()
+    assert "sourceMapping" not in text
+    assert "EDITED" not in text  # a constant that the build did not know
+    # Addresses of the languages' own vocabulary and of editors' notes, which nobody fetches.
+    hosts = {address.split("/")[2] for address in re.findall(r"https?://[^\"'`\s)]*", text)}
+    assert hosts <= {"www.w3.org", "codemirror.net", "github.com", "bugs.chromium.org"}, hosts
 
 
 def test_the_lock_names_no_registry() -> None:

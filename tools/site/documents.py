@@ -19,7 +19,6 @@ from pathlib import Path
 
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
-from pygments.formatters import HtmlFormatter
 
 from distal.editor.links import link_of
 from distal.editor.looks import Looks
@@ -123,6 +122,8 @@ class Document:
 
     def found(self, address: str) -> list[Found]:
         """Return its sections for the search."""
+        if self._file.stem == "gallery":
+            return []  # the site has its own
         return [
             Found(
                 title or self.title,
@@ -237,16 +238,3 @@ def write_search(folder: Path, found: list[Found]) -> None:
     rows = [[f.title, f.page, f.address, " ".join(f.text.split())[:1500]] for f in found]
     text = f"window.SEARCHED = {json.dumps(rows, ensure_ascii=False, separators=(',', ':'))};\n"
     (folder / "index.js").write_text(text, encoding="utf-8")
-
-
-def highlight_style() -> str:
-    """Return the colors of code, light and dark."""
-    light = HtmlFormatter(style="friendly").get_style_defs("pre")
-    dark = HtmlFormatter(style="github-dark").get_style_defs("pre")
-    kept = [
-        "\n".join(
-            line for line in style.splitlines() if "background" not in line and "color" in line
-        )
-        for style in (light, dark)
-    ]
-    return f"{kept[0]}\n@media (prefers-color-scheme: dark) {{\n{kept[1]}\n}}\n"

@@ -132,8 +132,7 @@ def all_examples() -> list[str]:
     return [name for name in gallery() if (PICTURES / f"{name}.png").exists()]
 
 
-def copy_style(folder: Path, style: str) -> None:
+def copy_style(folder: Path) -> None:
     """Write the style sheet and the script that all pages have."""
-    sheet = (ROOT / "web" / "src" / "site" / "site.css").read_text(encoding="utf-8")
-    (folder / "site.css").write_text(sheet + style, encoding="utf-8")
-    shutil.copyfile(ROOT / "web" / "src" / "site" / "site.js", folder / "site.js")
+    for name in ("site.css", "site.js"):
+        shutil.copyfile(ROOT / "web" / "src" / "site" / name, folder / name)

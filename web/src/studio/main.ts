@@ -96,6 +96,7 @@ class Studio {
   #tab = "";
   #line = 0;
   #keepsCamera = false;
+  #shared: Shared | null = null;
 
   constructor(readonly settings: Settings) {
     const { folder, main, nonce, python } = settings;
@@ -177,8 +178,24 @@ class Studio {
     if (!given || isNew) void this.channel.start?.();
     // Where pages from disk or old browsers have none, everything works but without a network.
     void navigator.serviceWorker?.register("offline.js").catch(() => {});
-    if (!shared || !this.picture.player) return;
-    if (shared.camera) this.picture.player.setSteering(shared.camera);
+    this.#shared = shared;
+  }
+
+  /** The camera, values and time of a link, once its picture is there. */
+  #takeShared(): void {
+    const { player } = this.picture;
+    const { camera, values = {}, time } = this.#shared ?? {};
+    this.#shared = null;
+    if (!player) return;
+    if (camera) player.setSteering(camera);
+    if (time !== undefined) player.setTime(time);
+    for (const { name } of player.payload.parameters) {
+      try {
+        if (values[name] !== undefined) player.setParameter(name, values[name]);
+      } catch {
+        // A link made by hand: what does not fit is left out.
+      }
+    }
   }
 
   async #share(): Promise<void> {
@@ -198,6 +215,7 @@ class Studio {
   }
 
   async #example(name: string): Promise<Opened | undefined> {
+    if (!this.settings.gallery.some((one) => one.name === name)) return undefined;
     const response = await fetch(`gallery/${encodeURIComponent(name)}.json`);
     return response.ok ? ((await response.json()) as Opened) : undefined;
   }
@@ -292,6 +310,7 @@ class Studio {
     objects.replaceChildren(...answer.objects.map((name) => make("option", { value: name }, name)));
     if (this.#object) objects.value = this.#object;
     await this.picture.show(answer.payload);
+    if (this.#shared) this.#takeShared();
   }
 
   async #write(change: Partial<Change> & Pick<Change, "what">): Promise<void> {
