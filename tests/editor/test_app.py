@@ -417,3 +417,20 @@ def test_every_screen_is_accessible(tmp_path, scheme, size):
         app.page.keyboard.type("x = = 3\n")
         app.wait("() => document.querySelector('.mistakes').childElementCount")
         assert violations() == []
+
+
+def test_a_draft_of_an_earlier_file_is_offered_and_not_lost(tmp_path):
+    with studio(tmp_path) as app:
+        app.page.evaluate("(text) => studio.editor.replace('scene.py', text)", f"# mine\n{SCENE}")
+        app.idle()
+        app.page.evaluate("() => studio.texts.keepDraft('scene.py')")
+        app.page.goto("about:blank")
+        app.file.write_text(f"# theirs\n{SCENE}")
+        app.page.wait_for_timeout(1000)
+        app.page.go_back()
+        app.wait(_PLAYER)
+        app.idle()
+        assert app.text.startswith("# theirs")
+        app.page.get_by_role("button", name="Show my changes").click()
+        assert app.text.startswith("# mine")
+        assert app.file.read_text().startswith("# theirs")

@@ -80,6 +80,8 @@ def _files(given: str) -> SceneFiles:
         texts = SceneFiles(path).all().files
         return SceneFiles(Path.cwd() / path.name, texts)
     path = Path(given)
+    if path.suffix == ".md":
+        raise UsageError(f"'{given}' is a lesson: 'distal export {given} -o lesson.html' shows it")
     if path.is_dir() or path.suffix != ".py":
         raise UsageError(f"'{given}' is not a Python file")
     if not path.parent.is_dir():

@@ -418,14 +418,7 @@ class Studio {
       const mine = this.texts.take(name, text, digests[name] ?? "");
       if (mine !== null) kept.push(name);
       else if (isNew) {
-        const draft = this.texts.draft(name);
-        if (draft !== null && draft !== text) {
-          this.texts.set(name, draft);
-          this.page.tell(`Unsaved changes of ${name} are here again.`, ["Keep them", () => {}], [
-            "Discard them",
-            () => this.#replace(name, text),
-          ]);
-        }
+        this.#offerDraft(name, text);
         if (this.editor.name === name) this.editor.replace(name, this.texts.files[name]!);
       } else this.editor.replace(name, text);
     }
@@ -439,6 +432,26 @@ class Studio {
     }
     this.#fillFiles();
     this.look();
+  }
+
+  /** Unsaved changes of an earlier visit: here again, or offered where the file has changed since. */
+  #offerDraft(name: string, text: string): void {
+    const draft = this.texts.draft(name);
+    if (!draft) return;
+    if (draft.isCurrent) {
+      this.texts.set(name, draft.text);
+      const discard = () => this.#replace(name, text);
+      return this.page.tell(
+        `Unsaved changes of ${name} are here again.`,
+        ["Keep them", () => {}],
+        ["Discard them", discard],
+      );
+    }
+    this.page.tell(
+      `${name} was changed since you left unsaved changes of it.`,
+      ["Show my changes", () => this.#replace(name, draft.text)],
+      ["Discard them", () => this.texts.forgetDraft(name)],
+    );
   }
 
   #replace(name: string, text: string): void {

@@ -17,6 +17,8 @@ export class Texts {
   #now: Record<string, string> = {};
   #saved: Record<string, string> = {};
   #digests: Record<string, string> = {};
+  /** The files whose drafts are this tab's: those of other tabs stay. */
+  #drafts = new Set<string>();
 
   constructor(readonly key: string) {}
 
@@ -39,6 +41,8 @@ export class Texts {
   /** A file as the disk has it. Returns the unsaved text that is in its way, if there is one. */
   take(name: string, text: string, digest: string): string | null {
     const now = this.#now[name];
+    // After the server was away: nothing is new.
+    if (now !== undefined && this.#digests[name] === digest && digest) return null;
     const isKept = now !== undefined && now !== this.#saved[name] && now !== text;
     this.#saved[name] = text;
     this.#digests[name] = digest;
@@ -63,9 +67,11 @@ export class Texts {
   keepDraft(name: string): void {
     const key = this.#keyOf(name);
     try {
-      if (!this.isChanged(name) || this.#now[name] === this.#saved[name]) {
-        return localStorage.removeItem(key);
+      if (this.#now[name] === this.#saved[name]) {
+        if (this.#drafts.delete(name)) localStorage.removeItem(key);
+        return;
       }
+      this.#drafts.add(name);
       const draft: Draft = { text: this.#now[name]!, digest: this.digest(name) };
       localStorage.setItem(key, JSON.stringify(draft));
     } catch {
@@ -73,14 +79,20 @@ export class Texts {
     }
   }
 
-  /** The draft of a text that the disk still has as it was then. */
-  draft(name: string): string | null {
+  /** An unsaved text of an earlier visit, and whether the disk still has what it began with. */
+  draft(name: string): { text: string; isCurrent: boolean } | null {
     try {
       const found = JSON.parse(localStorage.getItem(this.#keyOf(name)) ?? "null") as Draft | null;
-      return found && found.digest === this.digest(name) ? found.text : null;
+      if (!found || found.text === this.#now[name]) return null;
+      return { text: found.text, isCurrent: found.digest === this.digest(name) };
     } catch {
       return null;
     }
+  }
+
+  forgetDraft(name: string): void {
+    this.#drafts.add(name);
+    this.keepDraft(name);
   }
 
   #keyOf(name: string): string {
