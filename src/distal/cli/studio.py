@@ -34,7 +34,7 @@ def studio(
     file: Annotated[
         str | None,
         typer.Argument(
-            metavar="[FILE]",
+            metavar="FILE",
             help="The scene: a Python file, or example:NAME for a copy. A file that is not there "
             "yet begins with a small scene.",
             show_default=False,
