@@ -59,11 +59,11 @@ def studio(
         server = StudioServer(files, port, time_limit)
     except OSError as error:
         raise UsageError(f"port {port} cannot be used: {error.strerror}") from None
-    address = server.address
-    answer(f"{files.main} at {address}\nCtrl-C ends it; unsaved changes stay in the browser.")
-    if browser:
-        webbrowser.open(address)
     try:
+        address = server.address
+        answer(f"{files.main} at {address}\nCtrl-C ends it; unsaved changes stay in the browser.")
+        if browser:
+            webbrowser.open(address)
         server.serve()
     except KeyboardInterrupt:
         pass
