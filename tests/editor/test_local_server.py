@@ -139,7 +139,7 @@ def test_settings_cannot_end_their_script(tmp_path):
     try:
         page = running._page().body.decode()
     finally:
-        running._server.socket.close()
+        running.close()
     assert "a<script>" not in page
     settings = page.split('nonce="')[1].split(">", 1)[1].split("</script>")[0]
     assert json.loads(settings)["main"] == "a<script>.py"

@@ -77,6 +77,7 @@ class StudioServer:
             ping_interval=None,
         )
         self._guard = Guard(self._server.socket.getsockname()[1])
+        threading.Thread(target=self._server.serve_forever, daemon=True).start()
 
     @property
     def address(self) -> str:
@@ -84,9 +85,8 @@ class StudioServer:
         return self._guard.address()
 
     def serve(self) -> None:
-        """Answer until ``close``."""
-        threading.Thread(target=self._look_at_files, daemon=True).start()
-        self._server.serve_forever()
+        """Look at the files until ``close``; sockets are answered by threads."""
+        self._look_at_files()
 
     def close(self) -> None:
         """End all workers, and the server."""
