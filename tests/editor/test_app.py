@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from distal.cli.studio import STARTER
 from distal.editor.local.files import SceneFiles
 from distal.editor.local.server import StudioServer
 from distal.loading import load
@@ -434,3 +435,32 @@ def test_a_draft_of_an_earlier_file_is_offered_and_not_lost(tmp_path):
         app.page.get_by_role("button", name="Show my changes").click()
         assert app.text.startswith("# mine")
         assert app.file.read_text().startswith("# theirs")
+
+
+def test_names_are_completed_and_calls_explained(tmp_path):
+    with studio(tmp_path) as app:
+        app.page.evaluate("() => studio.editor.goTo(9)")
+        app.page.keyboard.type("other = Tor")
+        options = app.page.locator(".cm-tooltip-autocomplete li")
+        options.first.wait_for()
+        assert options.first.inner_text().startswith("Torus")
+        app.page.keyboard.press("Enter")
+        app.page.keyboard.type("(")
+        tip = app.page.locator(".cm-tooltip .name-head")
+        tip.wait_for()
+        assert tip.inner_text().startswith("Torus(")
+        app.page.keyboard.type("0.5).twi")
+        options.first.wait_for()
+        assert options.first.inner_text().startswith("twist")
+        app.page.keyboard.press("Escape")
+        place = "(at) => studio.editor.view.coordsAtPos(at)"
+        at = app.page.evaluate(place, SCENE.index("Sphere(size)") + 2)
+        app.page.mouse.move(at["left"], at["top"] + 5)
+        app.page.locator(".name", has_text="Ball, centred at the origin.").wait_for()
+
+
+def test_what_a_new_file_begins_with_is_a_picture(tmp_path):
+    (tmp_path / "scene.py").write_text(STARTER)
+    with studio(tmp_path) as app:
+        assert app.mistakes == ""
+        app.page.evaluate(_SETTLED)

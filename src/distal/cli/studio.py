@@ -24,7 +24,7 @@ from distal import *
 ball = Sphere(0.6).paint("#d97757")
 box = Box(0.5).translate(0.7, 0.0, 0.0).paint("#4f7cac")
 
-scene = Scene(ball.smooth_union(box, 0.2))
+scene = Scene(ball.union(box, smooth=0.2))
 '''
 
 

@@ -32,6 +32,7 @@ import {
 import { tags } from "@lezer/highlight";
 import type { Edit, Mistake, SourceLiteral } from "../generated/messages";
 import { literals, setLiterals, type Turning } from "./literals";
+import { names } from "./names";
 
 export interface EditorEvents extends Turning {
   /** A person changed a file's text. */
@@ -99,6 +100,7 @@ export class Editor {
       linked,
       python(),
       literals(events),
+      names(),
       keymap.of([
         { key: "Mod-s", run: () => (events.save(), true), preventDefault: true },
         { key: "Mod-Enter", run: () => (events.run(), true) },
