@@ -381,7 +381,7 @@ export class Renderer {
       return this.subject.drawn({ ms, width, height, fps: 0, samples, rate });
     }
     const range = await this.#rangeOf(painter, program, plan.revision);
-    if (painter !== this.#painter) return;
+    if (painter !== this.#painter || (EDITED && program !== this.#program)) return;
     inputs.number = { ...inputs.number, ...range, Samples: samples };
     let total = 0;
     for (let column = 0; column < width; ) {
@@ -392,6 +392,8 @@ export class Renderer {
       if (column >= width && !isAside) this.#present(painter, plan);
       const ms = await gpuDone(painter.gl);
       if (ms === null || painter !== this.#painter) return;
+      // What an editor replaced is gone, its textures too.
+      if (EDITED && program !== this.#program) return;
       this.#resolution.measure(ms, columns * height * samples);
       total += ms;
       const isOld = plan.revision !== this.#revision || program !== this.#program;
