@@ -106,7 +106,7 @@ class StudioServer:
                 connection.send(text)
 
         with self._lock:
-            self._tabs[connection] = None  # from now on it is told what changes
+            self._tabs[connection] = None  # from now on it gets what changes
         send(encoded(self._files.all()))
         session = StudioTab(
             self._files, send, self._limit, lambda saved: self._tell(saved, connection)
