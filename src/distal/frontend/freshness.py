@@ -14,7 +14,7 @@ from typing import Any, Final
 
 from distal.lang.composed import Composed
 from distal.lang.expressions import Expression
-from distal.lang.functions import Func, Overload
+from distal.lang.functions import Func, Overload, is_library
 from distal.lang.names import LangForm, LangFunction
 from distal.lang.parameters import Parameter
 from distal.lang.resources import Buffer, TextureValue
@@ -44,7 +44,7 @@ class Captured:
     def __init__(self, overloads: Iterable[Overload]) -> None:
         self.overloads = tuple(overloads)
         # Functions of the library do not change, and a scene uses hundreds of them: skip them.
-        self._authors = tuple(o for o in self.overloads if not _is_library(o))
+        self._authors = tuple(o for o in self.overloads if not is_library(o))
         self._objects = tuple(self._now())
         self._lasting = all(map(_lasts, self._objects))
 
@@ -69,10 +69,6 @@ class Captured:
             defaults = (*(python.__defaults__ or ()), *(python.__kwdefaults__ or {}).values())
             for default in defaults:
                 yield from _with_members(default, names)
-
-
-def _is_library(overload: Overload) -> bool:
-    return overload.python.__module__.startswith("distal.")
 
 
 def _names(code: CodeType) -> Iterator[str]:

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import lru_cache
 from typing import assert_never
 
 from distal.ir.nodes import (
@@ -65,6 +66,7 @@ from distal.ir.walk import children, expressions_in, nodes_in
 
 # A shared part of at most this many characters is repeated: naming it would not shorten the text.
 _SHORT = 24
+FUNCTIONS_KEPT = 1024
 
 
 def print_module(module: Module) -> str:
@@ -124,9 +126,7 @@ def _types(module: Module) -> Iterator[Type]:
     for _, value in module.frame:
         listed.extend(e.type for e in nodes_in(value))
     for function in module.functions:
-        listed.extend(p.type for p in function.params)
-        listed.append(function.result)
-        listed.extend(e.type for e in expressions_in(function.body))
+        listed.extend(_types_of(function))
     for type in dict.fromkeys(listed):
         if isinstance(type, FunctionType):
             yield from (*type.params, type.result)
@@ -134,14 +134,22 @@ def _types(module: Module) -> Iterator[Type]:
             yield type
 
 
-def _function_lines(function: Function) -> list[str]:
+# A module that is edited has most functions of the one before.
+@lru_cache(maxsize=FUNCTIONS_KEPT)
+def _types_of(function: Function) -> tuple[Type, ...]:
+    inside = (e.type for e in expressions_in(function.body))
+    return tuple(dict.fromkeys([*(p.type for p in function.params), function.result, *inside]))
+
+
+@lru_cache(maxsize=FUNCTIONS_KEPT)
+def _function_lines(function: Function) -> tuple[str, ...]:
     params = ", ".join(f"{p.name}: {p.type}" for p in function.params)
     writer = _ModulePrinter()
     writer.block(1, function.body)
     name = function.name
     said = "" if function.source_name == name else f" of {function.source_name}"
     said += " apart" if function.apart else ""
-    return [f"fn {name}({params}) -> {function.result}{said}", *writer.lines]
+    return (f"fn {name}({params}) -> {function.result}{said}", *writer.lines)
 
 
 class _ModulePrinter:

@@ -42,6 +42,11 @@ class Overload:
     apart: bool = False
 
 
+def is_library(overload: Overload) -> bool:
+    """Return whether a function is the library's, which does not change."""
+    return overload.python.__module__.startswith("distal.")
+
+
 class Func:
     """A function of scene code, callable from scene code and, through the executor, from Python.
 

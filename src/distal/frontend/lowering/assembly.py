@@ -110,7 +110,7 @@ class Assembly:
         unique = self._defined.get(key)
         if unique is None:
             unique = self._defined[key] = self._compilation.unique_name(name)
-            self._compilation.functions.append(
+            self._compilation.add(
                 Function(unique, tuple(params), result, tuple(body), name, span=span)
             )
         return unique

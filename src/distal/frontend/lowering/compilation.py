@@ -7,8 +7,9 @@ before its caller, and the module lists functions in this order.
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, TypeVar
 
 from distal.diagnostics import CompileError, Diagnostic, Span
 from distal.frontend.function_body import FunctionBody
@@ -16,11 +17,13 @@ from distal.frontend.lowering import lambda_lifting, scene_calls
 from distal.frontend.lowering.assembly import TABLE_FROM, Assembly
 from distal.frontend.lowering.expressions import lower_expression
 from distal.frontend.lowering.instances import Instance
+from distal.frontend.lowering.recipes import Recording, What
 from distal.frontend.problems import FollowupError, SceneError
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
 from distal.frontend.signatures.signatures import FunctionSignature, read_signature
 from distal.frontend.source import Node
 from distal.frontend.values import Closure, Value
+from distal.ir.intrinsics import Intrinsic
 from distal.ir.nodes import (
     EntryKind,
     Expr,
@@ -51,6 +54,7 @@ class Compilation:
         in_progress: The functions that are being lowered, outermost first.
         instances: The lowered functions, by source and argument types.
         is_too_deep: Whether calls exceeded Python's recursion limit, which was reported.
+        recordings: What the functions in progress have asked for.
         assembly: The interface for objects that add functions.
         table_from: With so many parts or more, an object may put the numbers of its parts into
             buffers; None if the target has none.
@@ -64,6 +68,7 @@ class Compilation:
         self.in_progress: list[Instance] = []
         self.instances: dict[Any, Instance] = {}
         self.is_too_deep = False
+        self.recordings: list[Recording] = []
         self._signatures: dict[Overload, FunctionSignature] = {}
         self._names: set[str] = set()
         self._uniforms: dict[str, tuple[Parameter, UniformDeclaration]] = {}
@@ -77,6 +82,7 @@ class Compilation:
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Record an error, once."""
+        self._not_lasting()
         if diagnostic not in self.diagnostics:
             self.diagnostics.append(diagnostic)
 
@@ -116,6 +122,7 @@ class Compilation:
             self._signatures[overload] = signature
         if signature.unusable:
             raise FollowupError
+        self.record("signature", (), overload)
         return signature
 
     def signature_text(self, overload: Overload) -> str:
@@ -130,15 +137,57 @@ class Compilation:
         """Return a name unique in the module: plain, else with the suffix, else numbered."""
         base = name.strip("_") or "function"
         candidates = [base, f"{base}_{suffix}"] if suffix else [base]
-        for candidate in candidates:
-            if candidate not in self._names:
-                self._names.add(candidate)
-                return candidate
-        n = 2
-        while f"{candidates[-1]}_{n}" in self._names:
-            n += 1
-        self._names.add(f"{candidates[-1]}_{n}")
-        return f"{candidates[-1]}_{n}"
+        unique = next((c for c in candidates if c not in self._names), None)
+        if unique is None:
+            n = 2
+            while f"{candidates[-1]}_{n}" in self._names:
+                n += 1
+            unique = f"{candidates[-1]}_{n}"
+        self._names.add(unique)
+        self.record("name", (name, suffix), unique)
+        return unique
+
+    def add(self, function: Function) -> None:
+        """Add a finished function."""
+        self.functions.append(function)
+        self.record("function", (), function)
+
+    def withdraw(self, names: Sequence[str], functions: Sequence[Function]) -> None:
+        """Take back names and functions."""
+        self._names.difference_update(names)
+        for function in functions:
+            del self.functions[next(i for i, f in enumerate(self.functions) if f is function)]
+
+    def record(self, what: What, asked: tuple[Any, ...], answer: Any) -> None:
+        """Note a request of the function in progress, and its answer."""
+        if self.recordings:
+            self.recordings[-1].add(what, asked, answer)
+
+    @contextmanager
+    def recording(self) -> Iterator[Recording]:
+        """Record what is asked for in the block, apart from what its caller asks for."""
+        recording = Recording()
+        self.recordings.append(recording)
+        try:
+            yield recording
+        finally:
+            self.recordings.pop()
+
+    def _not_lasting(self) -> None:
+        """What is asked for is the author's: the function in progress is lowered every time."""
+        if self.recordings:
+            self.recordings[-1].is_lasting = False
+
+    def instance_of(
+        self, overload: Overload, types: tuple[Type, ...], bindings: dict[TypeVar, Type]
+    ) -> Instance:
+        """Return the instance of a function that scene code calls."""
+        signature = self.signature(overload)
+        return scene_calls.instantiate(self, signature, types, bindings, None)
+
+    def builtin_function(self, intrinsic: Intrinsic, types: tuple[Type, ...]) -> Instance:
+        """Return a function that only calls a built-in."""
+        return lambda_lifting.builtin_function(self, intrinsic, types)
 
     def adopt(self, type: Type) -> Type:
         """Return the type; a struct is renamed if another struct of the program has its name."""
@@ -159,9 +208,11 @@ class Compilation:
         if struct not in same_name:
             same_name.append(struct)
         position = same_name.index(struct)
-        if position == 0:
-            return struct
-        return Struct(f"{struct.name}_{position + 1}", struct.fields, False)
+        adopted = struct
+        if position > 0:
+            adopted = Struct(f"{struct.name}_{position + 1}", struct.fields, False)
+        self.record("struct", (struct,), adopted)
+        return adopted
 
     def annotation(self, body: FunctionBody, node: ast.expr) -> Type:
         """Return the type that an annotation inside a body names.
@@ -185,6 +236,7 @@ class Compilation:
         Raises:
             CompileError: Two different parameters have the same name.
         """
+        self._not_lasting()
         name = parameter.name
         known = self._uniforms.get(name)
         if known is not None and known[0] != parameter:
@@ -207,6 +259,7 @@ class Compilation:
 
     def computed(self, expression: Expression) -> Expr:
         """Return the IR of an expression of parameters and time."""
+        self._not_lasting()
         for parameter in expression.parameters:
             self.uniform(parameter)
         return expression.node
@@ -221,6 +274,7 @@ class Compilation:
             type: The type of the uniform.
             value: The value.
         """
+        self._not_lasting()
         first = name = f"{preferred_name[:1].upper()}{preferred_name[1:]}"
         n = self._name_counts.get(first, 1)
         while name in self._numbers:
@@ -238,6 +292,7 @@ class Compilation:
             name: The preferred name.
             type: Its type in the IR.
         """
+        self._not_lasting()
         known = self._resources.get(id(resource))
         if known is None:
             plain = name.rpartition(".")[2]
@@ -292,6 +347,7 @@ class Compilation:
         Raises:
             CompileError: The object contains itself.
         """
+        self._not_lasting()
         known = self.instances.get(obj)
         if known is None:
             types = tuple(type for _, type in obj.signature)

@@ -149,16 +149,17 @@ def builtin_function(
         types: The argument types; an exact instance of the built-in must exist.
     """
     key = (intrinsic.name, types)
-    known = compilation.instances.get(key)
-    if known is not None:
-        return known
-    result = exact_instances(intrinsic.name)[types]
-    name = compilation.unique_name(f"{intrinsic.name}_function", str(types[0]))
-    params = tuple(Param(n, t) for n, t in zip(intrinsic.args, types, strict=True))
-    value = Builtin(intrinsic.name, tuple(Read(p.name, p.type) for p in params), result)
-    compilation.functions.append(Function(name, params, result, (Return(value),), intrinsic.name))
-    instance = Instance(name, intrinsic.name, types, result)
-    compilation.instances[key] = instance
+    instance = compilation.instances.get(key)
+    if instance is None:
+        with compilation.recording():
+            result = exact_instances(intrinsic.name)[types]
+            name = compilation.unique_name(f"{intrinsic.name}_function", str(types[0]))
+            params = tuple(Param(n, t) for n, t in zip(intrinsic.args, types, strict=True))
+            value = Builtin(intrinsic.name, tuple(Read(p.name, p.type) for p in params), result)
+            compilation.add(Function(name, params, result, (Return(value),), intrinsic.name))
+            instance = Instance(name, intrinsic.name, types, result)
+            compilation.instances[key] = instance
+    compilation.record("builtin", (intrinsic, types), instance.name)
     return instance
 
 
@@ -333,7 +334,7 @@ def _lower_closure(closure: Closure, instance: Instance, result: Type | None) ->
     instance.captures = tuple(body.captures)
     all_params = (*params, *body.capture_params())
     span = owner.source.span(node) if isinstance(node, ast.Lambda) else owner.source.name_span(node)
-    compilation.functions.append(
+    compilation.add(
         Function(instance.name, all_params, found, statements, closure.name, span=span)
     )
 

@@ -10,6 +10,7 @@ from distal.diagnostics import Diagnostic
 from distal.frontend.function_body import FunctionBody, Variable
 from distal.frontend.lowering.argument_matching import Argument, closeness, match, pair
 from distal.frontend.lowering.instances import Instance
+from distal.frontend.lowering.recipes import keep, repeated
 from distal.frontend.lowering.statements import lower_statements
 from distal.frontend.problems import FollowupError, SceneError
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
@@ -122,20 +123,34 @@ def instantiate(
         SceneError: The call is recursive.
     """
     key = (signature.overload, types)
-    known = compilation.instances.get(key)
-    if known is not None:
+    instance = compilation.instances.get(key)
+    if instance is not None:
         if caller is not None:
-            compilation.check_recursion(known, caller[0].span(caller[1]))
-        return known
-    instance = Instance(
-        compilation.unique_name(signature.name, _suffix(types)), signature.name, types
-    )
-    compilation.instances[key] = instance
-    compilation.in_progress.append(instance)
-    try:
-        lower_function(compilation, signature, instance, bindings)
-    finally:
-        compilation.in_progress.pop()
+            compilation.check_recursion(instance, caller[0].span(caller[1]))
+    else:
+        instance = repeated(compilation, *key) or _lowered(compilation, signature, types, bindings)
+        compilation.instances[key] = instance
+    compilation.record("instance", (*key, bindings), instance.name)
+    return instance
+
+
+def _lowered(
+    compilation: Compilation,
+    signature: FunctionSignature,
+    types: tuple[Type, ...],
+    bindings: dict[TypeVar, Type],
+) -> Instance:
+    with compilation.recording() as recording:
+        name = compilation.unique_name(signature.name, _suffix(types))
+        instance = Instance(name, signature.name, types)
+        # Known from now on, so that recursion is found.
+        compilation.instances[signature.overload, types] = instance
+        compilation.in_progress.append(instance)
+        try:
+            lower_function(compilation, signature, instance, bindings)
+        finally:
+            compilation.in_progress.pop()
+    keep(signature.overload, types, recording, instance)
     return instance
 
 
@@ -180,7 +195,7 @@ def lower_function(
     if result is None:
         return
     instance.result = result
-    compilation.functions.append(
+    compilation.add(
         Function(
             instance.name,
             tuple(params),
