@@ -8,7 +8,7 @@ leave an operation to a device. Standard library only.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import reduce
+from functools import lru_cache, reduce
 from typing import Any, Final
 
 from distal.backends import get_target
@@ -45,6 +45,7 @@ from distal.passes.fold.fold import fold_expression
 # The passes that remove function values and gradients; the rest makes texts short, or fast.
 _LAST_PASS: Final = "decompose"
 _LONGEST_LOOP: Final = 4096
+_EXPRESSIONS_KEPT: Final = 16384
 
 
 def evaluate(module: Module) -> Any | None:
@@ -165,7 +166,7 @@ class _Evaluator:
             e = _product(e)
         elif isinstance(e, Select) and isinstance(e.condition, Compose):
             e = _selected(e, e.condition)
-        return e if not children(e) else fold_expression(e, 64)
+        return e if not children(e) else _constant(e)
 
 
 def _with_field(struct: Expr, name: str, value: Expr) -> Expr:
@@ -181,7 +182,7 @@ def _with_lanes(vector: Expr, lanes: str, value: Expr) -> Expr:
     """Return a vector with other values of some components."""
     given = dict(zip(lanes, components(value), strict=True))
     kept = zip("xyzw", components(vector), strict=False)
-    parts = [_scalar(given.get(lane, part)) for lane, part in kept]
+    parts = [_constant(given.get(lane, part)) for lane, part in kept]
     return Compose(tuple(parts), vector.type)
 
 
@@ -194,7 +195,7 @@ def _product(e: MatMul) -> Expr:
     def column(of: Expr) -> Expr:
         letters = "xyzw"[: len(columns)]
         terms = [multiply(c, swizzle(of, x)) for c, x in zip(columns, letters, strict=True)]
-        return fold_expression(reduce(add, terms), 64)
+        return _constant(reduce(add, terms))
 
     if isinstance(e.rhs.type, Matrix):
         if not isinstance(e.rhs, Compose):
@@ -207,12 +208,14 @@ def _selected(e: Select, condition: Compose) -> Expr:
     """Return the components of two vectors that constant conditions choose."""
     chosen = [
         swizzle(e.yes if isinstance(c, Const) and c.value else e.no, letter)
-        for c, letter in zip(map(_scalar, components(condition)), "xyzw", strict=False)
+        for c, letter in zip(map(_constant, components(condition)), "xyzw", strict=False)
     ]
-    return Compose(tuple(map(_scalar, chosen)), e.type)
+    return Compose(tuple(map(_constant, chosen)), e.type)
 
 
-def _scalar(e: Expr) -> Expr:
+# While a number is dragged, most boxes are those of before.
+@lru_cache(maxsize=_EXPRESSIONS_KEPT)
+def _constant(e: Expr) -> Expr:
     return fold_expression(e, 64)
 
 

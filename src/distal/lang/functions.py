@@ -47,6 +47,11 @@ def is_library(overload: Overload) -> bool:
     return overload.python.__module__.startswith("distal.")
 
 
+def is_fixed(overload: Overload) -> bool:
+    """Return whether a function is one of the library's modules': the same in each compilation."""
+    return is_library(overload) and "<locals>" not in overload.python.__qualname__
+
+
 class Func:
     """A function of scene code, callable from scene code and, through the executor, from Python.
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 from distal.frontend.lowering.instances import Instance
 from distal.ir.nodes import Function
 from distal.ir.types import Type
-from distal.lang.functions import Overload, is_library
+from distal.lang.functions import Overload, is_fixed
 
 if TYPE_CHECKING:
     from distal.frontend.lowering.compilation import Compilation
@@ -96,7 +96,7 @@ def _same(step: Step, compilation: Compilation, names: list[str], added: list[Fu
     match step.what:
         case "name":
             names.append(compilation.unique_name(*step.asked))
-            return names[-1] == step.answer
+            return bool(names[-1] == step.answer)
         case "struct":
             return compilation.adopt(step.asked[0]) is step.answer
         case "signature":
@@ -105,9 +105,9 @@ def _same(step: Step, compilation: Compilation, names: list[str], added: list[Fu
             compilation.add(step.answer)
             added.append(step.answer)
         case "instance":
-            return compilation.instance_of(*step.asked).name == step.answer
+            return bool(compilation.instance_of(*step.asked).name == step.answer)
         case "builtin":
-            return compilation.builtin_function(*step.asked).name == step.answer
+            return bool(compilation.builtin_function(*step.asked).name == step.answer)
     return True
 
 
@@ -115,7 +115,7 @@ def keep(
     overload: Overload, types: tuple[Type, ...], recording: Recording, instance: Instance
 ) -> None:
     """Keep how a function was made, if it is the library's and nothing of the author's is in it."""
-    if not recording.is_lasting or instance.result is None or not is_library(overload):
+    if not recording.is_lasting or instance.result is None or not is_fixed(overload):
         return
     steps = tuple(recording.steps)
     _recipes[overload, types] = Recipe(steps, instance.source_name, instance.result)

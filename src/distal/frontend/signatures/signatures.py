@@ -18,7 +18,7 @@ from distal.frontend.name_lookup import NameLookup, names_of
 from distal.frontend.problems import SceneError
 from distal.frontend.scopes import ScopeAnalysis, analyse_scopes, plain_parameters
 from distal.frontend.source import SourceMap, parse_definition
-from distal.lang.functions import Overload
+from distal.lang.functions import Overload, is_fixed
 from distal.lang.source import capture
 
 MISSING: Final = object()
@@ -64,6 +64,7 @@ class Definition:
 
 
 _definitions: WeakKeyDictionary[Overload, Definition] = WeakKeyDictionary()
+_fixed: dict[Overload, FunctionSignature] = {}
 
 
 def definition_of(overload: Overload) -> Definition:
@@ -136,6 +137,16 @@ def read_signature(overload: Overload) -> FunctionSignature:
     Raises:
         CompileError: The source text is not available or cannot be parsed.
     """
+    # What an author's annotations name may change; the library's does not.
+    known = _fixed.get(overload)
+    if known is None:
+        known = _read(overload)
+        if is_fixed(overload) and not known.problems:
+            _fixed[overload] = known
+    return known
+
+
+def _read(overload: Overload) -> FunctionSignature:
     python = overload.python
     definition = definition_of(overload)
     names = names_of(python, overload.enclosing)
