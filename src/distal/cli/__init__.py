@@ -7,10 +7,14 @@ after ctrl-C. Contains no algorithms.
 
 from __future__ import annotations
 
+import importlib
 import io
 import os
 import sys
 import warnings
+
+# The commands that have a module of their name: one of them is imported without the others.
+OWN_MODULES = ("render", "view", "studio", "video", "export", "rerender", "check", "probe")
 
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
@@ -41,10 +45,12 @@ def main() -> None:
     try:
         _open_what_is_closed()
         # Nothing slow runs before the try, so that ctrl-C never prints a traceback.
-        from distal.cli.application import application
+        wanted = next(iter(sys.argv[1:]), None)
+        name = wanted if wanted in OWN_MODULES else "application"
+        module = importlib.import_module(f"distal.cli.{name}")
 
         warnings.showwarning = _show_warning
-        application()
+        module.application()
     except KeyboardInterrupt:
         sys.exit(130)
     except Exception as error:

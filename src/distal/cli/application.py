@@ -8,6 +8,7 @@ llvmlite and wgpu. ``render``, ``check``, ``probe`` and others have modules of t
 from __future__ import annotations
 
 from enum import StrEnum
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated
 
@@ -15,45 +16,28 @@ import typer
 from typer.models import CommandInfo
 
 import distal
-from distal.cli import check, export, probe, render, rerender, studio, video, view
+from distal.cli import OWN_MODULES
 from distal.cli.arguments import UsageError, read_scene
 from distal.cli.base import SceneArgument, answer, application, load, reporting
 from distal.compiler.driver import COMPILE_TARGETS, IR_TARGET
 from distal.export.texts import with_header, write_files
 from distal.images.atomic_files import check_destination
 from distal.loading import EXAMPLE_PREFIX
-from distal.version import __version__
 
-# Importing these modules adds their commands.
-COMMANDS = (render, check, probe, export, video, rerender, view, studio)
+for _name in OWN_MODULES:  # importing a module adds its command
+    import_module(f"distal.cli.{_name}")
 # The order in --help: first the commands that new users need.
 _ORDER = (
     *("render", "view", "studio", "video", "export", "rerender"),
     *("check", "probe", "compile", "examples", "doctor"),
 )
 
-__all__ = ["COMMANDS", "TargetName", "application"]
+__all__ = ["TargetName", "application"]
 
 
 # The targets of ``distal compile``.
 _MEMBERS = {name.upper().replace("-", "_"): name for name in COMPILE_TARGETS}
 TargetName = StrEnum("TargetName", _MEMBERS)  # type: ignore[misc]  # members are not literals
-
-
-def _show_version(wanted: bool) -> None:
-    if wanted:
-        print(f"distal {__version__}")
-        raise typer.Exit
-
-
-@application.callback()
-def _options(
-    version: Annotated[
-        bool,
-        typer.Option("--version", help="Show the version.", is_eager=True, callback=_show_version),
-    ] = False,
-) -> None:
-    """Scenes and shaders written as Python: render them, compile them."""
 
 
 @application.command()

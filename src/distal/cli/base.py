@@ -23,6 +23,7 @@ from distal.diagnostics import CompileError, DeviceError, LoadError
 from distal.images.atomic_files import SaveError
 from distal.packages import explained
 from distal.runtime import device_names
+from distal.version import __version__
 
 if TYPE_CHECKING:
     from distal.lang.functions import Image
@@ -42,6 +43,22 @@ application = typer.Typer(
     # A traceback is a bug in distal, so it is shown complete, as Python prints it.
     pretty_exceptions_enable=False,
 )
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        print(f"distal {__version__}")
+        raise typer.Exit
+
+
+@application.callback()
+def _options(
+    version: Annotated[
+        bool,
+        typer.Option("--version", help="Show the version.", is_eager=True, callback=_show_version),
+    ] = False,
+) -> None:
+    """Scenes and shaders written as Python: render them, compile them."""
 
 
 class Device(StrEnum):

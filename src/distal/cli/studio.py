@@ -13,9 +13,12 @@ import typer
 
 from distal.cli.arguments import UsageError
 from distal.cli.base import answer, application, reporting
+from distal.editor.local.early import EarlyWorker
 from distal.editor.local.files import SceneFiles
 from distal.loading import EXAMPLE_PREFIX, gallery
 
+# So long the browser may take to open, until the worker that waits for it is ended.
+_OPENING_S = 60.0
 # What a new file begins with.
 STARTER = '''"""A scene: change a number, or drag it, and see."""
 
@@ -52,13 +55,19 @@ def studio(
     ] = 5.0,
 ) -> None:
     """Edit a scene in the browser: code, picture and parameters side by side."""
-    from distal.editor.local.server import StudioServer
-
     files = _files(file or "scene.py")
+    # Python starts beside what follows, and beside the browser.
+    early = EarlyWorker(files, time_limit + _OPENING_S)
     try:
-        server = StudioServer(files, port, time_limit)
+        from distal.editor.local.server import StudioServer
+
+        server = StudioServer(files, port, time_limit, early)
     except OSError as error:
+        early.end()
         raise UsageError(f"port {port} cannot be used: {error.strerror}") from None
+    except BaseException:  # no package for the server, or ctrl-C
+        early.end()
+        raise
     try:
         address = server.address
         answer(f"{files.main} at {address}\nCtrl-C ends it; unsaved changes stay in the browser.")

@@ -66,7 +66,7 @@ from distal.ir.walk import children, expressions_in, nodes_in
 
 # A shared part of at most this many characters is repeated: naming it would not shorten the text.
 _SHORT = 24
-FUNCTIONS_KEPT = 1024
+FUNCTIONS_KEPT = 1024  # their texts
 
 
 def print_module(module: Module) -> str:

@@ -370,6 +370,7 @@ class Studio {
         known: this.#key,
         changes: [this.#changeOf(turn, value)],
         lean: true,
+        guided: false,
       });
       turn.answered = value;
       if (!answer || answer.kind === "dropped") {

@@ -16,6 +16,7 @@ from typing import Any, Final
 from urllib.parse import unquote, urlsplit
 
 from distal.diagnostics import LoadError
+from distal.editor.local.early import EarlyWorker
 from distal.editor.local.files import SceneFiles
 from distal.editor.local.guard import HOST, Guard
 from distal.editor.local.tab import CODE_S, StudioTab
@@ -52,14 +53,21 @@ class StudioServer:
         files: The files to edit.
         port: The port; 0 for any that is free.
         limit: Seconds that the author's code has.
+        early: A worker for the first tab.
 
     Raises:
         PackageError: ``websockets`` is not installed.
         OSError: The port is taken.
     """
 
-    def __init__(self, files: SceneFiles, port: int = 0, limit: float = CODE_S) -> None:
-        self._files, self._limit = files, limit
+    def __init__(
+        self,
+        files: SceneFiles,
+        port: int = 0,
+        limit: float = CODE_S,
+        early: EarlyWorker | None = None,
+    ) -> None:
+        self._files, self._limit, self._early = files, limit, early
         self._http11 = imported("websockets.http11")
         self._headers = imported("websockets.datastructures").Headers
         self._closed: type[Exception] = imported("websockets.exceptions").ConnectionClosed
@@ -96,6 +104,8 @@ class StudioServer:
         for session in tabs:
             if session is not None:
                 session.end()
+        if self._early is not None:
+            self._early.end()
         self._server.shutdown()
 
     # Sockets
@@ -108,8 +118,9 @@ class StudioServer:
         with self._lock:
             self._tabs[connection] = None  # from now on it gets what changes
         send(encoded(self._files.all()))
+        early, self._early = self._early, None
         session = StudioTab(
-            self._files, send, self._limit, lambda saved: self._tell(saved, connection)
+            self._files, send, self._limit, lambda saved: self._tell(saved, connection), early
         )
         with self._lock:
             self._tabs[connection] = session

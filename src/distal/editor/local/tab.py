@@ -14,6 +14,7 @@ from collections.abc import Callable
 from typing import Final
 
 from distal.diagnostics import LoadError
+from distal.editor.local.early import EARLY_ID, EarlyWorker
 from distal.editor.local.files import SceneFiles
 from distal.editor.local.process import WorkerProcess
 from distal.editor.messages import (
@@ -47,6 +48,7 @@ class StudioTab:
         send: Sends a text to the app.
         limit: Seconds that the author's code has.
         saved: Called with what was saved, for the other tabs.
+        early: The worker to begin with, if there is one.
         start: Starts a worker; by default a process.
     """
 
@@ -56,6 +58,7 @@ class StudioTab:
         send: Callable[[str], None],
         limit: float = CODE_S,
         saved: Callable[[Changed], None] = lambda _: None,
+        early: EarlyWorker | None = None,
         start: Callable[..., WorkerProcess] = WorkerProcess,
     ) -> None:
         self._files, self._send, self._limit, self._start = files, send, limit, start
@@ -64,7 +67,8 @@ class StudioTab:
         self._waiting: dict[int, int] = {}  # the revision by id, in the order of arrival
         self._ends = 0.0
         self._is_over = False
-        self._worker = self._started()
+        with self._lock:  # the worker's lines wait until it is known
+            self._worker = self._started(early)
         threading.Thread(target=self._watch, daemon=True).start()
 
     def received(self, text: str) -> None:
@@ -99,7 +103,7 @@ class StudioTab:
             self._on_saved(Changed(files={name: request.text}, digests={name: saved.digest}))
         return Answer(id=request.id, revision=request.revision, request="save", result=saved)
 
-    def _started(self) -> WorkerProcess:
+    def _started(self, early: EarlyWorker | None = None) -> WorkerProcess:
         worker: WorkerProcess
 
         def is_current() -> bool:
@@ -115,7 +119,11 @@ class StudioTab:
                 if is_current():
                     self._restart(reason)
 
-        worker = self._start(self._files.folder, received, ended)
+        taken = early.taken(received, ended) if early is not None else None
+        if taken is not None:
+            self._waiting[EARLY_ID] = 0
+            self._ends = time.monotonic() + self._limit
+        worker = taken or self._start(self._files.folder, received, ended)
         return worker
 
     def _pass_on(self, line: str) -> None:
@@ -127,7 +135,8 @@ class StudioTab:
             self._ends = time.monotonic() + self._limit
         elif kind == "progress":
             self._ends = time.monotonic() + WORK_S
-        self._send(line.rstrip("\n"))
+        if number != EARLY_ID:
+            self._send(line.rstrip("\n"))
 
     def _watch(self) -> None:
         while not self._is_over:

@@ -334,9 +334,7 @@ def _lower_closure(closure: Closure, instance: Instance, result: Type | None) ->
     instance.captures = tuple(body.captures)
     all_params = (*params, *body.capture_params())
     span = owner.source.span(node) if isinstance(node, ast.Lambda) else owner.source.name_span(node)
-    compilation.add(
-        Function(instance.name, all_params, found, statements, closure.name, span=span)
-    )
+    compilation.add(Function(instance.name, all_params, found, statements, closure.name, span=span))
 
 
 def _check_annotation(owner: FunctionBody, arg: ast.arg, type: Type) -> None:

@@ -16,8 +16,9 @@ from distal.diagnostics import Span
 from distal.frontend import Assembly
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
 from distal.frontend.signatures.signatures import MISSING, read_signature
-from distal.ir.nodes import Expr
+from distal.ir.nodes import Binary, Builtin, Compose, Const, Expr
 from distal.ir.types import BOOL, FLOAT, INT, Type
+from distal.ir.walk import children, rebuild, rewrite
 from distal.lang.expressions import Expression
 from distal.lang.functions import Func
 from distal.lang.immutable import Immutable
@@ -162,7 +163,8 @@ def expression_of(assembly: Assembly, value: Number | TextureValue | Buffer, ste
     """Return a value as an expression of a program.
 
     A constant number becomes a uniform, a column of a table (``scene.lowering.parts``) a read of
-    the row, an expression of the author stays one, and a texture or buffer becomes a resource.
+    the row, an expression of the author stays one, but for its numbers, and a texture or buffer
+    becomes a resource.
 
     Args:
         assembly: The program.
@@ -175,8 +177,36 @@ def expression_of(assembly: Assembly, value: Number | TextureValue | Buffer, ste
     if column is not None:
         return column
     if isinstance(value.value, Expression):
-        return assembly.expression(value.value)
+        return _with_numbers(assembly, value.value, stem)
     return assembly.number(stem, value.type, value.value)
+
+
+def _with_numbers(assembly: Assembly, expression: Expression, stem: str) -> Expr:
+    """Return an expression whose constants are numbers of the scene: a new value needs no new text.
+
+    An exponent stays, because a power of a known one is another formula.
+    """
+    made, key = assembly.made, (Expression, id(expression))
+    if key not in made:
+
+        def changed(e: Expr) -> Expr:
+            if not isinstance(e, Binary | Compose | Builtin) or _is_power(e):
+                return e
+            return rebuild(e, tuple(numbered(c) for c in children(e)))
+
+        def numbered(e: Expr) -> Expr:
+            if isinstance(e, Const) and e.type is FLOAT:
+                return assembly.number(stem, FLOAT, e.value)
+            return e
+
+        # The expression is kept, so that no other gets its identity.
+        made[key] = rewrite(assembly.expression(expression), changed, {}), expression
+    found: Expr = made[key][0]
+    return found
+
+
+def _is_power(e: Expr) -> bool:
+    return isinstance(e, Builtin) and e.name == "pow"
 
 
 def _identifier(what: str) -> str:
