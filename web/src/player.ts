@@ -71,6 +71,8 @@ export class Player {
   declare numbers?: Numbers;
   /** Draws with other numbers of the scene, until the next payload. */
   declare setNumbers: (numbers: Numbers) => void;
+  /** What another program draws of the whole frame: its bytes; null where the GPU went away. */
+  declare drawn: (source: Program, number: Given, size: [number, number]) => Promise<Uint8Array | null>;
   /** Of a page with paths: whether direct light is shown instead. */
   declare isDirect?: boolean;
 
@@ -123,6 +125,10 @@ export class Player {
       this.setNumbers = (numbers) => {
         this.numbers = { ...this.numbers, ...numbers };
         this.#renderer.change();
+      };
+      this.drawn = (source, number, size) => {
+        const { number: own, ...rest } = this.#subject().inputs(...size, true);
+        return this.#renderer.pixels(source, { ...rest, number: { ...own, ...number } }, size);
       };
     }
     this.#frame.follow(

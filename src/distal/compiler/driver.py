@@ -7,6 +7,7 @@ backend writes the text. Depends on the standard library only.
 from __future__ import annotations
 
 import os
+from collections.abc import Collection
 from dataclasses import replace
 from typing import Final
 
@@ -37,7 +38,11 @@ COMPILE_TARGETS: Final = (IR_TARGET, *(name for name in target_names() if name !
 
 
 def run_passes(
-    module: Module, target: Target, precision: int = 32, after: str | None = None
+    module: Module,
+    target: Target,
+    precision: int = 32,
+    after: str | None = None,
+    skipped: Collection[str] = (),
 ) -> Module:
     """Run the passes on a lowered module for a target.
 
@@ -46,13 +51,14 @@ def run_passes(
         target: The target to compile for.
         precision: The bits of a float, 32 or 64.
         after: The last pass to run; None runs all.
+        skipped: Passes that do not run.
 
     Raises:
         CompileError: The scene code uses something that the target does not support.
     """
     try:
         with paused_collection():
-            return _run_passes(module, target, precision, after)
+            return _run_passes(module, target, precision, after, skipped)
     except RecursionError:
         # An elif chain of hundreds of branches is a chain of as many nested blocks.
         entry = module.function(module.entry)
@@ -61,7 +67,9 @@ def run_passes(
         raise CompileError.at(message, entry.span, hint) from None
 
 
-def _run_passes(module: Module, target: Target, precision: int, after: str | None) -> Module:
+def _run_passes(
+    module: Module, target: Target, precision: int, after: str | None, skipped: Collection[str]
+) -> Module:
     context = Context(target, PreludeLibrary(), precision)
     # The passes rely on callees preceding callers, and keep this order; ``verify`` checks it.
     module = replace(module, functions=in_call_order(module.functions, module.entry))
@@ -69,7 +77,8 @@ def _run_passes(module: Module, target: Target, precision: int, after: str | Non
     if verifier is not None:
         verifier.verify(module)
     for name, run in PIPELINE:
-        module = run(module, context)
+        if name not in skipped:
+            module = run(module, context)
         if verifier is not None:
             verifier.verify(module, name)
         if name == after:

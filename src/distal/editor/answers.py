@@ -13,6 +13,7 @@ from typing import Any, Final, Literal, cast
 
 from distal.backends import TEXT_TARGETS
 from distal.compiler.driver import compile as compile_text
+from distal.editor.counting import counting
 from distal.editor.edits import edits_of
 from distal.editor.looks import Looks, known_values, mistake_at
 from distal.editor.messages import (
@@ -170,9 +171,17 @@ _SEVERITIES: Final[Mapping[str, Literal["error", "warning", "note"]]] = {
     "error": "error",
     "warning": "warning",
 }
+
+
+def _count(work: AnswerWork) -> Result:
+    _, seen = work.looks.load(work.request, work.request.files)
+    return counting(seen, work.request.view, tuple(work.request.files))
+
+
 ANSWERS: Final[Mapping[str, Callable[[AnswerWork], Result]]] = {
     "write": _write,
     "probe": _probe,
+    "count": _count,
     "check": _check,
     "text": _text,
     "export": _export,

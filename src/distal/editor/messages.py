@@ -164,14 +164,12 @@ class Counting:
 
     Attributes:
         places: File (number in ``files``) and line by the number of the place.
-        operations: The estimated operations of one run, by the number of the place.
     """
 
     program: Program
     which: str
     files: tuple[str, ...]
     places: tuple[tuple[int, int], ...]
-    operations: tuple[float, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -320,12 +320,13 @@ class PagePrograms:
 
     def _added_program(self, image: Func | Composed) -> int:
         artifact, module = self._compile(image)
-        program = self._program(artifact, module)
+        program = self.program(artifact, module)
         if program not in self.made:
             self.made.append(program)
         return self.made.index(program)
 
-    def _program(self, artifact: Artifact, module: Module) -> dict[str, Any]:
+    def program(self, artifact: Artifact, module: Module) -> dict[str, Any]:
+        """Return a program as a page has it."""
         assert artifact.vertex is not None
         interface = artifact.interface
         names = {r.name: self._resource(r.name, r.source, r.type) for r in module.resources}

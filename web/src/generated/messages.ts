@@ -105,8 +105,6 @@ export interface Counting {
   files: string[];
   /** File (number in `files`) and line by the number of the place. */
   places: [number, number][];
-  /** The estimated operations of one run, by the number of the place. */
-  operations: number[];
 }
 
 /** What a pixel shows; `shape` is empty where it is the background. */

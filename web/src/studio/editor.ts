@@ -31,6 +31,7 @@ import {
 } from "@codemirror/view";
 import { tags } from "@lezer/highlight";
 import type { Edit, Mistake, SourceLiteral } from "../generated/messages";
+import { costs, showRuns, type Runs } from "./costs";
 import { literals, setLiterals, type Turning } from "./literals";
 import { names } from "./names";
 
@@ -98,6 +99,7 @@ export class Editor {
       highlightActiveLine(),
       highlightSelectionMatches(),
       linked,
+      costs(),
       python(),
       literals(events),
       names(),
@@ -182,6 +184,11 @@ export class Editor {
       };
     });
     this.view.dispatch(setDiagnostics(state, found));
+  }
+
+  /** Shows how often lines of the file that is shown run. */
+  setRuns(runs: readonly Runs[]): void {
+    showRuns(this.view, runs);
   }
 
   /** Marks lines of the file that is shown. */

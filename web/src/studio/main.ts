@@ -22,6 +22,7 @@ import type { Payload, Value } from "../payload";
 import { CellChannel } from "./cell_channel";
 import { SocketChannel, type Channel } from "./channel";
 import { Client } from "./client";
+import { runsOf, type Runs } from "./costs";
 import { Editor } from "./editor";
 import { Emitted } from "./emitted";
 import { linkOf, sharedOf, type Shared } from "./links";
@@ -97,6 +98,9 @@ class Studio {
   #line = 0;
   #keepsCamera = false;
   #shared: Shared | null = null;
+  /** Whether the editor shows how often lines run. */
+  #counts = false;
+  #runs = new Map<string, Runs[]>();
 
   constructor(readonly settings: Settings) {
     const { folder, main, nonce, python } = settings;
@@ -262,6 +266,25 @@ class Studio {
     }
     this.#isLooking = false;
     this.#guideSoon();
+    void this.#count();
+  }
+
+  /** Counts again, where counts are shown. */
+  async #count(): Promise<void> {
+    if (!this.#counts || !this.#can("count")) return;
+    const { revision } = this.texts;
+    const { player } = this.picture;
+    const isWanted = () => this.#counts && this.texts.revision === revision && this.picture.player === player;
+    const answer = await this.client.ask({ kind: "count", ...this.#source });
+    if (answer?.kind !== "answer" || answer.request !== "count" || !player || !isWanted()) return;
+    const runs = await runsOf(answer.result, player, isWanted);
+    if (!runs) return;
+    this.#runs = runs;
+    this.#showRuns();
+  }
+
+  #showRuns(): void {
+    this.editor.setRuns(this.#counts ? (this.#runs.get(this.editor.name) ?? []) : []);
   }
 
   /** While one types, the camera moves freely; in a pause the program that guides it follows. */
@@ -550,7 +573,10 @@ class Studio {
     if (name === TEXT_TAB) void this.#emit();
     else this.editor.show(name, this.texts.files[name]!);
     if (was !== name) this.#fillFiles();
-    if (was !== name && name !== TEXT_TAB) this.#showMistakes(this.#mistakes);
+    if (was !== name && name !== TEXT_TAB) {
+      this.#showMistakes(this.#mistakes);
+      this.#showRuns();
+    }
   }
 
   #goTo(file: string, line: number, column = 0, isFocused = false): void {
@@ -666,6 +692,7 @@ class Studio {
       button("Gallery", "Open a copy of an example", () =>
         gallery(this.settings.gallery, (name) => void this.#open(name)),
       ),
+      this.#costButton(),
       button("Export", "Make a page or a shader of it", () => {
         void this.channel.start?.();
         this.#export();
@@ -675,6 +702,19 @@ class Studio {
         : button("Save", "Save the file (Mod S)", () => void this.save()),
       button("?", "Keys", () => help(this.settings.version)),
     );
+  }
+
+  #costButton(): HTMLElement {
+    const title = "How often each line runs for a pixel";
+    const toggle = make("button", { type: "button", title, "aria-pressed": "false" }, "Cost");
+    toggle.onclick = () => {
+      this.#counts = !this.#counts;
+      toggle.setAttribute("aria-pressed", String(this.#counts));
+      this.#showRuns();
+      void this.channel.start?.();
+      void this.#count();
+    };
+    return toggle;
   }
 
   /** An example takes the place of the text; undo brings the old one back. */

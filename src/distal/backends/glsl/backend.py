@@ -22,6 +22,8 @@ from distal.backends.clike.module_names import ModuleNames, Vocabulary, name_mod
 from distal.backends.clike.module_text import joined, without_frame
 from distal.backends.clike.names import Reserved
 from distal.backends.clike.packing import Packing, pack
+from distal.backends.glsl import counting
+from distal.backends.glsl.counting import Counts
 from distal.backends.glsl.isf import IsfHeader
 from distal.backends.glsl.stages import GlslProgram, fragment_lines, vertex_lines
 from distal.backends.glsl.targets import GlslTarget
@@ -44,7 +46,21 @@ def emit(module: Module, target: Target) -> Artifact:
         CompileError: The target cannot express the author's code.
     """
     assert isinstance(target, GlslTarget), target
-    program = _program(without_frame(module), target)
+    return _text(_program(without_frame(module), target), target)
+
+
+def emit_counting(module: Module, target: Target, counts: Counts) -> Artifact:
+    """Return a program of WebGL 2 that draws how often statements run (``glsl.counting``).
+
+    Raises:
+        CompileError: The target cannot express the author's code.
+    """
+    assert isinstance(target, GlslTarget), target
+    program = counting.prepared(_program(without_frame(module), target), counts)
+    return counting.counting(_text(program, target), counts)
+
+
+def _text(program: GlslProgram, target: GlslTarget) -> Artifact:
     module = program.module
     text, places = joined(fragment_lines(program))
     # The header is added after wrapping, because its comment is data.
