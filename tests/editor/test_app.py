@@ -3,41 +3,27 @@
 from __future__ import annotations
 
 import re
-import threading
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
 from distal.cli.studio import STARTER
-from distal.editor.local.files import SceneFiles
-from distal.editor.local.server import StudioServer
-from distal.loading import load
-from distal.scene.viewing.viewable import viewable
-from tests.browser import BrowserUnavailableError, Watched, browser
-from tests.page.looking import Looked
+from tests.editor.studio_page import (
+    DESK,
+    IDLE,
+    PLAYER,
+    SCENE,
+    SETTLED,
+    SLOW_MS,
+    studio,
+)
 
 pytest.importorskip("websockets")
 
 AXE = Path(__file__).parents[2] / "web" / "node_modules" / "axe-core" / "axe.min.js"
 RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]
-SLOW_MS = 90_000  # software WebGL on a loaded machine
-LIMIT_S = 5.0
-DESK = {"viewport": {"width": 1180, "height": 640}}
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
 
-SCENE = '''"""A ball and a box."""
-
-from distal import *
-from distal.lang import slider
-
-size = slider("Size", 0.6, 0.1, 1.0)
-ball = Sphere(size).paint("#d97757")
-box = Box(0.50).translate(0.9, 0.0, 0.0)
-
-scene = Scene(ball | box, lights=DistantLight((1, 2, 3)), background="#123456",
-              camera=Camera((1.0, 1.5, 4.0), target=(0.3, 0.0, 0.0)))
-'''
 FUNC = """from distal.lang import Frame, image, vec3
 
 @image
@@ -48,104 +34,7 @@ def picture(frame: Frame) -> vec3:
     return vec3(level, 0.5, 0.0)
 """
 
-_PLAYER = "() => document.querySelector('.picture .host')?.distal"
-_SETTLED = "() => document.querySelector('.picture .host').distal.settled()"
-_IDLE = "() => /\\d ms$/.test(document.querySelector('.work').textContent)"
-_TEXT = "() => studio.editor.view.state.doc.toString()"
 _VALUES = "() => document.querySelector('.picture .host').distal.parameters()"
-
-
-class Shown:
-    """The app in a page."""
-
-    def __init__(self, watched: Watched, file: Path) -> None:
-        self.watched, self.page, self.file = watched, watched.page, file
-
-    def wait(self, condition: str) -> None:
-        self.page.wait_for_function(condition, timeout=SLOW_MS)
-
-    def idle(self) -> None:
-        """Until the last text is answered."""
-        self.page.wait_for_timeout(200)  # typing ends
-        self.wait(_IDLE)
-
-    @property
-    def text(self) -> str:
-        return self.page.evaluate(_TEXT)
-
-    @property
-    def mistakes(self) -> str:
-        return self.page.locator(".mistakes").inner_text()
-
-    def dial(self, literal: str) -> None:
-        """Open the dial of the first literal with a text."""
-        self.page.locator(".literal", has_text=re.compile(f"^{re.escape(literal)}$")).first.click()
-        self.page.locator(".dial").wait_for()
-
-    def turn(self, value: float, steps: int = 4) -> None:
-        """Drag the dial's slider to a value, and let go."""
-        self.page.locator(".dial input[type=range]").first.evaluate(
-            """async (slider, [value, steps]) => {
-              const from = slider.valueAsNumber;
-              for (let i = 1; i <= steps; i++) {
-                slider.value = from + ((value - from) * i) / steps;
-                slider.dispatchEvent(new Event("input", { bubbles: true }));
-                await new Promise((resolve) => setTimeout(resolve, 30));
-              }
-              slider.dispatchEvent(new Event("change", { bubbles: true }));
-            }""",
-            [value, steps],
-        )
-
-    def saved(self) -> str:
-        """Save; return what the disk has."""
-        self.page.evaluate("() => studio.save()")
-        return self.file.read_text()
-
-    def equals_the_cpu(self) -> bool:
-        """Whether the picture is what the CPU draws of the saved file."""
-        self.saved()
-        self.page.evaluate(_SETTLED)
-        found = Looked(self.watched).beside(viewable(load(self.file)))
-        return found.is_agreement
-
-
-@contextmanager
-def studio(folder: Path, text: str = SCENE, tabs: int = 1, **options):
-    """The app on a file, in one context of the browser; nothing else may be asked for."""
-    file = folder / "scene.py"
-    if not file.exists():
-        file.write_text(text)
-    server = StudioServer(SceneFiles(file), limit=LIMIT_S)
-    thread = threading.Thread(target=server.serve, daemon=True)
-    thread.start()
-    try:
-        context = browser().new_context(reduced_motion="reduce", **{**DESK, **options})
-    except BrowserUnavailableError as error:
-        server.close()
-        pytest.skip(str(error))
-    messages: list[str] = []
-    asked: list[str] = []
-    context.on("console", lambda said: messages.append(f"{said.type}: {said.text}"))
-    context.on("weberror", lambda thrown: messages.append(f"error: {thrown.error}"))
-    context.on("request", lambda request: asked.append(request.url))
-    try:
-        address = server.address
-        origin = address.split("/?")[0]
-        made = []
-        for _ in range(tabs):
-            page = context.new_page()
-            page.goto(address if not made else origin)
-            shown = Shown(Watched(page), file)
-            shown.wait(_PLAYER)
-            shown.wait(_IDLE)
-            made.append(shown)
-        yield made[0] if tabs == 1 else made
-        assert [line for line in messages if line.startswith(("error", "warning"))] == []
-        assert [url for url in asked if not url.startswith((origin, "blob:", "data:"))] == []
-    finally:
-        context.close()
-        server.close()
 
 
 def test_a_mistake_is_shown_at_its_line_and_the_picture_stays(tmp_path):
@@ -253,7 +142,7 @@ def test_keep_writes_a_slider_and_the_camera(tmp_path):
 
 def test_a_click_on_the_picture_selects_the_line(tmp_path):
     with studio(tmp_path) as app:
-        app.page.evaluate(_SETTLED)
+        app.page.evaluate(SETTLED)
         box = app.page.locator(".picture canvas").bounding_box()
         x, y = box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"]
         app.page.mouse.click(x, y)
@@ -276,7 +165,7 @@ def test_an_endless_loop_is_ended_and_typing_goes_on(tmp_path):
         assert "gave no answer within 5 s" in app.page.locator(".notice").inner_text()
         assert "while True" in app.text
         app.page.evaluate("(text) => studio.editor.replace('scene.py', text)", SCENE)
-        app.wait(_IDLE)
+        app.wait(IDLE)
         app.wait("() => document.querySelector('.notice').hidden")
 
 
@@ -286,7 +175,7 @@ def test_a_reload_keeps_the_draft(tmp_path):
         app.page.keyboard.type("# mine\n")
         app.idle()
         app.page.reload()
-        app.wait(_PLAYER)
+        app.wait(PLAYER)
         assert "# mine" in app.text
         assert "Unsaved changes of scene.py" in app.page.locator(".notice").inner_text()
         app.page.get_by_role("button", name="Discard them").click()
@@ -429,7 +318,7 @@ def test_a_draft_of_an_earlier_file_is_offered_and_not_lost(tmp_path):
         app.file.write_text(f"# theirs\n{SCENE}")
         app.page.wait_for_timeout(1000)
         app.page.go_back()
-        app.wait(_PLAYER)
+        app.wait(PLAYER)
         app.idle()
         assert app.text.startswith("# theirs")
         app.page.get_by_role("button", name="Show my changes").click()
@@ -463,4 +352,4 @@ def test_what_a_new_file_begins_with_is_a_picture(tmp_path):
     (tmp_path / "scene.py").write_text(STARTER)
     with studio(tmp_path) as app:
         assert app.mistakes == ""
-        app.page.evaluate(_SETTLED)
+        app.page.evaluate(SETTLED)

@@ -122,7 +122,7 @@ def _wrapper(
             "an image returns vec3 or vec4",
         )
     name = FreshNames(f.name for f in functions).fresh("main")
-    body = (Return(color, span=image.span),)
+    body = (Return(color),)
     return Function(name, (Param("coord", VEC2),), color.type, body, "main", span=image.span)
 
 

@@ -103,6 +103,6 @@ export function costs(): Extension {
 
 /** Shows the runs of the file in an editor; none takes the column away. */
 export function showRuns(view: EditorView, runs: readonly Runs[]): void {
-  view.dom.classList.toggle("counted", runs.length > 0);
+  view.dom.parentElement!.classList.toggle("counted", runs.length > 0);
   view.dispatch({ effects: setRuns.of(runs) });
 }

@@ -18,7 +18,7 @@ import type {
   SceneFound,
   SourceLiteral,
 } from "../generated/messages";
-import type { Payload, Value } from "../payload";
+import type { Payload, Program, Value } from "../payload";
 import { CellChannel } from "./cell_channel";
 import { SocketChannel, type Channel } from "./channel";
 import { Client } from "./client";
@@ -114,8 +114,10 @@ class Studio {
         void this.#write({ what: "camera", text });
       },
       drawn: (text) => (this.page.drawn.textContent = text),
+      program: (view) => this.#program(view),
     });
-    this.page.show.append(this.picture.element, this.picture.strip, this.picture.knobs);
+    const { element, strip, layers, knobs } = this.picture;
+    this.page.show.append(element, strip, layers.element, knobs);
     this.editor = new Editor(
       this.page.code,
       {
@@ -267,6 +269,19 @@ class Studio {
     this.#isLooking = false;
     this.#guideSoon();
     void this.#count();
+    if (this.picture.player && this.picture.layers.isOpen) void this.picture.layers.draw(this.picture.player);
+  }
+
+  /** The program of a view of the text as it is. */
+  async #program(view: string): Promise<Program | null> {
+    if (this.#isLooking || this.#turn) return null;
+    const { revision } = this.texts;
+    const asked = { ...this.#source, view, lean: true, guided: false };
+    const answer = await this.client.ask({ kind: "look", ...asked });
+    if (answer?.kind !== "scene" || revision !== this.texts.revision) return null;
+    const { views, programs } = answer.payload;
+    const number = views.find(({ name }) => name === view)?.program ?? -1;
+    return programs.encoding === "plain" ? (programs.data[number] ?? null) : null;
   }
 
   /** Counts again, where counts are shown. */

@@ -7,9 +7,10 @@
 import { rowOf, type Row } from "../controls";
 import { ICONS, icon, iconButton, make, rename } from "../dom";
 import type { NumbersFound } from "../generated/messages";
-import type { Parameter, Payload, Value } from "../payload";
+import type { Parameter, Payload, Program, Value } from "../payload";
 import { Player } from "../player";
 import { same } from "../values";
+import { Layers } from "./layers";
 
 export interface PictureEvents {
   /** Another view is wanted, which may not be compiled yet. */
@@ -19,6 +20,8 @@ export interface PictureEvents {
   keepParameter(name: string, value: Value): void;
   keepCamera(text: string): void;
   drawn(text: string): void;
+  /** The program of a view, for its still. */
+  program(view: string): Promise<Program | null>;
 }
 
 /** A press that moves farther is a drag. */
@@ -29,6 +32,7 @@ export class Picture {
   readonly element = make("div", { className: "picture" });
   readonly strip = make("div", { className: "strip", role: "toolbar", "aria-label": "Picture" });
   readonly knobs = make("div", { className: "knobs" });
+  readonly layers: Layers;
   player: Player | null = null;
   #host = make("div", { className: "host" });
   #rows = new Map<string, { row: Row; keep: HTMLElement }>();
@@ -37,6 +41,10 @@ export class Picture {
 
   constructor(readonly events: PictureEvents) {
     this.element.append(this.#host);
+    this.layers = new Layers({
+      program: (view) => events.program(view),
+      chosen: (view) => this.player?.setView(view),
+    });
     this.#listenToClicks();
   }
 
@@ -46,6 +54,8 @@ export class Picture {
     if (!(await this.player?.load(shown))) this.#begin(shown);
     this.#declare(payload.parameters);
     this.#fillStrip(payload);
+    this.layers.list(payload.views, payload.size);
+    this.layers.mark(this.player!.view);
   }
 
   /** Draws with other numbers; the program stays. */
@@ -86,8 +96,15 @@ export class Picture {
     this.player = player;
     if (steering) player.setSteering(steering);
     this.#ends.push(
-      player.on("view", () => this.events.view()),
-      player.on("parameter", ({ name, value }) => this.#moved(name, value)),
+      player.on("view", ({ name }) => {
+        this.layers.mark(name);
+        this.events.view();
+      }),
+      player.on("parameter", ({ name, value }) => {
+        this.#moved(name, value);
+        this.layers.drawSoon(player);
+      }),
+      player.on("steering", () => this.layers.drawSoon(player)),
       player.on("frame", ({ ms, fps, width, height, samples, rate }) => {
         const speed = fps ? `${fps.toFixed(0)} fps` : `${ms.toFixed(0)} ms`;
         const paths = rate === undefined ? "" : ` · ${samples} samples`;
@@ -143,10 +160,22 @@ export class Picture {
     const player = this.player!;
     const parts: HTMLElement[] = [];
     if (payload.time.animated) parts.push(...this.#time(player));
-    if (payload.views.length > 1) parts.push(this.#views(player, payload));
+    if (payload.views.length > 1) parts.push(this.#views(player, payload), this.#layersButton());
     if (payload.steering) parts.push(this.#keepCamera(player));
     parts.push(iconButton("Save a picture", ICONS.camera, () => void player.saveScreenshot()));
     this.strip.replaceChildren(...parts);
+  }
+
+  #layersButton(): HTMLElement {
+    const title = "Small pictures of all views";
+    const toggle = make("button", { type: "button", title }, "Layers");
+    toggle.setAttribute("aria-pressed", String(this.layers.isOpen));
+    toggle.onclick = () => {
+      this.layers.isOpen = !this.layers.isOpen;
+      toggle.setAttribute("aria-pressed", String(this.layers.isOpen));
+      if (this.player) void this.layers.draw(this.player);
+    };
+    return toggle;
   }
 
   #views(player: Player, { views }: Payload): HTMLElement {

@@ -182,14 +182,15 @@ class ShapeComposer:
         values = [Read(p.name, p.type) for p in params] if passed else self.values.all(node)
         extra = self.parts.factor_names(node, names) if safe and passed else []
         params += [Param(n, FLOAT) for n in extra]
-        body = StatementList(taken={"p", "cell", *names, *extra}, place=node.place)
+        place = None if passed else node.place
+        body = StatementList({"p", "cell", *names, *extra}, place, is_shared=bool(passed))
         cell = Read("cell", VEC3) if uses_cell else ZERO_CELL
         factors: Sequence[Expr] | None = None
         if safe:
             given = tuple(Read(n, FLOAT) for n in extra)
             factors = given if passed else self._factors(body, node, values)
         result = self._emit(body, node, Read("p", point), cell, values, factors)
-        body.statements.append(Return(result, span=node.place))
+        body.statements.append(Return(result, span=place))
         params = [Param("p", point), *params, *([Param("cell", VEC3)] if uses_cell else [])]
         stem = f"{plain_name(node.name)}_{'safe_distance' if safe else 'distance'}"
         return self.assembly.define(stem, params, FLOAT, body.statements, node.place)
@@ -219,7 +220,9 @@ class ShapeComposer:
         if factors and not self.parts.splits(node):
             return self._scaled(body, node, p, cell, values, factors)
         name, passed = self._function(node, values, cell, safe=bool(factors), factors=factors or ())
-        return body.let("d", Call(name, (p, *passed), FLOAT))
+        # Where several shapes share a function, its call is at the shape's place.
+        with body.at(node.place if passed else None):
+            return body.let("d", Call(name, (p, *passed), FLOAT))
 
     def _scaled(
         self,

@@ -26,14 +26,16 @@ class StatementList:
     """The statements of a function under construction.
 
     Attributes:
-        statements: The statements so far.
         taken: Names that are in use.
         place: Where the author wrote what the next statements compute.
+        is_shared: Whether shapes of several places share the function: it has none.
+        statements: The statements so far.
     """
 
-    statements: list[Stmt] = field(default_factory=list)
     taken: set[str] = field(default_factory=set)
     place: Span | None = None
+    is_shared: bool = False
+    statements: list[Stmt] = field(default_factory=list)
     # The number from which to look for a free name, by stem: a scene has thousands of boxes.
     _next: dict[str, int] = field(default_factory=dict)
 
@@ -53,7 +55,7 @@ class StatementList:
     def at(self, place: Span | None) -> Iterator[None]:
         """Give the statements that are added in the block a place; None keeps the one before."""
         before = self.place
-        self.place = place or before
+        self.place = None if self.is_shared else place or before
         try:
             yield
         finally:
