@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import webbrowser
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -16,6 +16,9 @@ from distal.cli.base import answer, application, reporting
 from distal.editor.local.early import EarlyWorker
 from distal.editor.local.files import SceneFiles
 from distal.loading import EXAMPLE_PREFIX, gallery
+
+if TYPE_CHECKING:
+    from distal.editor.local.serving import LocalServer
 
 # So long the browser may take to open, until the worker that waits for it is ended.
 _OPENING_S = 60.0
@@ -39,7 +42,7 @@ def studio(
         typer.Argument(
             metavar="FILE",
             help="The scene: a Python file, or example:NAME for a copy. A file that is not there "
-            "yet begins with a small scene.",
+            "yet begins with a small scene. Or a lesson: lesson.md.",
             show_default=False,
         ),
     ] = None,
@@ -54,23 +57,19 @@ def studio(
         typer.Option(min=0.5, help="Seconds that the scene's own code may run at each change."),
     ] = 5.0,
 ) -> None:
-    """Edit a scene in the browser: code, picture and parameters side by side."""
-    files = _files(file or "scene.py")
-    # Python starts beside what follows, and beside the browser.
-    early = EarlyWorker(files, time_limit + _OPENING_S)
-    try:
-        from distal.editor.local.server import StudioServer
+    """Edit a scene in the browser: code, picture and parameters side by side.
 
-        server = StudioServer(files, port, time_limit, early)
+    A lesson (lesson.md) is shown as its page, which follows what any editor saves.
+    """
+    given = file or "scene.py"
+    make = _lesson if given.endswith(".md") else _scene
+    try:
+        server, name = make(given, port, time_limit)
     except OSError as error:
-        early.end()
         raise UsageError(f"port {port} cannot be used: {error.strerror}") from None
-    except BaseException:  # no package for the server, or ctrl-C
-        early.end()
-        raise
     try:
         address = server.address
-        answer(f"{files.main} at {address}\nCtrl-C ends it; unsaved changes stay in the browser.")
+        answer(f"{name} at {address}\nCtrl-C ends it; unsaved changes stay in the browser.")
         if browser:
             webbrowser.open(address)
         server.serve()
@@ -78,6 +77,31 @@ def studio(
         pass
     finally:
         server.close()
+
+
+def _scene(given: str, port: int, time_limit: float) -> tuple[LocalServer, str]:
+    """Return the server of a scene, and the file's name."""
+    files = _files(given)
+    # Python starts beside what follows, and beside the browser.
+    early = EarlyWorker(files, time_limit + _OPENING_S)
+    try:
+        from distal.editor.local.server import StudioServer
+
+        server = StudioServer(files, port, time_limit, early)
+    except BaseException:  # no package for the server, a port that is taken, or ctrl-C
+        early.end()
+        raise
+    return server, files.main
+
+
+def _lesson(given: str, port: int, time_limit: float) -> tuple[LocalServer, str]:
+    """Return the server of a lesson, and the file's name."""
+    from distal.editor.local.lesson_server import LessonServer
+
+    path = Path(given)
+    if not path.is_file():
+        raise UsageError(f"there is no file '{given}'")
+    return LessonServer(path, port), path.name
 
 
 def _files(given: str) -> SceneFiles:
@@ -89,8 +113,6 @@ def _files(given: str) -> SceneFiles:
         texts = SceneFiles(path).all().files
         return SceneFiles(Path.cwd() / path.name, texts)
     path = Path(given)
-    if path.suffix == ".md":
-        raise UsageError(f"'{given}' is a lesson: 'distal export {given} -o lesson.html' shows it")
     if path.is_dir() or path.suffix != ".py":
         raise UsageError(f"'{given}' is not a Python file")
     if not path.parent.is_dir():

@@ -31,7 +31,7 @@ def started(folder, *words):
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["lesson.md"], "'lesson.md' is a lesson: 'distal export lesson.md -o lesson.html' shows"),
+        (["lesson.md"], "there is no file 'lesson.md'"),
         (["picture.png"], "'picture.png' is not a Python file"),
         (["none/scene.py"], "there is no folder 'none'"),
         (["example:none"], "there is no example 'none'; 'distal examples' lists them"),

@@ -9,44 +9,25 @@ from __future__ import annotations
 import contextlib
 import json
 import secrets
-import threading
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
-from urllib.parse import unquote, urlsplit
+from urllib.parse import unquote
 
 from distal.diagnostics import LoadError
 from distal.editor.local.early import EarlyWorker
 from distal.editor.local.files import SceneFiles
-from distal.editor.local.guard import HOST, Guard
+from distal.editor.local.serving import HttpReply, LocalServer
 from distal.editor.local.tab import CODE_S, StudioTab
-from distal.editor.messages import LONGEST_MESSAGE, Changed, encoded
+from distal.editor.messages import Changed, encoded
 from distal.loading import gallery
-from distal.packages import imported
 from distal.version import __version__
 
 APP: Final = Path(__file__).parent.parent / "app"
 _TYPES: Final = {".js": "text/javascript", ".css": "text/css", ".html": "text/html"}
-_MOST_TABS: Final = 8
 _LOOK_S: Final = 0.3  # how often files are looked at that other programs may change
 
-_USED: Final = (
-    "This address was used already. Open the page in the browser that has it, or start "
-    "'distal studio' once more.\n"
-)
 
-
-@dataclass(frozen=True, slots=True)
-class HttpReply:
-    """What a request gets."""
-
-    status: int
-    body: bytes
-    media_type: str = "text/plain"
-    more: tuple[tuple[str, str], ...] = ()
-
-
-class StudioServer:
+class StudioServer(LocalServer):
     """Serves the app until ``close``.
 
     Args:
@@ -68,29 +49,7 @@ class StudioServer:
         early: EarlyWorker | None = None,
     ) -> None:
         self._files, self._limit, self._early = files, limit, early
-        self._http11 = imported("websockets.http11")
-        self._headers = imported("websockets.datastructures").Headers
-        self._closed: type[Exception] = imported("websockets.exceptions").ConnectionClosed
-        self._tabs: dict[Any, StudioTab | None] = {}
-        self._lock = threading.Lock()
-        self._over = threading.Event()
-        self._server = imported("websockets.sync.server").serve(
-            self._talk,
-            HOST,
-            port,
-            process_request=self._answered,
-            compression=None,
-            max_size=LONGEST_MESSAGE,
-            server_header=None,
-            ping_interval=None,
-        )
-        self._guard = Guard(self._server.socket.getsockname()[1])
-        threading.Thread(target=self._server.serve_forever, daemon=True).start()
-
-    @property
-    def address(self) -> str:
-        """An address for one browser."""
-        return self._guard.address()
+        super().__init__(port)
 
     def serve(self) -> None:
         """Look at the files until ``close``; sockets are answered by threads."""
@@ -98,7 +57,6 @@ class StudioServer:
 
     def close(self) -> None:
         """End all workers, and the server."""
-        self._over.set()
         with self._lock:
             tabs = list(self._tabs.values())
         for session in tabs:
@@ -106,7 +64,7 @@ class StudioServer:
                 session.end()
         if self._early is not None:
             self._early.end()
-        self._server.shutdown()
+        super().close()
 
     # Sockets
 
@@ -145,35 +103,11 @@ class StudioServer:
                 self._tell(changed)
 
     def _tell(self, changed: Changed, source: Any = None) -> None:
-        with self._lock:
-            tabs = [connection for connection in self._tabs if connection is not source]
-        for connection in tabs:
-            try:
-                connection.send(encoded(changed))
-            except self._closed:
-                continue
+        self._send_all(encoded(changed), source)
 
     # Files of the app
 
-    def _answered(self, connection: Any, request: Any) -> Any:
-        """Answer a request for a file; None lets a socket open."""
-        path = urlsplit(request.path).path
-        is_socket = path == "/socket"
-        if not self._guard.is_ours(request.headers, needs_origin=is_socket):
-            return self._response(HttpReply(403, b"This server answers its own pages only.\n"))
-        if not self._guard.knows(request.headers):
-            cookie = self._guard.welcomed(request.path) if path == "/" else None
-            if cookie is None:
-                return self._response(HttpReply(403, _USED.encode()))
-            more = (("Set-Cookie", cookie), ("Location", "/"))
-            return self._response(HttpReply(303, b"", more=more))
-        if is_socket:
-            if len(self._tabs) >= _MOST_TABS:
-                return self._response(HttpReply(503, b"Too many tabs are open: close one.\n"))
-            return None
-        return self._response(self._file(path))
-
-    def _file(self, path: str) -> HttpReply:
+    def _reply(self, path: str) -> HttpReply:
         if path == "/":
             return self._page()
         if path.startswith("/gallery/"):
@@ -212,27 +146,6 @@ class StudioServer:
         files = SceneFiles(path)
         body = json.dumps({"main": files.main, "files": files.all().files}).encode()
         return HttpReply(200, body, "application/json")
-
-    def _response(self, reply: HttpReply) -> Any:
-        headers = self._headers(
-            [
-                ("Content-Type", f"{reply.media_type}; charset=utf-8"),
-                ("Content-Length", str(len(reply.body))),
-                ("Cache-Control", "no-store"),
-                ("X-Content-Type-Options", "nosniff"),
-                ("Referrer-Policy", "no-referrer"),
-                ("Cross-Origin-Resource-Policy", "same-origin"),
-                ("Connection", "close"),
-                *reply.more,
-            ]
-        )
-        return self._http11.Response(reply.status, _PHRASES[reply.status], headers, reply.body)
-
-
-_PHRASES: Final = {
-    **{200: "OK", 303: "See Other", 403: "Forbidden", 404: "Not Found"},
-    503: "Service Unavailable",
-}
 
 
 def examples() -> list[dict[str, str]]:
