@@ -15,6 +15,8 @@
 # and what needs them is skipped aloud.
 
 SHELL := /bin/sh
+# The tests start hundreds of processes: each would compile the library's modules again.
+unexport PYTHONDONTWRITEBYTECODE
 VENV := .venv
 BIN := $(VENV)/bin
 # The first interpreter that is new enough; `make PYTHON=... test` overrides it.
@@ -59,6 +61,7 @@ sweep: $(VENV)/.setup-test
 		tests/parts tests/smooth tests/tape tests/unit/backends
 	GALLIVM_PERF= DISTAL_ALL_PICTURES=1 $(BIN)/python -m pytest -n $(WORKERS) -rs \
 		tests/pictures/test_targets.py
+	DISTAL_ALL_PICTURES=1 $(BIN)/python -m pytest -rs tests/site/test_playground.py
 
 sweep-fields: $(VENV)/.setup-test
 	DISTAL_FIELD_SEED=$(or $(SEED),day) DISTAL_FIELD_SAMPLES=$(SAMPLES) $(BIN)/python -m pytest -n $(WORKERS) -rs tests/fields

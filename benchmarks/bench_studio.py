@@ -15,6 +15,7 @@ import functools
 import gzip
 import http.server
 import json
+import os
 import re
 import statistics
 import subprocess
@@ -34,6 +35,9 @@ from distal.editor.local.server import APP  # noqa: E402
 from distal.loading import gallery  # noqa: E402
 from tests.browser import browser  # noqa: E402
 
+# An installed package has bytecode, wherever the checkout has none.
+COMPILED = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+COMPILED.setdefault("PYTHONPYCACHEPREFIX", str(Path(tempfile.gettempdir()) / "distal_bytecode"))
 RUNS = 5
 DRAG_S = 2.0
 NUMBER = re.compile(r"(?<![\w.#\"])\d+\.\d+(?![\w.])")
@@ -55,20 +59,25 @@ _ASK = """async ([text, count, source]) => {
   }
   return times;
 }"""
-_DRAG = """async ([text, seconds, source]) => {
-  const first = await studio.client.ask(
-    { kind: "look", revision: 1, files: { "scene.py": text }, main: "scene.py" });
-  const found = first.literals.find(({ way, type }) => way === "numbers" && type === "number");
-  const { start, end, value: old } = found;
+_DRAG = """async ([text, seconds]) => {
+  const ask = (more) => studio.client.ask({
+    kind: "look", revision: 1, files: { "scene.py": text }, main: "scene.py", guided: false, ...more });
+  const first = await ask({});
+  const isPlain = ({ way, type, whole, call }) =>
+    way === "numbers" && type === "number" && !whole && !/slider|integer/.test(call);
+  const all = first.literals.filter(isPlain);
+  const { start, end, value: old } = all[Math.floor(all.length / 2)];
+  let known = first.key;
   let count = 0;
-  const begin = performance.now();
-  while (performance.now() - begin < 1000 * seconds) {
-    const value = old + 0.001 * (count + 1);
-    const literal = { file: "scene.py", start, end, value, name: null, text: null };
+  let begin = 0;
+  for (let turn = 0; turn === 0 || performance.now() - begin < 1000 * seconds; turn++) {
+    const literal = { file: "scene.py", start, end, value: old + 0.001 * (turn + 1), name: null, text: null };
     const changes = [{ what: "literal", ...literal }];
-    const answer = await studio.client.ask({ kind: "look", revision: 1, files: { "scene.py": text },
-      main: "scene.py", known: first.key, changes, lean: true });
-    if (answer?.kind === "numbers") count += 1;
+    const answer = await ask({ known, changes, lean: true });
+    known = answer.key ?? known;
+    // The first may be a new program: numbers that were equal are two.
+    if (turn === 0) begin = performance.now();
+    else if (answer.kind === "numbers") count += 1;
   }
   return count / ((performance.now() - begin) / 1000);
 }"""
@@ -82,6 +91,7 @@ def local(scene: str) -> Iterator[tuple[str, float]]:
         process = subprocess.Popen(
             [sys.executable, "-m", "distal.cli", "studio", scene, "--no-browser"],
             cwd=folder,
+            env=COMPILED,
             stdout=subprocess.PIPE,
             text=True,
         )
@@ -149,9 +159,10 @@ def in_page(page: Any, where: str, goals: dict[str, str]) -> None:
             goals[name],
         )
     if "drag" in goals:
-        for name, goal in (("sdfray_row", "30"), ("bunny", "10")):
+        goals_of = {"raymarcher_objects": "30", "sdfray_row": "30", "bunny": "10"}
+        for name, goal in goals_of.items():
             text = gallery()[name].read_text(encoding="utf-8")
-            rate = page.evaluate(_DRAG, [text, DRAG_S, NUMBER.pattern])
+            rate = page.evaluate(_DRAG, [text, DRAG_S])
             row(f"{where}: answers a second while a literal is dragged, {name}", rate, "/s", goal)
 
 
@@ -177,6 +188,7 @@ def main() -> None:
         len(gzip.compress((APP / name).read_bytes())) for name in ("studio.js", "studio.css")
     )
     row("the app with its editor, packed", size / 1000, "kB", "230")
+    first_picture()  # writes bytecode
     row(
         "`distal studio example:raymarcher` to the first picture", median(first_picture), "s", "1.5"
     )

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -207,6 +208,10 @@ def _top(at: TracebackType) -> str:
 
 def _reported(error: Exception, package: Package) -> PackageError | MemoryError:
     if _missing(error) is package:
+        if sys.platform == "emscripten":
+            name = "NumPy" if package.name == "numpy" else package.name
+            fix = "run the scene on your machine, or write it with math and distal.lang"
+            return PackageError(f"{name} is not in the playground: {fix}", is_missing=True)
         return PackageError(f"{package.name} is missing: {package.remedy}", is_missing=True)
     causes = list(_causes(error))
     if any(isinstance(c, MemoryError) or _says_no_memory(c) for c in causes):

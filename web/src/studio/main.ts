@@ -104,7 +104,10 @@ class Studio {
 
   constructor(readonly settings: Settings) {
     const { folder, main, nonce, python } = settings;
-    this.texts = new Texts(folder);
+    // In another page it is small, and a draft of the whole playground is none of its text.
+    const isFramed = new URLSearchParams(location.search).has("embed");
+    if (isFramed) this.page.beFramed(() => this.#whole());
+    this.texts = new Texts(isFramed ? location.href : folder);
     this.picture = new Picture({
       view: () => this.look(),
       clicked: (x, y) => void this.#probe(x, y),
@@ -215,9 +218,15 @@ class Studio {
       const camera = player.steering();
       if (camera) full.camera = camera;
     }
-    const address = location.href.split("#")[0]!;
+    const address = location.href.split(/[?#]/)[0]!;
     const links = await Promise.all([plain, full].map(async (what) => address + (await linkOf(what))));
-    share(links[0]!, links[1]!);
+    share(links[0]!, links[1]!, document.title);
+  }
+
+  /** The address of the playground with the text as it is. */
+  async #whole(): Promise<string> {
+    const { files } = this.texts;
+    return location.href.split(/[?#]/)[0]! + (await linkOf({ files, main: this.settings.main }));
   }
 
   async #example(name: string): Promise<Opened | undefined> {

@@ -56,6 +56,18 @@ export class Page {
     buttons[0]!.click();
   }
 
+  /** Inside of another page: only code, picture, and the way to the whole. */
+  beFramed(address: () => Promise<string>): void {
+    document.body.classList.add("framed");
+    const open = make("button", { type: "button" }, "Open in the playground");
+    // A window is opened by the press itself; its address follows.
+    open.onclick = () => {
+      const whole = window.open("", "_blank");
+      void address().then((href) => whole && (whole.location.href = href));
+    };
+    this.buttons.after(open);
+  }
+
   /** A sentence over everything, with what can be done; null takes it away. */
   tell(text: string | null, ...actions: [label: string, act: () => void][]): void {
     this.notice.hidden = text === null;

@@ -97,18 +97,20 @@ export function exports(
   sheet("Export", make("ul", { className: "examples" }, ...items, make("li", {}, source)), status);
 }
 
-/** A link with the code, and one that has values, camera and time too. */
-export function share(plain: string, full: string): void {
+/** A link with the code, and one that has values, camera and time too; or a frame for another page. */
+export function share(plain: string, full: string, title: string): void {
   const field = make("input", { type: "text", readOnly: true, "aria-label": "Link" });
   const isFull = make("input", { type: "checkbox" });
+  const isFrame = make("input", { type: "checkbox" });
   const length = make("p", { className: "quiet" });
   const copied = make("button", { type: "button" }, "Copy");
   const show = () => {
-    field.value = isFull.checked ? full : plain;
+    const link = isFull.checked ? full : plain;
+    field.value = isFrame.checked ? frameOf(link, title) : link;
     length.textContent = `${field.value.length.toLocaleString("en")} characters. The link has the code in it: nothing is stored elsewhere.`;
     copied.textContent = "Copy";
   };
-  isFull.onchange = show;
+  isFull.onchange = isFrame.onchange = show;
   copied.onclick = async () => {
     field.select();
     await navigator.clipboard?.writeText(field.value).catch(() => document.execCommand("copy"));
@@ -116,7 +118,17 @@ export function share(plain: string, full: string): void {
   };
   show();
   const option = make("label", { className: "option" }, isFull, "With the sliders' values, the camera and the time");
-  sheet("Share", make("div", { className: "choices" }, field, copied), option, length);
+  const frame = make("label", { className: "option" }, isFrame, "As a frame: the HTML that shows it in another page");
+  sheet("Share", make("div", { className: "choices" }, field, copied), option, frame, length);
+}
+
+/** The HTML of a frame that shows a link. */
+function frameOf(link: string, title: string): string {
+  const [address, code] = link.split("#");
+  const frame = make("iframe", { src: `${address!.split("?")[0]}?embed#${code}`, title, width: "800", height: "460" });
+  frame.setAttribute("loading", "lazy");
+  frame.style.border = "0";
+  return frame.outerHTML;
 }
 
 const KEYS: [string, string][] = [
