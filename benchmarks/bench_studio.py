@@ -60,19 +60,20 @@ _ASK = """async ([text, count, source]) => {
   return times;
 }"""
 _DRAG = """async ([text, seconds]) => {
-  const ask = (more) => studio.client.ask({
-    kind: "look", revision: 1, files: { "scene.py": text }, main: "scene.py", guided: false, ...more });
+  const ask = (more) => studio.client.ask({ kind: "look", revision: 1, guided: false,
+    files: { "scene.py": text }, main: "scene.py", ...more });
   const first = await ask({});
   const isPlain = ({ way, type, whole, call }) =>
-    way === "numbers" && type === "number" && !whole && !/slider|integer/.test(call);
+    way === "numbers" && type === "number" && !whole && /translate|Sphere|rotate/.test(call);
   const all = first.literals.filter(isPlain);
   const { start, end, value: old } = all[Math.floor(all.length / 2)];
   let known = first.key;
   let count = 0;
   let begin = 0;
   for (let turn = 0; turn === 0 || performance.now() - begin < 1000 * seconds; turn++) {
-    const literal = { file: "scene.py", start, end, value: old + 0.001 * (turn + 1), name: null, text: null };
-    const changes = [{ what: "literal", ...literal }];
+    const value = old + 0.001 * (turn + 1);
+    const place = { file: "scene.py", start, end, name: null, text: null };
+    const changes = [{ what: "literal", ...place, value }];
     const answer = await ask({ known, changes, lean: true });
     known = answer.key ?? known;
     // The first may be a new program: numbers that were equal are two.

@@ -25,6 +25,13 @@ import sys
 sys.path.insert(0, "${FOLDER}")
 import gc, os
 from pathlib import Path
+
+sys.dont_write_bytecode = False
+# Of one age in every worker, so that bytecode of an earlier one is good.
+for _folder, _, _names in os.walk("${FOLDER}"):
+    for _name in _names:
+        os.utime(f"{_folder}/{_name}", (0, 0))
+
 from distal.editor.messages import AppRequest, MessageError, encoded, parsed
 from distal.editor.worker import StudioWorker
 
@@ -42,7 +49,17 @@ def answer(text):
 
 def tidy():
     gc.collect()
+
+def bytecode():
+    import io, zipfile
+    found = io.BytesIO()
+    with zipfile.ZipFile(found, "w") as archive:
+        for path in Path("${FOLDER}").rglob("*.pyc"):
+            archive.write(path, path.relative_to("${FOLDER}"))
+    return found.getvalue()
 `;
+/** The name of what a worker has compiled of the library, among the files of the next one. */
+const BYTECODE = "bytecode.zip";
 
 function address(data: ArrayBuffer): string {
   return URL.createObjectURL(new Blob([data], { type: "text/javascript" }));
@@ -68,9 +85,17 @@ async function start(files: Record<string, ArrayBuffer>): Promise<(text: string)
     stdout: () => {},
     stderr: () => {},
   });
-  python.unpackArchive(files["distal.zip"]!, "zip", { extractDir: FOLDER });
+  for (const name of ["distal.zip", BYTECODE]) {
+    if (files[name]) python.unpackArchive(files[name], "zip", { extractDir: FOLDER });
+  }
   python.globals.set("post", (text: string) => postMessage(text));
   python.runPython(START);
+  // Before any code of the author runs.
+  if (!files[BYTECODE]) {
+    const made = python.runPython("bytecode()") as { toJs(): Uint8Array<ArrayBuffer> };
+    const { buffer } = made.toJs();
+    postMessage({ name: BYTECODE, data: buffer }, { transfer: [buffer] });
+  }
   return python.globals.get("answer") as (text: string) => void;
 }
 
