@@ -24,8 +24,10 @@ SLOW_MS = 120_000
 NAMES = ["melting", "raymarcher", "sdfray_row"]
 # They import NumPy, or make a picture of their own for mode path.
 WITH_NUMPY = frozenset(
-    ("beach", "bricks", "forest", "molecule", "ripples", "sdfray_glass")
-    + ("caustics", "cornell_box", "depth_of_field", "prism", "wine")
+    (
+        *("beach", "bricks", "forest", "molecule", "ripples", "sdfray_glass"),
+        *("caustics", "cornell_box", "depth_of_field", "prism", "wine"),
+    )
 )
 # Without NumPy their parts are in no table.
 WITH_TABLES = frozenset(("catalogue",))

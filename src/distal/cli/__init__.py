@@ -13,8 +13,13 @@ import os
 import sys
 import warnings
 
-# The commands that have a module of their name: one of them is imported without the others.
-OWN_MODULES = ("render", "view", "studio", "video", "export", "rerender", "check", "probe")
+# The commands, as --help lists them: first those that new users need.
+COMMANDS = (
+    *("render", "view", "studio", "video", "export", "rerender"),
+    *("check", "probe", "compile", "examples", "doctor"),
+)
+# The others have a module of their name: one of them is imported without the rest.
+SHORT = ("compile", "examples", "doctor")
 
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
@@ -45,8 +50,8 @@ def main() -> None:
     try:
         _open_what_is_closed()
         # Nothing slow runs before the try, so that ctrl-C never prints a traceback.
-        wanted = next(iter(sys.argv[1:]), None)
-        name = wanted if wanted in OWN_MODULES else "application"
+        wanted = next(iter(sys.argv[1:]), "")
+        name = wanted if wanted in COMMANDS and wanted not in SHORT else "application"
         module = importlib.import_module(f"distal.cli.{name}")
 
         warnings.showwarning = _show_warning

@@ -16,7 +16,7 @@ import typer
 from typer.models import CommandInfo
 
 import distal
-from distal.cli import OWN_MODULES
+from distal.cli import COMMANDS, SHORT
 from distal.cli.arguments import UsageError, read_scene
 from distal.cli.base import SceneArgument, answer, application, load, reporting
 from distal.compiler.driver import COMPILE_TARGETS, IR_TARGET
@@ -24,14 +24,9 @@ from distal.export.texts import with_header, write_files
 from distal.images.atomic_files import check_destination
 from distal.loading import EXAMPLE_PREFIX
 
-for _name in OWN_MODULES:  # importing a module adds its command
-    import_module(f"distal.cli.{_name}")
-# The order in --help: first the commands that new users need.
-_ORDER = (
-    *("render", "view", "studio", "video", "export", "rerender"),
-    *("check", "probe", "compile", "examples", "doctor"),
-)
-
+for _name in COMMANDS:
+    if _name not in SHORT:  # importing a module adds its command
+        import_module(f"distal.cli.{_name}")
 __all__ = ["TargetName", "application"]
 
 
@@ -103,7 +98,7 @@ def doctor() -> None:
 
 
 def _place(command: CommandInfo) -> int:
-    return _ORDER.index(command.name or getattr(command.callback, "__name__", ""))
+    return COMMANDS.index(command.name or getattr(command.callback, "__name__", ""))
 
 
 application.registered_commands.sort(key=_place)
