@@ -15,9 +15,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import lru_cache
 from typing import assert_never
 
+from distal.ir.kept import kept
 from distal.ir.nodes import (
     Apply,
     Assign,
@@ -66,7 +66,6 @@ from distal.ir.walk import children, expressions_in, nodes_in
 
 # A shared part of at most this many characters is repeated: naming it would not shorten the text.
 _SHORT = 24
-FUNCTIONS_KEPT = 1024  # their texts
 
 
 def print_module(module: Module) -> str:
@@ -134,14 +133,13 @@ def _types(module: Module) -> Iterator[Type]:
             yield type
 
 
-# A module that is edited has most functions of the one before.
-@lru_cache(maxsize=FUNCTIONS_KEPT)
+@kept
 def _types_of(function: Function) -> tuple[Type, ...]:
     inside = (e.type for e in expressions_in(function.body))
     return tuple(dict.fromkeys([*(p.type for p in function.params), function.result, *inside]))
 
 
-@lru_cache(maxsize=FUNCTIONS_KEPT)
+@kept
 def _function_lines(function: Function) -> tuple[str, ...]:
     params = ", ".join(f"{p.name}: {p.type}" for p in function.params)
     writer = _ModulePrinter()

@@ -8,11 +8,10 @@ same length (a constant, a parameter, a uniform, or components of one).
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import lru_cache
-from typing import Final
 
 from distal.ir.constant_arithmetic import ConstantArithmetic
 from distal.ir.exits import never_goes_on
+from distal.ir.kept import kept
 from distal.ir.nodes import (
     Assign,
     Break,
@@ -42,8 +41,6 @@ from distal.passes.dead_code import remove_dead
 from distal.passes.fold.rules import Rules
 from distal.passes.reachable import drop_unused
 
-FUNCTIONS_KEPT: Final = 1024
-
 
 def run(module: Module, context: Context) -> Module:
     """Fold every function, and remove what is unused."""
@@ -51,8 +48,7 @@ def run(module: Module, context: Context) -> Module:
     return drop_unused(replace(module, functions=functions))
 
 
-# A scene that is edited keeps most of its functions, and those of the library.
-@lru_cache(maxsize=FUNCTIONS_KEPT)
+@kept
 def fold_function(function: Function, precision: int) -> Function:
     """Fold one function repeatedly until nothing changes."""
     body = function.body
