@@ -1,4 +1,4 @@
-"""Keep what is computed of a function: a program that is edited has most functions of the one before.
+"""Keep what is computed of a function: an edited program has most functions of the one before.
 
 Input: a pure computation of an IR function. Output: the same, which looks up what it computed last.
 Long functions are left out: their size would not be worth the memory.
