@@ -66,7 +66,7 @@ def test_a_scene_that_loops_ends_the_tab_s_wait_too(tmp_path):
     tab = StudioTab(
         files(tmp_path, text),
         lambda text: told.put(json.loads(text)),
-        limit=1.0,
+        limit=4.0,
         early=early,
         start=start,
     )
