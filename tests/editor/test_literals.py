@@ -85,6 +85,34 @@ def test_the_argument_is_named() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("text", "low", "high"),
+    [
+        ("Sphere(0.50)", 0.01, None),
+        ("Sphere(radius=2)", 1.0, None),
+        ("Box((1.0, 2.0, 3.0))", 0.1, None),
+        ("Box(1.0).rounded(rounding=0.1)", 0.1, None),
+        ("Material('#123456', specular=0.2)", None, None),  # the first is the color
+        ("matte('red', roughness=0.5)", 0.0, 1.0),
+        ("DistantLight((1, 2, 3), angle=2.0)", None, None),
+        ("Sphere(0.06 * weight)", None, None),
+        ("mine(radius=0.5)", None, None),
+        ("Sphere(0.5).translate(0.1, 0.2, 0.3)", 0.1, None),
+    ],
+)
+def test_limits_of_arguments_are_those_of_the_library(text, low, high) -> None:
+    found = find_literals("a.py", text)[0]
+    assert (found.low, found.high) == (low, high), found
+
+
+def test_limits_by_name_are_those_of_the_kind_of_object() -> None:
+    text = "Material('red', specular=0.2)\nSphere(0.5).translate(x=0.1)\nCamera((0, 0, 4), fov=0.9)"
+    by_slot = {found.slot: found for found in find_literals("a.py", text)}
+    assert (by_slot["specular"].low, by_slot["specular"].high) == (0.0, 1.0)
+    assert (by_slot["x"].low, by_slot["x"].high) == (None, None)
+    assert (by_slot["fov"].low, by_slot["fov"].high) == (0.1, None)
+
+
 def test_edits_are_refused_where_they_cannot_be_written() -> None:
     files = {"a.py": "from distal.lang import slider\ns = slider('Size', 0.5 * 2.0)\n"}
     with pytest.raises(EditError, match="the default of 'size' in line 2 is computed"):

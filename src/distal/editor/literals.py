@@ -18,10 +18,21 @@ from typing import Any, Final, Literal, TypeAlias, cast
 
 import distal
 from distal.editor.messages import LiteralValue, SourceLiteral
+from distal.fields.guarantees import USUAL_LIMITS, Limit
+from distal.render.declarations import BACKGROUNDS, CAMERAS, LIGHTS, MATERIALS
 
 Type: TypeAlias = Literal["number", "vector", "color", "switch", "choice"]
 Way: TypeAlias = Literal["numbers", "hold", "compile"]
 
+_FAMILIES: Final = {
+    f"distal.scene.objects.{name}": family
+    for name, family in {
+        "backgrounds": BACKGROUNDS,
+        "cameras": CAMERAS,
+        "lights": LIGHTS,
+        "materials": MATERIALS,
+    }.items()
+}
 _HEX: Final = re.compile(r"#(?:[0-9a-fA-F]{3}|[0-9a-fA-F]{6})")
 _PLACES: Final = 12  # the most decimal places of a number that is written
 
@@ -232,6 +243,9 @@ class _Finder:
         self, node: ast.expr, around: _Around, type: Type, value: LiteralValue, **more: Any
     ) -> SourceLiteral:
         start, end = self._positions.span(node)
+        if type in ("number", "vector") and isinstance(around.parent, ast.Call):
+            low, high = _range(_limit(around.call, around.slot), more["step"])
+            more |= {"low": low, "high": high}
         way = more.pop("way", around.way)
         if way == "hold" and (type != "number" or more.get("whole")):
             way = "compile"
@@ -278,6 +292,29 @@ def _slots(name: str) -> tuple[str, ...]:
         return ()
     positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
     return tuple(n for n, p in parameters.items() if p.kind in positional and n != "self")
+
+
+@cache
+def _limit(call: str, slot: str) -> Limit:
+    """Return the limit of an argument of a public function, class or method of shapes."""
+    if slot not in _slots(call) and call not in distal.__all__:
+        return Limit.ANY
+    family = _FAMILIES.get(getattr(getattr(distal, call, None), "__module__", ""))
+    limits = USUAL_LIMITS if family is None else family.limits
+    return limits.get(slot, Limit.ANY)
+
+
+def _range(limit: Limit, step: float) -> tuple[float | None, float | None]:
+    """Return the least and the greatest value that a dial offers."""
+    match limit:
+        case Limit.POSITIVE:
+            return step, None
+        case Limit.NOT_NEGATIVE:
+            return 0.0, None
+        case Limit.FRACTION:
+            return 0.0, 1.0
+        case _:
+            return None, None
 
 
 # Notation
