@@ -6,6 +6,7 @@ that any server of files can serve, and that works without a network after the f
 
 from __future__ import annotations
 
+import base64
 import hashlib
 import json
 import shutil
@@ -31,10 +32,12 @@ PYTHON = (
 START = "melting"
 # Of distal, what the compile path needs: not what only devices, windows and videos use.
 _LEFT_OUT = ("cli", "gallery", "notebook", "video", "window", "editor/local")
+# The cell is a part of the page's own text, so the page's policy holds in it, beside its own: the
+# cell's script, known by its digest, starts Python from what the page hands it.
 _POLICY = (
-    "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
-    "img-src 'self' data: blob:; connect-src 'self'; frame-src 'self'; worker-src 'self'; "
-    "base-uri 'none'; form-action 'none'"
+    "default-src 'none'; script-src 'self' {cell} 'wasm-unsafe-eval' blob:; "
+    "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; connect-src 'self'; "
+    "frame-src 'self'; worker-src 'self' blob:; base-uri 'none'; form-action 'none'"
 )
 
 
@@ -108,10 +111,19 @@ def _page(folder: Path) -> str:
     }
     text = (APP / "studio.html").read_text(encoding="utf-8")
     filled = json.dumps(settings).replace("<", "\\u003c")
-    policy = f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">'
+    content = _POLICY.replace("{cell}", _digest_of_script(APP / "cell.html"))
+    policy = f'<meta http-equiv="Content-Security-Policy" content="{content}">'
     made = text.replace(' nonce="{nonce}"', "").replace("{settings}", filled)
     made = made.replace('<meta name="viewport"', f'{policy}\n<meta name="viewport"')
     return made.replace("<title>distal</title>", "<title>Playground · distal</title>")
+
+
+def _digest_of_script(page: Path) -> str:
+    """Return the digest of a page's only script, as a policy names it."""
+    text = page.read_text(encoding="utf-8")
+    script = text.partition("<script>")[2].rpartition("</script>")[0]
+    digest = hashlib.sha256(script.encode()).digest()
+    return f"'sha256-{base64.b64encode(digest).decode()}'"
 
 
 def _write_offline(folder: Path) -> None:

@@ -16,7 +16,7 @@ def text_of(obj) -> str:
 
 
 def fresh(obj) -> str:
-    recipes._recipes.clear()
+    recipes.forget()
     return text_of(obj)
 
 
@@ -25,7 +25,7 @@ def test_a_scene_is_the_same_whatever_was_lowered_before(name):
     scene = load(f"example:{name}")
     expected = fresh(scene)
     assert text_of(scene) == expected
-    recipes._recipes.clear()
+    recipes.forget()
     for other in SCENES:
         if other != name:
             lower(load(f"example:{other}"))
@@ -64,6 +64,6 @@ def test_a_name_that_the_author_took_is_not_taken_again(own):
     mine = Shape.from_function(own, slope=1.0, bounds=((-1, -1, -1), (1, 1, 1)))
     scene = Scene(mine.union(Box(0.4), Sphere(0.3)))
     expected = fresh(scene)
-    recipes._recipes.clear()
+    recipes.forget()
     lower(Scene(Box(0.4).union(Sphere(0.3), Sphere(0.2))))
     assert text_of(scene) == expected

@@ -65,8 +65,11 @@ export class CellChannel implements Channel {
     return Object.fromEntries(await Promise.all(FILES.map(load)));
   }
 
-  #frame(): Promise<HTMLIFrameElement> {
-    const frame = make("iframe", { src: `${this.folder}cell.html`, title: "Python", hidden: true });
+  /** The cell's page comes as a text: no service worker answers a frame without origin. */
+  async #frame(): Promise<HTMLIFrameElement> {
+    const response = await fetch(`${this.folder}cell.html`);
+    if (!response.ok) throw new Error(`cell.html is not there (${response.status})`);
+    const frame = make("iframe", { srcdoc: await response.text(), title: "Python", hidden: true });
     frame.setAttribute("sandbox", "allow-scripts");
     return new Promise((resolve) => {
       frame.onload = () => resolve(frame);

@@ -121,3 +121,8 @@ def keep(
     _recipes[overload, types] = Recipe(steps, instance.source_name, instance.result)
     if len(_recipes) > RECIPES_KEPT:
         _recipes.popitem(last=False)
+
+
+def forget() -> None:
+    """Forget all recipes, as after a function of the library was replaced in a test."""
+    _recipes.clear()
