@@ -140,6 +140,15 @@ def test_keep_writes_a_slider_and_the_camera(tmp_path):
         assert app.equals_the_cpu()
 
 
+def test_the_camera_is_kept_before_its_guide_is_there(tmp_path):
+    """The program that knows where the camera is comes in a pause; a click does not wait for one."""
+    with studio(tmp_path) as app:
+        app.page.evaluate("() => studio.picture.player.hands.drag(0.2, 0.1, false)")
+        app.page.get_by_role("button", name="Keep camera").click()
+        app.wait("() => !studio.editor.view.state.doc.toString().includes('(1.0, 1.5, 4.0)')")
+        assert "fov_deg=40" in app.text
+
+
 def test_a_click_on_the_picture_selects_the_line(tmp_path):
     with studio(tmp_path) as app:
         app.page.evaluate(SETTLED)

@@ -171,6 +171,7 @@ export class Player {
     this.#renderer.resources = payload.resources;
     if (this.#state === "waiting") return true;
     this.#programs = programs;
+    if (this.camera) this.camera.ask = null; // The old guide knows another scene.
     this.#beGuided();
     this.#compile();
     return true;

@@ -117,6 +117,7 @@ class Studio {
         void this.#write({ what: "camera", text });
       },
       drawn: (text) => (this.page.drawn.textContent = text),
+      guide: () => this.#guide(this.texts.revision),
       program: (view) => this.#program(view),
     });
     const { element, strip, layers, knobs } = this.picture;
@@ -317,13 +318,17 @@ class Studio {
     const { revision } = this.texts;
     const steering = this.picture.player?.payload.steering;
     if (!steering || (steering.guide ?? -1) >= 0 || this.#guided === revision) return;
-    this.#guiding = window.setTimeout(async () => {
-      if (this.#isLooking || this.#turn || this.#isStopped || this.texts.revision !== revision) return;
-      this.#guided = revision;
-      const answer = await this.client.ask({ kind: "look", ...this.#source, lean: true });
-      const isStale = this.texts.revision !== revision || this.#turn;
-      if (answer?.kind === "scene" && !isStale) await this.picture.show(answer.payload);
+    this.#guiding = window.setTimeout(() => {
+      if (!this.#isLooking && !this.#turn && !this.#isStopped) void this.#guide(revision);
     }, GUIDE_MS);
+  }
+
+  async #guide(revision: number): Promise<void> {
+    if (this.texts.revision !== revision) return;
+    this.#guided = revision;
+    const answer = await this.client.ask({ kind: "look", ...this.#source, lean: true });
+    const isStale = this.texts.revision !== revision || this.#turn;
+    if (answer?.kind === "scene" && !isStale) await this.picture.show(answer.payload);
   }
 
   /** Shows an answer. */

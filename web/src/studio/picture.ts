@@ -19,6 +19,8 @@ export interface PictureEvents {
   clicked(x: number, y: number): void;
   keepParameter(name: string, value: Value): void;
   keepCamera(text: string): void;
+  /** Asks for the program that knows where the camera is; resolves when it is there, or none can be. */
+  guide(): Promise<void>;
   drawn(text: string): void;
   /** The program of a view, for its still. */
   program(view: string): Promise<Program | null>;
@@ -192,7 +194,12 @@ export class Picture {
     button.title = "Write the camera's place into the code";
     button.disabled = !player.camera?.moved;
     button.onclick = async () => {
-      const text = await player.cameraText();
+      let text = await player.cameraText();
+      if (!text) {
+        // In the first moment after a change nothing knows yet where the camera is.
+        await this.events.guide();
+        text = await player.cameraText();
+      }
       if (text) this.events.keepCamera(text);
     };
     this.#ends.push(player.on("steering", () => (button.disabled = !player.camera?.moved)));
