@@ -141,7 +141,7 @@ def test_keep_writes_a_slider_and_the_camera(tmp_path):
 
 
 def test_the_camera_is_kept_before_its_guide_is_there(tmp_path):
-    """The program that knows where the camera is comes in a pause; a click does not wait for one."""
+    """The program that knows where the camera is comes in a pause; a click needs none."""
     with studio(tmp_path) as app:
         app.page.evaluate("() => studio.picture.player.hands.drag(0.2, 0.1, false)")
         app.page.get_by_role("button", name="Keep camera").click()
@@ -152,7 +152,7 @@ def test_the_camera_is_kept_before_its_guide_is_there(tmp_path):
 def test_a_click_on_the_picture_selects_the_line(tmp_path):
     with studio(tmp_path) as app:
         app.page.evaluate(SETTLED)
-        box = app.page.locator(".picture canvas").bounding_box()
+        box = app.page.locator(".host canvas").bounding_box()
         x, y = box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"]
         app.page.mouse.click(x, y)
         app.wait("() => document.querySelector('.work').textContent.includes('step')")

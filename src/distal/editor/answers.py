@@ -29,6 +29,7 @@ from distal.editor.messages import (
     WriteRequest,
     Written,
 )
+from distal.editor.shape_map import shape_map
 from distal.export import page, texts
 from distal.export.page_options import PageOptions, TextOptions
 from distal.lang.lazy_module import LazyModule
@@ -178,10 +179,18 @@ def _count(work: AnswerWork) -> Result:
     return counting(seen, work.request.view, tuple(work.request.files))
 
 
+def _map(work: AnswerWork) -> Result:
+    _, seen = work.looks.load(work.request, work.request.files)
+    if seen.scene is None:
+        raise ValueError("scenes and shapes have parts; this is an @image")
+    return shape_map(seen, tuple(work.request.files))
+
+
 ANSWERS: Final[Mapping[str, Callable[[AnswerWork], Result]]] = {
     "write": _write,
     "probe": _probe,
     "count": _count,
+    "map": _map,
     "check": _check,
     "text": _text,
     "export": _export,

@@ -173,6 +173,23 @@ class Counting:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ShapeMap:
+    """A program that draws which shape each pixel shows, for outlines.
+
+    Draw it as the view's program: each pixel's color holds the number of a part as red + 256 green
+    + 65536 blue (bytes), with alpha 0 where there is none.
+
+    Attributes:
+        parts: For each number the lines that make a shape which holds the part: file (number in
+            ``files``) and line.
+    """
+
+    program: Program
+    files: tuple[str, ...]
+    parts: tuple[tuple[tuple[int, int], ...], ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ProbeResult:
     """What a pixel shows; ``shape`` is empty where it is the background.
 
@@ -227,7 +244,7 @@ class Saved:
 
 
 Result: TypeAlias = (
-    Written | Counting | ProbeResult | EmittedText | ExportedFile | Checked | Saved
+    Written | Counting | ShapeMap | ProbeResult | EmittedText | ExportedFile | Checked | Saved
 )  # in TypeScript, the type that `Results` has for the kind of the request
 
 
@@ -326,6 +343,14 @@ class CountRequest(SourceRequest):
 
     kind: ClassVar[str] = "count"
     result: ClassVar[type | None] = Counting
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapRequest(SourceRequest):
+    """Give the program that draws which shape each pixel shows."""
+
+    kind: ClassVar[str] = "map"
+    result: ClassVar[type | None] = ShapeMap
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -565,6 +590,7 @@ REQUESTS: Final = (
     HoldRequest,
     WriteRequest,
     CountRequest,
+    MapRequest,
     ProbeRequest,
     CheckRequest,
     TextRequest,
@@ -582,6 +608,7 @@ Message: TypeAlias = (
     | HoldRequest
     | WriteRequest
     | CountRequest
+    | MapRequest
     | ProbeRequest
     | CheckRequest
     | TextRequest

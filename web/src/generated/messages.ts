@@ -107,6 +107,19 @@ export interface Counting {
   places: [number, number][];
 }
 
+/**
+ * A program that draws which shape each pixel shows, for outlines.
+ *
+ * Draw it as the view's program: each pixel's color holds the number of a part as red + 256 green
+ * + 65536 blue (bytes), with alpha 0 where there is none.
+ */
+export interface ShapeMap {
+  program: Program;
+  files: string[];
+  /** For each number the lines that make a shape which holds the part: file (number in `files`) and line. */
+  parts: [number, number][][];
+}
+
 /** What a pixel shows; `shape` is empty where it is the background. */
 export interface ProbeResult {
   shape: string;
@@ -250,6 +263,33 @@ export interface WriteRequest {
 /** Give the program that counts how often each statement runs. */
 export interface CountRequest {
   kind: "count";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  /** The texts by name: the scene's file and modules beside it. */
+  files: Record<string, string>;
+  /** The name of the scene's file. */
+  main: string;
+  /** The name of the object in it; None for the only one. */
+  object?: string | null;
+  /** The view to show. */
+  view?: string;
+  /** Values of parameters by name; others have their defaults. */
+  values?: Record<string, boolean | number | number[]>;
+  /** In seconds. */
+  time?: number;
+  /** The look to show it in; None for its own. */
+  look?: string | null;
+  /** How light is computed; None: as the scene says. */
+  mode?: "direct" | "path" | null;
+  /** The author's frame in pixels. */
+  size?: [number, number];
+}
+
+/** Give the program that draws which shape each pixel shows. */
+export interface MapRequest {
+  kind: "map";
   /** The app's number of the request, never used twice. */
   id: number;
   /** The app's number of the text, greater after each change. */
@@ -524,6 +564,7 @@ export interface Mistakes {
 export interface Results {
   write: Written;
   count: Counting;
+  map: ShapeMap;
   probe: ProbeResult;
   check: Checked;
   text: EmittedText;
@@ -575,6 +616,6 @@ export interface Restarted {
   reason: string;
 }
 
-export type Request = LookRequest | HoldRequest | WriteRequest | CountRequest | ProbeRequest | CheckRequest | TextRequest | ExportRequest | RenderRequest | SaveRequest | StopRequest;
+export type Request = LookRequest | HoldRequest | WriteRequest | CountRequest | MapRequest | ProbeRequest | CheckRequest | TextRequest | ExportRequest | RenderRequest | SaveRequest | StopRequest;
 
 export type Response = Ready | SceneFound | NumbersFound | Mistakes | Answer | Dropped | Printed | Progress | Changed | Restarted;

@@ -40,6 +40,8 @@ export interface EditorEvents extends Turning {
   typed(name: string, text: string): void;
   /** The caret is on another line, from 1. */
   moved(name: string, line: number): void;
+  /** The mouse is over a line, or over none; or the caret went to one without a change of the text. */
+  pointed(name: string, line: number | null, isMouse: boolean): void;
   save(): void;
   run(): void;
 }
@@ -119,9 +121,17 @@ export class Editor {
       EditorView.updateListener.of((update) => {
         const { state } = update;
         if (update.docChanged) events.typed(this.#name, state.doc.toString());
-        if (update.selectionSet || update.docChanged) {
-          events.moved(this.#name, state.doc.lineAt(state.selection.main.head).number);
-        }
+        if (!update.selectionSet && !update.docChanged) return;
+        const { number } = state.doc.lineAt(state.selection.main.head);
+        if (!update.docChanged) events.pointed(this.#name, number, false);
+        events.moved(this.#name, number);
+      }),
+      EditorView.domEventHandlers({
+        mousemove: ({ clientX: x, clientY: y }, view) => {
+          const at = view.posAtCoords({ x, y });
+          events.pointed(this.#name, at === null ? null : view.state.doc.lineAt(at).number, true);
+        },
+        mouseleave: () => events.pointed(this.#name, null, true),
       }),
     ];
     this.view = new EditorView({ parent, state: this.#fresh("") });

@@ -16,6 +16,7 @@ import type {
   Ready,
   Response,
   SceneFound,
+  ShapeMap,
   SourceLiteral,
 } from "../generated/messages";
 import type { Payload, Program, Value } from "../payload";
@@ -68,6 +69,10 @@ interface Turn {
 const TYPING_MS = 120;
 /** After the last answer, so long until the camera's guide is compiled as well. */
 const GUIDE_MS = 500;
+/** The mouse rests so long on a line until its shape is outlined. */
+const POINTED_MS = 70;
+/** So long a line is outlined that the caret came to. */
+const CARET_MS = 1600;
 const SIZE: [number, number] = [640, 480];
 const TEXT_TAB = "Emitted text";
 
@@ -101,6 +106,9 @@ class Studio {
   /** Whether the editor shows how often lines run. */
   #counts = false;
   #runs = new Map<string, Runs[]>();
+  #pointing = 0;
+  #pointedAt: number | null = null;
+  #shapes: { revision: number; object: string | null; map: Promise<ShapeMap | null> } | null = null;
 
   constructor(readonly settings: Settings) {
     const { folder, main, nonce, python } = settings;
@@ -119,6 +127,7 @@ class Studio {
       drawn: (text) => (this.page.drawn.textContent = text),
       guide: () => this.#guide(this.texts.revision),
       program: (view) => this.#program(view),
+      map: () => this.#map(),
     });
     const { element, strip, layers, knobs } = this.picture;
     this.page.show.append(element, strip, layers.element, knobs);
@@ -127,6 +136,7 @@ class Studio {
       {
         typed: (name, text) => this.#typed(name, text),
         moved: (name, line) => this.#moved(name, line),
+        pointed: (name, line, isMouse) => this.#pointed(name, line, isMouse),
         save: () => void this.save(),
         run: () => {
           this.#isStopped = false;
@@ -518,6 +528,7 @@ class Studio {
     if (!name || this.texts.files[name] === text) return;
     this.texts.set(name, text);
     this.#isStopped = false;
+    this.picture.outline.show(null, null);
     this.#fillFiles();
     clearTimeout(this.#timer);
     this.#timer = window.setTimeout(() => this.look(), TYPING_MS);
@@ -617,6 +628,37 @@ class Studio {
     if (line === this.#line) return;
     this.#line = line;
     if (this.#tab === TEXT_TAB) this.emitted.link(name, line);
+  }
+
+  /** Outlines what a line makes: while the mouse is on it, and for a moment when the caret comes. */
+  #pointed(name: string, line: number | null, isMouse: boolean): void {
+    if (isMouse && line === this.#pointedAt) return;
+    this.#pointedAt = isMouse ? line : null;
+    clearTimeout(this.#pointing);
+    const { outline, player } = this.picture;
+    this.#pointing = window.setTimeout(() => {
+      outline.show(player, line === null ? null : { file: name, line });
+      if (isMouse || line === null) return;
+      this.#pointing = window.setTimeout(() => outline.show(player, null), CARET_MS);
+    }, POINTED_MS);
+  }
+
+  /** Which shape each pixel shows; asked for once for each text. */
+  #map(): Promise<ShapeMap | null> {
+    const { revision } = this.texts;
+    const object = this.#object;
+    if (!this.#can("map") || this.#isStopped || this.#turn) return Promise.resolve(null);
+    if (this.#shapes?.revision !== revision || this.#shapes.object !== object) {
+      const asked = this.client.ask({ kind: "map", ...this.#source });
+      const map = asked.then((answer) => {
+        if (answer?.kind === "answer" && answer.request === "map") return answer.result;
+        // Dropped for something newer: the next one asks again.
+        if (answer?.kind === "dropped" && this.#shapes?.map === map) this.#shapes = null;
+        return null;
+      });
+      this.#shapes = { revision, object, map };
+    }
+    return this.#shapes.map;
   }
 
   async #probe(x: number, y: number): Promise<void> {

@@ -6,11 +6,12 @@
 
 import { rowOf, type Row } from "../controls";
 import { ICONS, icon, iconButton, make, rename } from "../dom";
-import type { NumbersFound } from "../generated/messages";
+import type { NumbersFound, ShapeMap } from "../generated/messages";
 import type { Parameter, Payload, Program, Value } from "../payload";
 import { Player } from "../player";
 import { same } from "../values";
 import { Layers } from "./layers";
+import { Outline } from "./outline";
 
 export interface PictureEvents {
   /** Another view is wanted, which may not be compiled yet. */
@@ -24,6 +25,8 @@ export interface PictureEvents {
   drawn(text: string): void;
   /** The program of a view, for its still. */
   program(view: string): Promise<Program | null>;
+  /** Which shape each pixel shows. */
+  map(): Promise<ShapeMap | null>;
 }
 
 /** A press that moves farther is a drag. */
@@ -35,6 +38,7 @@ export class Picture {
   readonly strip = make("div", { className: "strip", role: "toolbar", "aria-label": "Picture" });
   readonly knobs = make("div", { className: "knobs" });
   readonly layers: Layers;
+  readonly outline: Outline;
   player: Player | null = null;
   #host = make("div", { className: "host" });
   #rows = new Map<string, { row: Row; keep: HTMLElement }>();
@@ -42,7 +46,8 @@ export class Picture {
   #ends: (() => void)[] = [];
 
   constructor(readonly events: PictureEvents) {
-    this.element.append(this.#host);
+    this.outline = new Outline(() => events.map());
+    this.element.append(this.#host, this.outline.element);
     this.layers = new Layers({
       program: (view) => events.program(view),
       chosen: (view) => this.player?.setView(view),
@@ -108,6 +113,7 @@ export class Picture {
       }),
       player.on("steering", () => this.layers.drawSoon(player)),
       player.on("frame", ({ ms, fps, width, height, samples, rate }) => {
+        this.outline.follow(player);
         const speed = fps ? `${fps.toFixed(0)} fps` : `${ms.toFixed(0)} ms`;
         const paths = rate === undefined ? "" : ` · ${samples} samples`;
         this.events.drawn(`${width} × ${height} · ${speed}${paths}`);

@@ -22,6 +22,7 @@ from distal.render.march import OUT_OF_STEPS, PASSED
 from distal.scene.checks.place_json import place_json
 from distal.scene.checks.validation import guarantee_names
 from distal.scene.lowering.attributes import ListedMaterial, Part
+from distal.scene.lowering.part_map import path_in
 from distal.scene.lowering.picture import SceneLowering
 from distal.scene.scene import Scene
 from distal.scene.steering import Steering
@@ -125,7 +126,7 @@ def probe(
     path: tuple[Node, ...] = ()
     material = None
     if seen.found:
-        path = _path(scene.shape.node, program.parts[round(seen.part)])
+        path = path_in(scene.shape.node, program.parts[round(seen.part)])
         material = program.paints[round(seen.paint)]
     return Probed(pixel, size, seen, _ended(seen), path, material, slope)
 
@@ -140,18 +141,6 @@ def _ended(seen: Any) -> str:
     return "left the box" if seen.span.y < 1e9 else "left the scene"
 
 
-def _path(root: Node, leaf: Node) -> tuple[Node, ...]:
-    """Return the nodes from the root to a leaf; the first path if there are several."""
-    above: dict[int, Node] = {}
-    for node in root.walk():
-        for child in node.children:
-            above.setdefault(id(child), node)
-    found = [leaf]
-    while found[-1] is not root:
-        found.append(above[id(found[-1])])
-    return tuple(reversed(found))
-
-
 class _Program(Composed):
     """The function that evaluates one place of a picture; lists shapes and materials by number."""
 
@@ -159,7 +148,7 @@ class _Program(Composed):
         self._scene, self._steered = scene, steered
         self.name = f"probe of {scene.name}"
         self.signature = (("coord", VEC2), ("resolution", VEC2))
-        self.parts: Sequence[Node] = ()
+        self.parts: Sequence[tuple[Node, ...]] = ()
         self.paints: Sequence[Any] = ()
 
     def compose(self, assembly: Assembly) -> str:
@@ -172,7 +161,7 @@ class _Program(Composed):
         part, paint = Part(made.composer), ListedMaterial(made.composer, self._scene.material)
         given["part"] = made.known_of_place("part", part)
         given["paint"] = made.known_of_place("paint", paint)
-        self.parts, self.paints = part.nodes, paint.materials
+        self.parts, self.paints = part.paths, paint.materials
         self.result = assembly.struct(Seen)
         body.statements.append(Return(made.composer.call(look_along, given)))
         params = tuple(Param(name, type) for name, type in self.signature)

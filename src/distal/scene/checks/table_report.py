@@ -12,7 +12,7 @@ from typing import Any
 from distal.diagnostics import Span
 from distal.fields.combine.joins import UNION
 from distal.scene.checks.place_json import place_json
-from distal.scene.lowering.parts.kinds import leaves_of
+from distal.scene.lowering.parts.kinds import paths_to_leaves
 from distal.scene.lowering.parts.table import rolled
 from distal.scene.tree.node import Node
 
@@ -83,7 +83,7 @@ class TableReport:
 
 def _name(node: Node) -> str:
     """Return the name that the author gave a part, else that of its first primitive."""
-    return node.label or next(leaves_of(node)).name
+    return node.label or next(paths_to_leaves(node))[-1].name
 
 
 def table_of(root: Node) -> tuple[TableReport | None, Node]:

@@ -25,7 +25,7 @@ from distal.render.footprint import (
 )
 from distal.render.material import Surface, choose_surface, mix_surfaces
 from distal.scene.lowering.part_functions import POINT
-from distal.scene.lowering.parts.kinds import PartKind, leaves_of, materials_in
+from distal.scene.lowering.parts.kinds import PartKind, materials_in, paths_to_leaves
 from distal.scene.lowering.parts.table import TableNode
 from distal.scene.lowering.shapes import ShapeComposer
 from distal.scene.lowering.smooth.cells import CellNode
@@ -391,6 +391,7 @@ def _listed_for_each(
     of_kind: Sequence[Any],
     of_parts: Iterable[Sequence[Any]],
     ordinal: Expr,
+    key: Callable[[Any], int] = id,
 ) -> Expr:
     """Return the place in a list, where what a kind's tree adds stands once for each part.
 
@@ -400,15 +401,16 @@ def _listed_for_each(
         of_kind: What the kind's tree consists of.
         of_parts: What the trees of the parts consist of, in the same order.
         ordinal: The number of the part among those of the kind, as a float.
+        key: By what they are compared.
     """
     first = len(listed)
     found = make()
     shown = listed[first:]
     del listed[first:]
-    places = {id(each): i for i, each in enumerate(of_kind)}
+    places = {key(each): i for i, each in enumerate(of_kind)}
     for own in of_parts:
         # The default material is in no tree.
-        listed += [own[places[id(e)]] if id(e) in places else e for e in shown]
+        listed += [own[places[key(e)]] if key(e) in places else e for e in shown]
     return add(found, multiply(ordinal, number(float(len(shown)))))
 
 
@@ -463,21 +465,26 @@ class Part(Attribute):
     """The leaf of the tree that a place belongs to, as a number.
 
     Attributes:
-        nodes: The leaves, by number.
+        paths: By number: the leaf, after the nodes of the lowered tree above it, outermost first.
     """
 
     name: ClassVar[str] = "part_leaf"
 
     def __init__(self, composer: ShapeComposer) -> None:
         super().__init__(composer)
-        self.nodes: list[Node] = []
+        self.paths: list[tuple[Node, ...]] = []
+        self._above: list[Node] = []
 
     def leaf(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
         """Return the next number for a library shape."""
+        # Nodes come parents first: what does not hold this one is done.
+        while self._above and all(child is not node for child in self._above[-1].children):
+            self._above.pop()
+        self._above.append(node)
         if not isinstance(node.rule, Primitive):
             return None
-        self.nodes.append(node)
-        return number(float(len(self.nodes) - 1))
+        self.paths.append(tuple(self._above))
+        return number(float(len(self.paths) - 1))
 
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
         """Return the number with the larger share."""
@@ -493,5 +500,13 @@ class Part(Attribute):
 
     def in_row(self, kind: PartKind, ordinal: Expr, make: Callable[[], Expr]) -> Expr:
         """Return the number of the part's own leaf."""
-        own = (list(leaves_of(member.source)) for member in kind.members)
-        return _listed_for_each(self.nodes, make, list(leaves_of(kind.node)), own, ordinal)
+        above, self._above = tuple(self._above), []
+        own = (list(paths_to_leaves(member.source, above)) for member in kind.members)
+        of_kind = list(paths_to_leaves(kind.node))
+        found = _listed_for_each(self.paths, make, of_kind, own, ordinal, _leaf_of)
+        self._above = list(above)
+        return found
+
+
+def _leaf_of(path: tuple[Node, ...]) -> int:
+    return id(path[-1])

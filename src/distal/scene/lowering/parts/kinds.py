@@ -319,12 +319,18 @@ class _Copying:
                 return value
 
 
-def leaves_of(node: Node) -> Iterator[Node]:
-    """Yield the primitives of a tree, each occurrence, in the order of the tree."""
+def paths_to_leaves(node: Node, above: tuple[Node, ...] = ()) -> Iterator[tuple[Node, ...]]:
+    """Yield each primitive of a tree, each occurrence, after the nodes above it, in its order.
+
+    Args:
+        node: The tree.
+        above: The nodes above it, outermost first.
+    """
+    path = (*above, node)
     if isinstance(node.rule, Primitive):
-        yield node
+        yield path
     for child in node.children:
-        yield from leaves_of(child)
+        yield from paths_to_leaves(child, path)
 
 
 def materials_in(node: Node) -> Iterator[Any]:
