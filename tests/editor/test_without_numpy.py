@@ -9,9 +9,15 @@ import subprocess
 import sys
 from typing import Any
 
+import numpy as np
 import pytest
 
 import distal
+from distal.diagnostics import LoadError
+from distal.export import resources
+from distal.export.tables import plain_resource
+from distal.ir.types import Buffer as BufferType
+from distal.lang import Buffer, vec2, vec4
 
 BLOCKED = """
 import sys
@@ -48,6 +54,7 @@ NEEDS_NUMPY = "import numpy"
 ALONE = [n for n, path in distal.gallery().items() if NEEDS_NUMPY not in path.read_text()]
 # Of 16 parts and more, a page with NumPy has tables; of 256 and more, a text has.
 PAGES = ("raymarcher_objects", "melting", "bunny")
+TRACED = ("caustics", "cornell_box", "depth_of_field", "prism", "wine")
 
 
 def blocked(code: str) -> Any:
@@ -80,9 +87,40 @@ def test_texts_and_facts_of_the_gallery_are_those_with_numpy() -> None:
 
 
 def test_pages_are_those_with_numpy() -> None:
-    found = blocked(f"{FACTS}\nprint(json.dumps({{n: page(n) for n in {PAGES}}}))")
+    names = PAGES + TRACED
+    found = blocked(f"{FACTS}\nprint(json.dumps({{n: page(n) for n in {names}}}))")
     page = here()["page"]
-    assert found == {name: page(name) for name in PAGES}
+    assert found == {name: page(name) for name in names}
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        [1, 2, -3],
+        [0.5, 1, 1e-9],
+        [vec2(1.0, 2.0), vec2(3.0, 4.5)],
+        [(1.0, 2.0, 3.0), (4.0, 5.0, 6.0)],
+        [vec4(0.0)],
+    ],
+)
+def test_a_list_of_numbers_is_stored_as_numpy_stores_it(data: list[Any]) -> None:
+    source = Buffer(data)
+    type = BufferType(source.element)
+    assert plain_resource(source, type) == resources.resource(source, type)
+
+
+@pytest.mark.parametrize("data", [[2**40], [np.float32(1.0)], np.ones(3), [[]]])
+def test_what_is_no_list_of_plain_numbers_is_left_to_numpy(data: Any) -> None:
+    try:
+        source = Buffer(data)
+    except (TypeError, ValueError):
+        return
+    made = plain_resource(source, BufferType(source.element))
+    try:
+        known = resources.resource(source, BufferType(source.element))
+    except LoadError:
+        known = None
+    assert made in (None, known)
 
 
 def test_a_lone_shape_has_its_stage_and_its_box() -> None:

@@ -22,13 +22,8 @@ from tools.site import playground
 
 SLOW_MS = 120_000
 NAMES = ["melting", "raymarcher", "sdfray_row"]
-# They import NumPy, or make a picture of their own for mode path.
-WITH_NUMPY = frozenset(
-    (
-        *("beach", "bricks", "forest", "molecule", "ripples", "sdfray_glass"),
-        *("caustics", "cornell_box", "depth_of_field", "prism", "wine"),
-    )
-)
+# They import NumPy.
+WITH_NUMPY = frozenset(("beach", "bricks", "forest", "molecule", "ripples", "sdfray_glass"))
 # Without NumPy their parts are in no table.
 WITH_TABLES = frozenset(("catalogue",))
 NO_NUMPY = "NumPy is not in the playground"

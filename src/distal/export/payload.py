@@ -23,7 +23,7 @@ from distal.backends.base import Artifact
 from distal.compiler.driver import run_passes
 from distal.diagnostics import CompileError
 from distal.export.page_options import PageOptions
-from distal.export.tables import table
+from distal.export.tables import plain_resource, table
 from distal.frontend import lower
 from distal.ir.nodes import Module
 from distal.ir.types import TEXTURE_2D, Buffer, Texture
@@ -357,7 +357,8 @@ class PagePrograms:
         key = (id(source), str(type))
         if key not in self._names:
             assert isinstance(type, Texture | Buffer)
-            self._names[key] = self._added(name, resources.resource(source, type))
+            made = plain_resource(source, type) or resources.resource(source, type)
+            self._names[key] = self._added(name, made)
         return self._names[key]
 
     def _table(self, entry: Mapping[str, Any]) -> str:
