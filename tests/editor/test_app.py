@@ -119,6 +119,17 @@ def test_a_color_is_picked(tmp_path):
         assert app.equals_the_cpu()
 
 
+def test_a_word_is_chosen(tmp_path):
+    with studio(tmp_path, SCENE.replace('"#123456",', '"#123456", tone_map="aces",')) as app:
+        app.dial('"aces"')
+        words = app.page.locator(".dial select")
+        assert "agx" in words.locator("option").all_inner_texts()
+        words.select_option("none")
+        app.wait("() => studio.editor.view.state.doc.toString().includes('\"none\"')")
+        app.idle()
+        assert app.equals_the_cpu()
+
+
 def test_keep_writes_a_slider_and_the_camera(tmp_path):
     with studio(tmp_path) as app:
         keep = app.page.get_by_role("button", name="Keep", exact=True)

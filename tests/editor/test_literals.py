@@ -21,6 +21,8 @@ def other(found: SourceLiteral):
             return "#12ab9f"
         case "switch", value:
             return not value
+        case "choice", value:
+            return next(word for word in found.options if word != value)
         case _, value:
             return value + (1.0 if found.whole else 0.25)
 
@@ -103,6 +105,45 @@ def test_the_argument_is_named() -> None:
 def test_limits_of_arguments_are_those_of_the_library(text, low, high) -> None:
     found = find_literals("a.py", text)[0]
     assert (found.low, found.high) == (low, high), found
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "some"),
+    [
+        ('Scene(ball, tone_map="agx")', "agx", {"none", "aces"}),
+        ("Scene(ball, look='night')", "night", {"studio", "outdoor"}),
+        ('Scene(ball, mode="path")', "path", {"direct"}),
+        ('Texture2D("wood.png", wrap="clamp")', "clamp", {"repeat"}),
+        ('choice("soft", ["soft", "hard"], "hard")', "hard", {"soft"}),
+        ('lang.choice("Kind", options=("a", "b"), default="b")', "b", {"a"}),
+    ],
+)
+def test_a_word_of_a_few_is_a_choice(text: str, value: str, some: set[str]) -> None:
+    (found,) = find_literals("a.py", text)
+    assert (found.type, found.value, found.way) == ("choice", value, "compile")
+    assert {value, *some} <= set(found.options)
+    word = min(some)
+    made = spliced(text, found.start, found.end, written(found, text, word))
+    assert find_literals("a.py", made)[0].value == word
+    assert made[: found.start] == text[: found.start]
+    assert made[found.start + len(word) + 2 :] == text[found.end :]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'Scene(ball, name="aces")',
+        'Scene(ball, tone_map="acse")',
+        'Scene(ball, tone_map=r"aces")',
+        'Scene(ball, tone_map="""aces""")',
+        'choice("soft", ["soft", "hard"])',
+        'choice("Kind", kinds, "hard")',
+        'open("repeat")',
+        'paint(u"#fff")',
+    ],
+)
+def test_other_texts_are_no_choice(text: str) -> None:
+    assert find_literals("a.py", text) == ()
 
 
 def test_limits_by_name_are_those_of_the_kind_of_object() -> None:

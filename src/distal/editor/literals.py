@@ -17,9 +17,12 @@ from functools import cache
 from typing import Any, Final, Literal, TypeAlias, cast
 
 import distal
+from distal import lang
 from distal.editor.messages import LiteralValue, SourceLiteral
 from distal.fields.guarantees import USUAL_LIMITS, Limit
+from distal.lang.resources import WRAPS, TextureValue
 from distal.render.declarations import BACKGROUNDS, CAMERAS, LIGHTS, MATERIALS
+from distal.scene.scene import WORDS, Scene
 
 Type: TypeAlias = Literal["number", "vector", "color", "switch", "choice"]
 Way: TypeAlias = Literal["numbers", "hold", "compile"]
@@ -212,8 +215,8 @@ class _Finder:
         match node:
             case ast.Constant(bool(value)):
                 return self._made(node, around, "switch", value, way="compile")
-            case ast.Constant(str(value)) if _HEX.fullmatch(value):
-                return self._made(node, around, "color", value)
+            case ast.Constant(str(value)):
+                return self._word(node, value, around)
             case ast.Tuple(elements) if 2 <= len(elements) <= 4 and around.way != "hold":
                 values = [_number(e) for e in elements]
                 if None in values:
@@ -238,6 +241,18 @@ class _Finder:
                 return self._made(
                     node, around, "number", float(number), step=step_of(text), whole=_is_whole(text)
                 )
+
+    def _word(self, node: ast.expr, value: str, around: _Around) -> SourceLiteral | None:
+        """Return a color or a choice; None for other texts, and for those with a prefix."""
+        own = piece(self._text, *self._positions.span(node))
+        if own not in (f'"{value}"', f"'{value}'"):
+            return None
+        if _HEX.fullmatch(value):
+            return self._made(node, around, "color", value)
+        options = _options(node, around)
+        if value not in options:
+            return None
+        return self._made(node, around, "choice", value, options=options, way="compile")
 
     def _made(
         self, node: ast.expr, around: _Around, type: Type, value: LiteralValue, **more: Any
@@ -292,6 +307,30 @@ def _slots(name: str) -> tuple[str, ...]:
         return ()
     positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
     return tuple(n for n, p in parameters.items() if p.kind in positional and n != "self")
+
+
+def _options(node: ast.expr, around: _Around) -> tuple[str, ...]:
+    """Return the words that an argument takes: those of the library, or of a declared choice."""
+    called = getattr(distal, around.call, None) or getattr(lang, around.call, None)
+    if called is Scene or around.call == "in_look":
+        return WORDS.get(around.slot, ())
+    if around.slot == "wrap" and isinstance(called, type) and issubclass(called, TextureValue):
+        return WRAPS
+    if called is lang.choice and isinstance(around.parent, ast.Call):
+        return _declared(node, around.parent)
+    return ()
+
+
+def _declared(node: ast.expr, call: ast.Call) -> tuple[str, ...]:
+    """Return the options written in a ``choice(...)``, if a node is its default."""
+    given = dict(zip(inspect.signature(lang.choice).parameters, call.args, strict=False))
+    given |= {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg}
+    match given if given.get("default") is node else {}:
+        case {"options": ast.List(elements) | ast.Tuple(elements)}:
+            words = [e.value for e in elements if isinstance(e, ast.Constant)]
+            return tuple(word for word in words if isinstance(word, str))
+        case _:
+            return ()
 
 
 @cache

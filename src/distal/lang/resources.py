@@ -26,7 +26,7 @@ from distal.ir.types import (
 )
 from distal.lang.values import VectorValue, uint
 
-_WRAPS = ("repeat", "clamp")
+WRAPS = ("repeat", "clamp")
 
 
 def _beside(file: str, data: Any) -> Any:
@@ -52,7 +52,7 @@ class TextureValue:
     __distal_type__: ClassVar[Type]
 
     def __init__(self, data: Any, wrap: str = "repeat") -> None:
-        if wrap not in _WRAPS:
+        if wrap not in WRAPS:
             raise ValueError(f"wrap is 'repeat' or 'clamp', not {wrap!r}")
         declared_in = sys._getframe(1).f_globals.get("__file__")
         self.data = _beside(declared_in, data) if isinstance(declared_in, str) else data

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from distal.fields.guarantees import Limit
 from distal.frontend import Assembly
@@ -25,6 +25,7 @@ from distal.lang.render_options import Cancel, Progress, RenderOptions
 from distal.loading import copy_loaded_from
 from distal.render import film, filters, tonemap, views
 from distal.scene.looks.dressed import Dressed, GivenArguments
+from distal.scene.looks.rows import NAMES as LOOKS
 from distal.scene.looks.rows import as_look
 from distal.scene.lowering.cells import check_cells
 from distal.scene.lowering.layers import Layer, PathLayer
@@ -55,6 +56,16 @@ if TYPE_CHECKING:
     from distal.scene.objects.shape import Shape
 else:
     rendering = LazyModule("distal.scene.rendering")  # needs NumPy
+
+
+# The arguments of a scene that take one of a few words.
+WORDS: Final[Mapping[str, tuple[str, ...]]] = {
+    "look": LOOKS,
+    "tone_map": tonemap.NAMES,
+    "normals": NORMALS,
+    "march": ("sphere", "heightfield"),
+    "mode": MODES,
+}
 
 
 class Scene(Composed, Presentable):
@@ -173,12 +184,12 @@ class Scene(Composed, Presentable):
             check_cells(self.shape.node)
         self.lights, self.background, self.camera = made.lights, made.background, made.camera
         self.material = made.material
-        self.tone_map = one_of("tone map", made.tone_map, tonemap.NAMES, place)
-        self.normals = one_of("way to find normals", normals, NORMALS, place)
-        self.march = one_of("march", march, ("sphere", "heightfield"), place)
+        self.tone_map = one_of("tone map", made.tone_map, WORDS["tone_map"], place)
+        self.normals = one_of("way to find normals", normals, WORDS["normals"], place)
+        self.march = one_of("march", march, WORDS["march"], place)
         self.glow = checked_glow(glow, place)
         self.shadows = bool(shadows)
-        self.mode = one_of("mode", mode, MODES, place)
+        self.mode = one_of("mode", mode, WORDS["mode"], place)
         self.bounces = whole("bounces", bounces, Limit.NOT_NEGATIVE, place)
         self.shutter = checked_shutter(shutter, place)
         self.acceleration = bool(acceleration)
@@ -499,7 +510,7 @@ class Scene(Composed, Presentable):
         if exposure is not None:
             made.numbers = {**self.numbers, "exposure": checked_exposure(exposure, self.place)}
         if tone_map is not None:
-            made.tone_map = one_of("tone map", tone_map, tonemap.NAMES, self.place)
+            made.tone_map = one_of("tone map", tone_map, WORDS["tone_map"], self.place)
         made.display = DisplayEncoding(made)
         given = {"exposure": exposure, "tone_map": tone_map}
         said = {name: value for name, value in given.items() if value is not None}
