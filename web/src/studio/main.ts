@@ -108,6 +108,8 @@ class Studio {
   #runs = new Map<string, Runs[]>();
   #pointing = 0;
   #pointedAt: number | null = null;
+  /** File and line of all that makes a shape. */
+  #makers = new Set<string>();
   #shapes: { revision: number; object: string | null; map: Promise<ShapeMap | null> } | null = null;
 
   constructor(readonly settings: Settings) {
@@ -367,6 +369,7 @@ class Studio {
 
   async #scene(answer: SceneFound): Promise<void> {
     this.#key = answer.key;
+    if (answer.shapes) this.#makers = new Set(answer.shapes.map(({ file, line }) => `${file}:${line}`));
     const { objects } = this.page;
     objects.hidden = answer.objects.length < 2;
     objects.replaceChildren(...answer.objects.map((name) => make("option", { value: name }, name)));
@@ -637,8 +640,9 @@ class Studio {
     clearTimeout(this.#pointing);
     const { outline, player } = this.picture;
     this.#pointing = window.setTimeout(() => {
-      outline.show(player, line === null ? null : { file: name, line });
-      if (isMouse || line === null) return;
+      const makes = line !== null && this.#makers.has(`${name}:${line}`);
+      outline.show(player, makes ? { file: name, line } : null);
+      if (isMouse || !makes) return;
       this.#pointing = window.setTimeout(() => outline.show(player, null), CARET_MS);
     }, POINTED_MS);
   }
