@@ -16,7 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
-from tools.site import documents, pages, playground  # noqa: E402
+from tools.site import documents, front, pages, playground  # noqa: E402
 
 
 def main() -> None:
@@ -45,7 +45,7 @@ def build(folder: Path, names: list[str], lessons: list[Path], *, has_playground
     found = documents.build(folder, documents.Tried())
     found += pages.build_gallery(folder, names)
     found += pages.build_lessons(folder, lessons)
-    pages.build_front(folder, names)
+    front.build(folder, names, lessons)
     documents.write_search(folder, found)
     if has_playground:
         playground.build(folder / "playground", names)

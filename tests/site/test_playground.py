@@ -136,26 +136,26 @@ def test_texts_are_those_of_this_python(address, tmp_path):
 def test_typing_mistakes_and_a_dial(address):
     with context(address) as made:
         page = shown(made, address)
-        page.locator(".literal", has_text=re.compile(r"^12\.0$")).click()
+        page.locator(".literal", has_text=re.compile(r"^0\.84$")).click()
         page.locator(".dial").get_by_role("button", name="More").click()
-        changed = "() => studio.editor.view.state.doc.toString().includes('FAR = 12.1')"
+        changed = "() => studio.editor.view.state.doc.toString().includes('Sphere(0.85)')"
         page.wait_for_function(changed, timeout=SLOW_MS)
         page.keyboard.press("Escape")
-        page.evaluate("() => studio.editor.goTo(28)")
+        page.evaluate("() => studio.editor.goTo(24)")
         page.keyboard.press("End")
         page.keyboard.type(" +")
         page.wait_for_function("() => document.querySelector('.mistakes').childElementCount")
-        assert "line 28" in page.locator(".mistakes").inner_text()
+        assert "line 24" in page.locator(".mistakes").inner_text()
 
 
 def test_an_endless_loop_is_ended(address):
     with context(address) as made:
         page = shown(made, address)
-        page.evaluate("() => studio.editor.replace('melting.py', 'while True: pass\\n')")
+        page.evaluate("() => studio.editor.replace('planet.py', 'while True: pass\\n')")
         page.wait_for_function("() => !document.querySelector('.notice').hidden", timeout=SLOW_MS)
         assert "gave no answer within 5 s" in page.locator(".notice").inner_text()
-        text = gallery()["melting"].read_text(encoding="utf-8")
-        page.evaluate("(text) => studio.editor.replace('melting.py', text)", text)
+        text = gallery()["planet"].read_text(encoding="utf-8")
+        page.evaluate("(text) => studio.editor.replace('planet.py', text)", text)
         page.wait_for_function(_IDLE, timeout=SLOW_MS)
 
 
@@ -166,8 +166,9 @@ def test_a_link_has_the_code_values_and_camera(address):
     )
     with context(address) as made:
         page = shown(made, address)
-        page.evaluate("(text) => studio.editor.replace('melting.py', text)", text)
-        page.wait_for_function("() => studio.picture.player.payload.steering", timeout=SLOW_MS)
+        page.evaluate("(text) => studio.editor.replace('planet.py', text)", text)
+        shows = "() => studio.picture.player.payload.parameters.some(({ name }) => name === 'size')"
+        page.wait_for_function(shows, timeout=SLOW_MS)
         page.evaluate("() => studio.picture.player.setSteering({ yaw: 0.5 })")
         page.evaluate("() => studio.picture.player.change('size', 0.75)")
         page.get_by_role("button", name="Share").click()
@@ -208,7 +209,7 @@ def test_a_broken_link_shows_the_start(address, fragment):
         page = made.new_page()
         page.goto(address + fragment)
         page.wait_for_function(_PLAYER, timeout=SLOW_MS)
-        assert "sd_sphere" in page.evaluate("() => studio.editor.view.state.doc.toString()")
+        assert "A planet cut open" in page.evaluate("() => studio.editor.view.state.doc.toString()")
 
 
 def test_a_draft_outlives_a_reload_and_it_works_offline(address):

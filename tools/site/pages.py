@@ -1,4 +1,4 @@
-"""The front page, the gallery and the lessons of the site.
+"""The gallery and the lessons of the site.
 
 Input: examples, their pictures, lessons. Output: pages. Each scene of the gallery is a page of its
 own that needs neither Python nor a network.
@@ -18,8 +18,9 @@ from distal.editor.local.files import SceneFiles
 from distal.editor.local.server import examples
 from distal.export.page import page as scene_page
 from distal.export.page_options import PageOptions
-from distal.lessons.page import LessonLinks, write
+from distal.lessons.page import LessonLinks, lesson_page, still
 from distal.lessons.reading import read
+from distal.lessons.scenes import staged
 from distal.loading import gallery, load
 from distal.scene.viewing.viewable import viewable
 from tools.site.documents import Found, page, playground_link
@@ -28,7 +29,6 @@ ROOT = Path(__file__).parents[2]
 PICTURES = ROOT / "docs" / "pictures"
 LESSONS = ROOT / "lessons"
 CARD = (480, 360)
-HERO = "bunny"
 # More views would make the pages larger and the build longer; the playground has all.
 VIEWS = ("color", "normal", "steps")
 
@@ -39,15 +39,12 @@ def build_gallery(folder: Path, names: Sequence[str]) -> list[Found]:
     titles = {row["name"]: row["title"] for row in examples()}
     cards, found = [], []
     for name in names:
-        poster = _poster(PICTURES / f"{name}.png")
+        poster = example_card(name)
         (folder / "gallery" / f"{name}.webp").write_bytes(poster)
         (folder / "gallery" / f"{name}.html").write_text(_live(name, poster), encoding="utf-8")
         shown = name.replace("_", " ")
-        cards.append(
-            f'<li><a href="{name}.html"><img src="{name}.webp" alt="" width="480" height="360" '
-            f'loading="lazy"><strong>{escape(shown)}</strong><span>{escape(titles[name])}</span></a>'
-            f'<a class="edit" href="../playground/index.html#example={name}">Edit</a></li>'
-        )
+        edit = f'<a class="edit" href="../playground/index.html#example={name}">Edit</a>'
+        cards.append(card(f"{name}.html", f"{name}.webp", shown, titles[name], edit))
         found.append(Found(shown, "Gallery", f"gallery/{name}.html", titles[name]))
     body = f'<h1>Gallery</h1>\n<p>Each opens live.</p>\n<ul class="cards">{"".join(cards)}</ul>'
     text = page("Gallery", body, "../", "wide")
@@ -55,13 +52,35 @@ def build_gallery(folder: Path, names: Sequence[str]) -> list[Found]:
     return found
 
 
-def _poster(picture: Path) -> bytes:
-    with Image.open(picture) as image:
-        small = image.convert("RGB")
-        small.thumbnail(CARD)
-        held = io.BytesIO()
-        small.save(held, "webp", quality=78)
+def card(address: str, picture: str, title: str, text: str, more: str = "") -> str:
+    """Return a linked picture with a title and a sentence.
+
+    Args:
+        address: Where it leads.
+        picture: The picture's address.
+        title: The title, as text.
+        text: The sentence, as text.
+        more: What stands below, as HTML.
+    """
+    return (
+        f'<li><a href="{address}"><img src="{picture}" alt="" width="480" height="360" '
+        f'loading="lazy"><strong>{escape(title)}</strong><span>{escape(text)}</span></a>{more}</li>'
+    )
+
+
+def card_picture(picture: Image.Image) -> bytes:
+    """Return a picture at the size of a card, as WebP."""
+    small = picture.convert("RGB")
+    small.thumbnail(CARD)
+    held = io.BytesIO()
+    small.save(held, "webp", quality=78)
     return held.getvalue()
+
+
+def example_card(name: str) -> bytes:
+    """Return the picture of an example at the size of a card."""
+    with Image.open(PICTURES / f"{name}.png") as image:
+        return card_picture(image)
 
 
 def _live(name: str, poster: bytes) -> str:
@@ -85,41 +104,22 @@ def build_lessons(folder: Path, files: Sequence[Path]) -> list[Found]:
         texts = SceneFiles(path)
         editor = playground_link(texts.all().files, texts.main, "../")
         links = LessonLinks("index.html", *neighbours, editor)
-        write(file, folder / "lessons" / names[i], links)
+        staged_lesson = staged(read(file))
+        made = lesson_page(staged_lesson, links)
+        (folder / "lessons" / names[i]).write_text(made.text, encoding="utf-8")
+        picture = f"{file.parent.name}.webp"
+        drawn = still(staged_lesson.seen, CARD, heads[i].time, heads[i].view)
+        (folder / "lessons" / picture).write_bytes(card_picture(Image.fromarray(drawn)))
         title = f"{heads[i].number}. {heads[i].title}"
-        rows.append(
-            f'<li><a href="{names[i]}"><strong>{escape(title)}</strong>'
-            f"<span>{escape(heads[i].summary)}</span></a></li>"
-        )
+        rows.append(card(names[i], picture, title, heads[i].summary))
         found.append(Found(title, "Lessons", f"lessons/{names[i]}", heads[i].summary))
     body = (
         "<h1>Lessons</h1>\n<p>From the first ray to glass: each with a live picture, sliders and "
-        f'experiments.</p>\n<ol class="list">{"".join(rows)}</ol>'
+        f'experiments.</p>\n<ol class="cards">{"".join(rows)}</ol>'
     )
     text = page("Lessons", body, "../", "wide")
     (folder / "lessons" / "index.html").write_text(text, encoding="utf-8")
     return found
-
-
-def build_front(folder: Path, names: Sequence[str]) -> None:
-    """Write the front page, with a live scene."""
-    poster = _poster(PICTURES / f"{HERO}.png")
-    options = PageOptions(views=["color"], embed=True)
-    live = scene_page(viewable(load(f"example:{HERO}")), options, poster, "webp").text
-    shown = [name for name in ("still_life", "city", "bunny", "gyroid_part") if name in names]
-    cards = "".join(
-        f'<li><a href="gallery/{name}.html"><img src="gallery/{name}.webp" alt="'
-        f'{escape(name.replace("_", " "))}" width="480" height="360" loading="lazy"></a></li>'
-        for name in shown
-    )
-    body = f"""<section class="hero"><div><h1>3D scenes, written as ordinary Python</h1>
-<p>A function answers “how far is the nearest surface from here?”. distal compiles it to vector code
-for the CPU, to GLSL for browsers and to WGSL for GPUs: one source, everywhere.</p>
-<p class="acts"><a class="act" href="playground/index.html">Open the playground</a>
-<a href="lessons/index.html">Learn it</a> <a href="docs/index.html">Read about it</a></p></div>
-<div class="live">{live}</div></section>
-<ul class="cards four">{cards}</ul>"""
-    (folder / "index.html").write_text(page("Scenes in Python", body, "", "wide"), encoding="utf-8")
 
 
 def all_lessons() -> list[Path]:

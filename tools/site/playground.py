@@ -29,7 +29,7 @@ PYTHON = (
     *("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm"),
     *("python_stdlib.zip", "pyodide-lock.json"),
 )
-START = "melting"
+START = "planet"
 # Of distal, what the compile path needs: not what only devices, windows and videos use.
 _LEFT_OUT = ("cli", "gallery", "notebook", "video", "window", "editor/local")
 # The cell is a part of the page's own text, so the page's policy holds in it, beside its own: the
