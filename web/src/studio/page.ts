@@ -68,6 +68,12 @@ export class Page {
     this.buttons.after(open);
   }
 
+  /** What the code has printed. */
+  print(text: string): void {
+    this.printed.hidden = !text;
+    this.printed.textContent = text;
+  }
+
   /** A sentence over everything, with what can be done; null takes it away. */
   tell(text: string | null, ...actions: [label: string, act: () => void][]): void {
     this.notice.hidden = text === null;

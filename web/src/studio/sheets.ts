@@ -5,11 +5,7 @@
  */
 
 import { make } from "../dom";
-
-export interface Example {
-  name: string;
-  title: string;
-}
+import type { Example } from "./settings";
 
 /** A dialog that is removed when it closes. */
 export function sheet(title: string, ...children: (Node | string)[]): HTMLDialogElement {
