@@ -71,7 +71,8 @@ class Tried:
         texts = {"scene.py": code}
         request = LookRequest(id=number, revision=number, files=texts, main="scene.py")
         try:
-            with contextlib.redirect_stdout(io.StringIO()):
+            # Blocks that save a picture write it there, not into the repository.
+            with contextlib.redirect_stdout(io.StringIO()), contextlib.chdir(self._folder.name):
                 self._looks.load(request, texts)
         except Exception:  # whatever it raises, there is no picture to show
             return False
