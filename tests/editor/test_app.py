@@ -220,10 +220,11 @@ def test_two_tabs_and_another_editor(tmp_path):
 def test_a_conflict_overwrites_nothing(tmp_path):
     with studio(tmp_path) as app:
         app.page.evaluate("(text) => studio.editor.replace('scene.py', text)", f"# mine\n{SCENE}")
-        # The server is asked before it looks at its files again.
         app.file.write_text(f"# theirs\n{SCENE}")
-        app.page.evaluate("() => studio.texts.saved('scene.py', 'x', 'another')")
-        app.page.evaluate("() => studio.save()")
+        # In one step, as if nothing had been told of the file's change.
+        app.page.evaluate(
+            "() => { studio.texts.saved('scene.py', 'x', 'another'); void studio.save(); }"
+        )
         app.page.locator("dialog .theirs").wait_for()
         assert app.file.read_text().startswith("# theirs")
         app.page.get_by_role("button", name="Overwrite the file").click()

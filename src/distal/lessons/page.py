@@ -164,12 +164,15 @@ def _layers(made: StagedLesson) -> str:
     items = []
     for name in LAYERS:
         view = part.views[name]
-        picture = _image(still(made.seen, size, head.time, view))
-        pressed = str(view == head.view).lower()
+        is_first = view == head.view
+        pressed = str(is_first).lower()
+        # The view that the page begins with stands in it already, as the poster: the script shows
+        # that one again, because a second picture of it may take 9 kB.
+        picture = "" if is_first else f' src="{_image(still(made.seen, size, head.time, view))}"'
         items.append(
             f'<button type="button" class="layer" data-view="{escaped(view)}"'
             f' data-caption="{escaped(part.captions.get(name, ""))}" aria-pressed="{pressed}">'
-            f'<img src="{picture}" width="{width}" height="{height}" alt="">'
+            f'<img{picture} width="{width}" height="{height}" alt="">'
             f"<span>{name.capitalize()}</span></button>"
         )
     caption = escape(part.captions.get("color", ""))
