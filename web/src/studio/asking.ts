@@ -24,6 +24,14 @@ export class Asking {
 
   constructor(readonly studio: Studio) {}
 
+  toggleCounts(): void {
+    this.counts = !this.counts;
+    this.studio.commands.refresh();
+    this.showRuns();
+    void this.studio.channel.start?.();
+    void this.count();
+  }
+
   /** Counts again, where counts are shown. */
   async count(): Promise<void> {
     const { client, looking, picture, texts } = this.studio;

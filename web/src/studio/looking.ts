@@ -29,6 +29,7 @@ export class Looking {
   /** File and line of all that makes a shape. */
   makers = new Set<string>();
   #isBusy = false;
+  #waiting: ((ready: Ready) => void)[] = [];
   /** Whether the notice that it was stopped is to be seen. */
   #isStoppedTold = false;
   #wanted = -1;
@@ -43,6 +44,11 @@ export class Looking {
   /** Whether the text that is there may be asked about: no run is under way, nothing is turned. */
   get isFree(): boolean {
     return !this.#isBusy && !this.studio.turning.isOn;
+  }
+
+  /** Resolves once the worker is there. */
+  whenReady(): Promise<Ready> {
+    return new Promise((resolve) => (this.ready ? resolve(this.ready) : this.#waiting.push(resolve)));
   }
 
   can(ability: string): boolean {
@@ -77,6 +83,12 @@ export class Looking {
     clearTimeout(this.#timer);
     this.#wanted = Math.max(this.#wanted, 0) + 1;
     void this.#lookOn();
+  }
+
+  /** Shows another picture of the file. */
+  choose(object: string): void {
+    this.object = object;
+    this.look();
   }
 
   /** Runs the code once nobody types any more. */
@@ -184,6 +196,7 @@ export class Looking {
     objects.replaceChildren(...answer.objects.map((name) => make("option", { value: name }, name)));
     if (this.object) objects.value = this.object;
     await this.studio.picture.show(answer.payload);
+    this.studio.commands.refresh();
     this.studio.opening.takeShared();
   }
 
@@ -214,6 +227,7 @@ export class Looking {
 
   started(message: Ready): void {
     this.ready = message;
+    for (const resolve of this.#waiting.splice(0)) resolve(message);
     this.studio.emitted.targets = message.targets;
     this.key = null;
     this.look();

@@ -6,7 +6,8 @@
 
 import { make } from "../dom";
 import { linkOf, type Shared } from "./links";
-import { exports, share } from "./sheets";
+import { openShare } from "./share_sheet";
+import { exports } from "./sheets";
 import type { Studio } from "./studio";
 
 export class Sharing {
@@ -25,7 +26,7 @@ export class Sharing {
       if (camera) full.camera = camera;
     }
     const links = await Promise.all([plain, full].map(async (what) => address() + (await linkOf(what))));
-    share(links[0]!, links[1]!, document.title);
+    openShare(links[0]!, links[1]!, document.title);
   }
 
   /** The address of the playground with the text as it is. */
@@ -35,11 +36,11 @@ export class Sharing {
   }
 
   /** Shows what the picture can be exported as. */
-  export(): void {
+  export(): Promise<void> {
     const { channel, looking } = this.studio;
     void channel.start?.();
-    exports(
-      looking.ready?.formats ?? [],
+    return exports(
+      looking.whenReady().then(({ formats }) => formats),
       (format) => this.exportAs(format),
       () => this.saveSource(),
     );

@@ -5,12 +5,13 @@
  * made and connected: what a person does goes to the part that answers it.
  */
 
-import { make } from "../dom";
 import type { LiteralValue } from "../generated/messages";
+import { recallScheme } from "./appearance";
 import { Asking } from "./asking";
 import { CellChannel } from "./cell_channel";
 import { SocketChannel, type Channel } from "./channel";
 import { Client } from "./client";
+import { Commands } from "./command_keys";
 import { Editor } from "./editor";
 import { Emitted } from "./emitted";
 import { Files } from "./files";
@@ -20,7 +21,6 @@ import { Page } from "./page";
 import { Picture } from "./picture";
 import type { Settings } from "./settings";
 import { Sharing } from "./sharing";
-import { gallery, help } from "./sheets";
 import { Tabs } from "./tabs";
 import { Texts } from "./texts";
 import { Turning } from "./turning";
@@ -35,6 +35,7 @@ export class Studio {
   readonly tabs = new Tabs(this);
   readonly opening = new Opening(this);
   readonly sharing = new Sharing(this);
+  readonly commands: Commands;
   readonly channel: Channel;
   readonly client: Client;
   readonly editor: Editor;
@@ -42,12 +43,14 @@ export class Studio {
   readonly emitted: Emitted;
 
   constructor(readonly settings: Settings) {
+    recallScheme();
     const { folder, main, python } = settings;
     // In another page it is small, and a draft of the whole playground is none of its text.
     const isFramed = new URLSearchParams(location.search).has("embed");
     if (isFramed) this.page.beFramed(() => this.sharing.whole());
     this.texts = new Texts(isFramed ? location.href : folder);
     this.picture = this.#picture();
+    this.commands = new Commands(this);
     this.editor = this.#editor();
     this.emitted = this.#emitted();
     this.#fillButtons();
@@ -83,6 +86,8 @@ export class Studio {
       guide: () => looking.guide(this.texts.revision),
       program: (view) => looking.program(view),
       map: () => asking.map(),
+      button: (id) => this.commands.button(id),
+      changed: () => this.commands.refresh(),
     });
     const { element, strip, layers, knobs } = picture;
     page.show.append(element, strip, layers.element, knobs);
@@ -90,17 +95,15 @@ export class Studio {
   }
 
   #editor(): Editor {
-    const { asking, files, looking, tabs, turning } = this;
+    const { asking, files, tabs, turning } = this;
     const events = {
       typed: (name: string, text: string) => files.typed(name, text),
       moved: (name: string, line: number) => tabs.moved(name, line),
       pointed: (name: string, line: number | null, isMouse: boolean) => asking.pointed(name, line, isMouse),
-      save: () => void files.save(),
-      run: () => looking.run(),
       turn: turning.turned.bind(turning),
       release: () => turning.released(),
     };
-    return new Editor(this.page.code, events, this.settings.nonce);
+    return new Editor(this.page.code, events, this.commands.ofCode, this.settings.nonce);
   }
 
   #emitted(): Emitted {
@@ -127,35 +130,10 @@ export class Studio {
   }
 
   #fillButtons(): void {
-    const button = (text: string, title: string, act: () => void) =>
-      make("button", { type: "button", title, onclick: act }, text);
-    this.page.objects.onchange = () => {
-      this.looking.object = this.page.objects.value;
-      this.looking.look();
-    };
-    this.page.buttons.append(
-      button("Gallery", "Open a copy of an example", () =>
-        gallery(this.settings.gallery, (name) => void this.opening.open(name)),
-      ),
-      this.#costButton(),
-      button("Export", "Make a page or a shader of it", () => this.sharing.export()),
-      this.settings.python
-        ? button("Share", "A link that has the code in it", () => void this.sharing.share())
-        : button("Save", "Save the file (Mod S)", () => void this.save()),
-      button("?", "Keys", () => help(this.settings.version)),
-    );
-  }
-
-  #costButton(): HTMLElement {
-    const title = "How often each line runs for a pixel";
-    const toggle = make("button", { type: "button", title, "aria-pressed": "false" }, "Cost");
-    toggle.onclick = () => {
-      this.asking.counts = !this.asking.counts;
-      toggle.setAttribute("aria-pressed", String(this.asking.counts));
-      this.asking.showRuns();
-      void this.channel.start?.();
-      void this.asking.count();
-    };
-    return toggle;
+    const { commands, looking, page } = this;
+    page.objects.onchange = () => looking.choose(page.objects.value);
+    const ofStrip = ["layers", "keepCamera"];
+    const own = commands.all.filter(({ id, button }) => button && !ofStrip.includes(id));
+    page.buttons.append(...own.map(({ id }) => commands.button(id)));
   }
 }

@@ -38,7 +38,7 @@ export class Tabs {
         return tab;
       }),
     );
-    const isText = this.#now === TEXT_TAB;
+    const { isText } = this;
     emitted.menu.hidden = !isText;
     emitted.element.hidden = !isText;
     page.code.classList.toggle("beside", isText);
@@ -58,6 +58,12 @@ export class Tabs {
     }
   }
 
+  /** Shows a file, with the caret in it. */
+  goToFile(name: string): void {
+    this.show(name);
+    this.studio.editor.view.focus();
+  }
+
   goTo(file: string, line: number, column = 0, isFocused = false): void {
     const { editor } = this.studio;
     if (editor.name !== file) this.show(file);
@@ -68,18 +74,22 @@ export class Tabs {
   moved(name: string, line: number): void {
     if (line === this.#line) return;
     this.#line = line;
-    if (this.#now === TEXT_TAB) this.studio.emitted.link(name, line);
+    if (this.isText) this.studio.emitted.link(name, line);
   }
 
   // The emitted text
 
+  get isText(): boolean {
+    return this.#now === TEXT_TAB;
+  }
+
   /** Shows or leaves the emitted text. */
   toggleText(): void {
-    this.show(this.#now === TEXT_TAB ? this.studio.editor.name : TEXT_TAB);
+    this.show(this.isText ? this.studio.editor.name : TEXT_TAB);
   }
 
   emitAgain(): void {
-    if (this.#now === TEXT_TAB) void this.emit();
+    if (this.isText) void this.emit();
   }
 
   async emit(): Promise<void> {
@@ -92,6 +102,10 @@ export class Tabs {
   }
 
   // Mistakes
+
+  get hasMistakes(): boolean {
+    return this.#mistakes.some(({ line }) => line !== null);
+  }
 
   showMistakes(mistakes: readonly Mistake[]): void {
     const { editor, page, settings } = this.studio;
