@@ -1,8 +1,8 @@
 """Write ``examples/posters/``: the small pictures that the studio's gallery shows.
 
-Input: the pictures of ``docs/pictures/``, which ``tools/gen_gallery.py`` draws. Output: a WebP file for
-each example, which is part of the package. ``--check`` writes nothing and fails when one is missing,
-too large, or another picture.
+Input: the pictures of ``docs/pictures/``, which ``tools/gen_gallery.py`` draws. Output: a WebP
+file for each example, which is part of the package. ``--check`` writes nothing and fails when one
+is missing, too large, or another picture.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ POSTERS: Final = ROOT / "examples/posters"
 SIZE: Final = (320, 240)
 MOST_BYTES: Final = 6_000
 QUALITIES: Final = range(80, 0, -4)
-# Of display values, at a fourth of the size: compression changes .02 at most, and pictures that are not
-# of the same scene differ by .1 at least.
+# Of display values, at a fourth of the size: compression changes .02 at most, and pictures of
+# different scenes differ by .1 at least.
 MOST_DIFFERENCE: Final = 0.03
 
 

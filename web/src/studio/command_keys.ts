@@ -6,7 +6,7 @@
  */
 
 import type { KeyBinding } from "@codemirror/view";
-import { make } from "../dom";
+import { icon, make } from "../dom";
 import { commandsOf, type Command } from "./commands";
 import type { Studio } from "./studio";
 
@@ -37,9 +37,9 @@ export class Commands {
   /** The button of a command. */
   button(id: string): HTMLButtonElement {
     const command = this.all.find((one) => one.id === id)!;
-    const { act, button: text, hint, keys } = command;
+    const { act, button: text, hint, icon: path, keys } = command;
     const title = `${hint ?? command.text}${keys ? ` (${shownKeys(keys)})` : ""}`;
-    const made = make("button", { type: "button", title, onclick: act }, text);
+    const made = make("button", { type: "button", title, onclick: act }, path && icon(path), make("span", {}, text));
     made.dataset["command"] = id;
     this.#buttons.set(id, made);
     this.#show(command);

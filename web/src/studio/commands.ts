@@ -27,6 +27,8 @@ export interface Command {
   isOfCode?: true;
   /** The text of its button, if it has one; the hint is its longer name. */
   button?: string;
+  /** A drawing before the text, which alone stays on a phone. */
+  icon?: string;
   hint?: string;
   /** Other words that it is found by. */
   words?: string;
@@ -59,7 +61,7 @@ export function commandsNow(studio: Studio): Command[] {
     ...(looking.ready?.formats ?? []).map((format) =>
       command(
         `export:${format}`,
-        `Export ${EXPORTS[format] ?? format}`,
+        `Export: ${EXPORTS[format] ?? format}`,
         () => void sharing.exportAs(format).then((text) => page.tell(text, ["Close", () => {}])),
         `${format} download`,
       ),
@@ -83,6 +85,7 @@ function ofApp(studio: Studio): Command[] {
       text: "Find a command",
       keys: "Mod-k",
       button: "Commands",
+      icon: "M8.5 14a5.5 5.5 0 1 0 0-11 5.5 5.5 0 0 0 0 11zM12.5 12.5 17 17",
       act: () => openPalette([...studio.commands.all, ...commandsNow(studio)].filter(({ id }) => id !== "commands")),
     },
     {
@@ -117,13 +120,7 @@ function ofApp(studio: Studio): Command[] {
       ...(isLocal && { button: "Save" }),
       act: () => void studio.save(),
     },
-    {
-      id: "share",
-      text: isLocal ? "Share a link that opens this in a playground" : "Share a link that has the code in it",
-      ...(isLocal ? { isPossible: () => false } : { button: "Share" }),
-      words: "qr code frame embed",
-      act: () => void sharing.share(),
-    },
+    ...(isLocal ? [] : [shareOf(studio)]),
     {
       id: "help",
       text: "Show all keys",
@@ -133,6 +130,16 @@ function ofApp(studio: Studio): Command[] {
       act: () => help(studio.commands.all, settings.version),
     },
   ];
+}
+
+function shareOf({ sharing }: Studio): Command {
+  return {
+    id: "share",
+    text: "Share a link that has the code in it",
+    button: "Share",
+    words: "qr code frame embed",
+    act: () => void sharing.share(),
+  };
 }
 
 function ofCode(studio: Studio): Command[] {

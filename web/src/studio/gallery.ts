@@ -11,6 +11,8 @@ import { sheet } from "./sheets";
 
 export function openGallery(examples: readonly Example[], open: (name: string) => void): void {
   const search = make("input", { type: "search", placeholder: "Search", "aria-label": "Search the gallery" });
+  // On a phone the keyboard would cover the pictures.
+  search.autofocus = matchMedia("(hover: hover)").matches;
   const none = make("p", { className: "quiet", role: "status" });
   const list = make("ul", { className: "posters" });
   const cards = examples.map((example) => {

@@ -8,17 +8,20 @@ import { encode } from "uqr";
 import { make } from "../dom";
 import { sheet } from "./sheets";
 
-/** Characters of a link that a code holds: more would make its squares smaller than two pixels of a phone. */
+/** Characters of a link that a code holds: of more, a phone would show squares smaller than two pixels. */
 export const LONGEST_CODE = 2000;
 /** Squares of white around a code, as its standard demands. */
 const MARGIN = 4;
+/** Pixels of a square at most, and of a code. A square has a whole number of them, so that all are equal. */
+const SQUARE_PX = 4;
+const CODE_PX = 480;
 
 export function openShare(plain: string, full: string, title: string): void {
   const field = make("input", { type: "text", readOnly: true, "aria-label": "Link" });
   const isFull = make("input", { type: "checkbox" });
   const isFrame = make("input", { type: "checkbox" });
   const length = make("p", { className: "quiet" });
-  const copied = make("button", { type: "button" }, "Copy");
+  const copied = make("button", { type: "button", autofocus: true }, "Copy");
   const code = make("div", { className: "code" });
   const show = () => {
     const link = isFull.checked ? full : plain;
@@ -51,12 +54,19 @@ function codeOf(link: string): Element {
   const whole = size + 2 * MARGIN;
   drawing.setAttribute("viewBox", `${-MARGIN} ${-MARGIN} ${whole} ${whole}`);
   drawing.setAttribute("shape-rendering", "crispEdges");
+  drawing.style.width = `${whole * squareOf(whole)}px`;
   drawing.setAttribute("role", "img");
   drawing.setAttribute("aria-label", "QR code of the link");
   const squares = document.createElementNS(space, "path");
   squares.setAttribute("d", data.map((row, y) => runsOf(row, y)).join(""));
   drawing.append(squares);
   return drawing;
+}
+
+/** Pixels of a square, where the sheet has room for so many squares in a row. */
+function squareOf(whole: number): number {
+  const room = Math.min(CODE_PX, document.documentElement.clientWidth - 60);
+  return Math.min(SQUARE_PX, Math.max(1, Math.floor(room / whole)));
 }
 
 /** The dark squares of a row, neighbours as one rectangle. */

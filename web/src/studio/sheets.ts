@@ -15,6 +15,8 @@ export function bareSheet(title: string, ...children: (Node | string)[]): HTMLDi
     if (event.target === dialog) dialog.close();
   };
   dialog.onclose = () => dialog.remove();
+  // One that was closed a moment ago has not heard of it yet.
+  for (const closed of document.querySelectorAll("dialog.sheet:not([open])")) closed.remove();
   document.body.append(dialog);
   dialog.showModal();
   return dialog;
@@ -29,9 +31,9 @@ export function sheet(title: string, ...children: (Node | string)[]): HTMLDialog
   return dialog;
 }
 
-/** What each format is, after "Export". */
+/** What each format is. */
 export const EXPORTS: Record<string, string> = {
-  page: "a page: one HTML file that needs no network",
+  page: "A page: one HTML file that needs no network",
   shadertoy: "Shadertoy",
   isf: "ISF, for VJ programs",
   glslcanvas: "glslCanvas, The Book of Shaders",
@@ -56,8 +58,7 @@ export async function exports(
   const last = make("li", {}, source);
   sheet("Export", make("ul", { className: "examples" }, last), status);
   const items = (await formats).map((format) => {
-    const about = EXPORTS[format] ?? "";
-    const button = choice(format, about.charAt(0).toUpperCase() + about.slice(1));
+    const button = choice(format, EXPORTS[format] ?? "");
     button.onclick = async () => {
       button.disabled = true;
       status.textContent = `Making ${format} …`;
