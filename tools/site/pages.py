@@ -18,8 +18,9 @@ from distal.editor.local.files import SceneFiles
 from distal.editor.local.server import examples
 from distal.export.page import page as scene_page
 from distal.export.page_options import PageOptions
-from distal.lessons.page import LessonLinks, write
+from distal.lessons.page import LessonLinks, lesson_page
 from distal.lessons.reading import read
+from distal.lessons.scenes import staged
 from distal.loading import gallery, load
 from distal.scene.viewing.viewable import viewable
 from tools.site.documents import Found, page, playground_link
@@ -49,7 +50,7 @@ def build_gallery(folder: Path, names: Sequence[str]) -> list[Found]:
             f'<a class="edit" href="../playground/index.html#example={name}">Edit</a></li>'
         )
         found.append(Found(shown, "Gallery", f"gallery/{name}.html", titles[name]))
-    body = f'<h1>Gallery</h1>\n<p>Each opens live.</p>\n<ul class="cards">{"".join(cards)}</ul>'
+    body = f'<h1>Gallery</h1>\n<p>Each opens live, in a page of its own; <em>Edit</em> opens it in the playground.</p>\n<ul class="cards">{"".join(cards)}</ul>'
     text = page("Gallery", body, "../", "wide")
     (folder / "gallery" / "index.html").write_text(text, encoding="utf-8")
     return found
@@ -85,16 +86,20 @@ def build_lessons(folder: Path, files: Sequence[Path]) -> list[Found]:
         texts = SceneFiles(path)
         editor = playground_link(texts.all().files, texts.main, "../")
         links = LessonLinks("index.html", *neighbours, editor)
-        write(file, folder / "lessons" / names[i], links)
+        made = lesson_page(staged(read(file)), links)
+        (folder / "lessons" / names[i]).write_text(made.text, encoding="utf-8")
+        (folder / "lessons" / names[i]).with_suffix(".webp").write_bytes(made.poster)
+        width, height = heads[i].size
         title = f"{heads[i].number}. {heads[i].title}"
         rows.append(
-            f'<li><a href="{names[i]}"><strong>{escape(title)}</strong>'
+            f'<li><a href="{names[i]}"><img src="{file.parent.name}.webp" alt="" width="{width}" '
+            f'height="{height}" loading="lazy"><strong>{escape(title)}</strong>'
             f"<span>{escape(heads[i].summary)}</span></a></li>"
         )
         found.append(Found(title, "Lessons", f"lessons/{names[i]}", heads[i].summary))
     body = (
         "<h1>Lessons</h1>\n<p>From the first ray to glass: each with a live picture, sliders and "
-        f'experiments.</p>\n<ol class="list">{"".join(rows)}</ol>'
+        f'experiments.</p>\n<ol class="cards">{"".join(rows)}</ol>'
     )
     text = page("Lessons", body, "../", "wide")
     (folder / "lessons" / "index.html").write_text(text, encoding="utf-8")

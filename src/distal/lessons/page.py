@@ -78,10 +78,18 @@ def write(file: str | Path, path: Path, links: LessonLinks | None = None) -> Exp
 
 @dataclass(frozen=True, slots=True)
 class LessonPage:
-    """A page: its text, the sizes of its parts in bytes, and the views that it leaves out."""
+    """A page of a lesson.
+
+    Attributes:
+        text: The HTML.
+        parts: The sizes of its parts in bytes.
+        poster: The picture that it shows first, as WebP.
+        omitted: The views that it leaves out, with reasons.
+    """
 
     text: str
     parts: Mapping[str, int]
+    poster: bytes
     omitted: dict[str, str] = field(default_factory=dict)
 
 
@@ -112,7 +120,7 @@ def lesson_page(made: StagedLesson, links: LessonLinks) -> LessonPage:
         "layers": len(layers),
         "text": len(article),
     }
-    return LessonPage(text, parts, omitted)
+    return LessonPage(text, parts, still, omitted)
 
 
 @cache
