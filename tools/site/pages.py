@@ -50,7 +50,10 @@ def build_gallery(folder: Path, names: Sequence[str]) -> list[Found]:
             f'<a class="edit" href="../playground/index.html#example={name}">Edit</a></li>'
         )
         found.append(Found(shown, "Gallery", f"gallery/{name}.html", titles[name]))
-    body = f'<h1>Gallery</h1>\n<p>Each opens live, in a page of its own; <em>Edit</em> opens it in the playground.</p>\n<ul class="cards">{"".join(cards)}</ul>'
+    body = (
+        "<h1>Gallery</h1>\n<p>Each opens live, in a page of its own; <em>Edit</em> opens it in the "
+        f'playground.</p>\n<ul class="cards">{"".join(cards)}</ul>'
+    )
     text = page("Gallery", body, "../", "wide")
     (folder / "gallery" / "index.html").write_text(text, encoding="utf-8")
     return found
