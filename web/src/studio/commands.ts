@@ -7,7 +7,6 @@
 
 import { redo, undo } from "@codemirror/commands";
 import { startCompletion } from "@codemirror/autocomplete";
-import { nextDiagnostic } from "@codemirror/lint";
 import { openSearchPanel } from "@codemirror/search";
 import type { EditorView } from "@codemirror/view";
 import { SCHEMES, schemeNow, useScheme } from "./appearance";
@@ -166,7 +165,7 @@ function ofCode(studio: Studio): Command[] {
       text: "Go to the next mistake",
       keys: "F8",
       words: "error problem",
-      act: inCode(nextDiagnostic),
+      act: () => studio.tabs.nextMistake(),
       isPossible: () => studio.tabs.hasMistakes,
     },
     { id: "parts", text: "Go to the next part of the page", keys: "F6", act: () => studio.page.nextPart() },

@@ -100,6 +100,7 @@ export class Looking {
 
   /** Runs the code now, also after it was stopped. */
   run(): void {
+    void this.studio.channel.start?.();
     this.isStopped = false;
     this.look();
   }
@@ -130,8 +131,10 @@ export class Looking {
 
   /** The program of a view of the text as it is. */
   async program(view: string): Promise<Program | null> {
-    if (!this.isFree) return null;
-    const { client, texts } = this.studio;
+    const { channel, client, texts } = this.studio;
+    void channel.start?.();
+    // What is drawn without a worker is drawn again once one is there.
+    if (!this.isFree || !this.ready) return null;
     const { revision } = texts;
     const asked = { ...this.source, view, lean: true, guided: false };
     const answer = await client.ask({ kind: "look", ...asked });

@@ -74,7 +74,10 @@ export class Studio {
   #picture(): Picture {
     const { asking, looking, page } = this;
     const picture = new Picture({
-      view: () => looking.look(),
+      view: () => {
+        void this.channel.start?.();
+        looking.look();
+      },
       clicked: (x, y) => void asking.probe(x, y),
       keepParameter: (name, value) =>
         void looking.write({ what: "parameter", name, value: value as LiteralValue }),

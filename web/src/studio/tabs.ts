@@ -4,6 +4,7 @@
  * Input: names of files, mistakes, lines. Output: tabs, the list of mistakes, the caret.
  */
 
+import { nextDiagnostic } from "@codemirror/lint";
 import { make } from "../dom";
 import type { Mistake } from "../generated/messages";
 import type { Studio } from "./studio";
@@ -85,6 +86,7 @@ export class Tabs {
 
   /** Shows or leaves the emitted text. */
   toggleText(): void {
+    void this.studio.channel.start?.();
     this.show(this.isText ? this.studio.editor.name : TEXT_TAB);
   }
 
@@ -104,7 +106,19 @@ export class Tabs {
   // Mistakes
 
   get hasMistakes(): boolean {
-    return this.#mistakes.some(({ line }) => line !== null);
+    return this.#mistakes.some(({ file, line }) => file && line !== null);
+  }
+
+  /** Goes to the next mistake of the file that is shown, or to the first of another file. */
+  nextMistake(): void {
+    const { editor } = this.studio;
+    const placed = this.#mistakes.filter(({ file, line }) => file && line !== null);
+    const [first] = placed;
+    if (!first) return;
+    if (placed.some(({ file }) => file === editor.name)) {
+      editor.view.focus();
+      nextDiagnostic(editor.view);
+    } else this.goTo(first.file!, first.line!, first.column, true);
   }
 
   showMistakes(mistakes: readonly Mistake[]): void {
