@@ -64,6 +64,12 @@ def test_a_command_is_found_and_run_by_keys(tmp_path):
         keys.press("Control+k")
         keys.press("Escape")
         assert app.page.evaluate("() => document.activeElement.ariaLabel") == "Code"
+        # On a keyboard of other letters, the same place.
+        app.page.evaluate(
+            "() => document.body.dispatchEvent(new KeyboardEvent('keydown',"
+            " { key: 'л', code: 'KeyK', ctrlKey: true, bubbles: true, cancelable: true }))"
+        )
+        assert app.page.locator(".palette").count() == 1
 
 
 def test_buttons_keys_and_help_are_those_of_the_list(tmp_path):

@@ -69,9 +69,11 @@ export class Commands {
 }
 
 function isPressed(keys: string, event: KeyboardEvent): boolean {
-  const { altKey, ctrlKey, metaKey, shiftKey, key } = event;
+  const { altKey, code, ctrlKey, metaKey, shiftKey, key } = event;
   const isMod = IS_MAC ? metaKey && !ctrlKey : ctrlKey && !metaKey;
   const hasMod = keys.startsWith("Mod-");
   if (altKey || shiftKey || (hasMod ? !isMod : ctrlKey || metaKey)) return false;
-  return key.toLowerCase() === keys.replace("Mod-", "").toLowerCase();
+  // On a keyboard of other letters, the key at the place of the Latin letter.
+  const pressed = key.length === 1 && key > "~" ? code.replace("Key", "") : key;
+  return pressed.toLowerCase() === keys.replace("Mod-", "").toLowerCase();
 }
