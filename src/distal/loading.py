@@ -65,10 +65,18 @@ def copy_loaded_from(origin: object, made: object) -> None:
 
 def gallery() -> dict[str, Path]:
     """Return the paths of the examples in the package by name, sorted by name."""
+    return {path.stem: path for path in sorted(_gallery_folder().glob("*.py"))}
+
+
+def posters() -> dict[str, Path]:
+    """Return the paths of small pictures of the examples by name: WebP, 320 pixels wide."""
+    return {path.stem: path for path in sorted((_gallery_folder() / "posters").glob("*.webp"))}
+
+
+def _gallery_folder() -> Path:
     installed = Path(__file__).parent / "gallery"
     checkout = Path(__file__).parents[2] / "examples"
-    folder = installed if installed.is_dir() else checkout
-    return {path.stem: path for path in sorted(folder.glob("*.py"))} if folder.is_dir() else {}
+    return installed if installed.is_dir() else checkout
 
 
 def load(path: str | Path, name: str | None = None) -> SceneCode:

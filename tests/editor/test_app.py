@@ -220,10 +220,11 @@ def test_two_tabs_and_another_editor(tmp_path):
 def test_a_conflict_overwrites_nothing(tmp_path):
     with studio(tmp_path) as app:
         app.page.evaluate("(text) => studio.editor.replace('scene.py', text)", f"# mine\n{SCENE}")
-        # The server is asked before it looks at its files again.
         app.file.write_text(f"# theirs\n{SCENE}")
-        app.page.evaluate("() => studio.texts.saved('scene.py', 'x', 'another')")
-        app.page.evaluate("() => studio.save()")
+        # In one step, as if nothing had been told of the file's change.
+        app.page.evaluate(
+            "() => { studio.texts.saved('scene.py', 'x', 'another'); void studio.save(); }"
+        )
         app.page.locator("dialog .theirs").wait_for()
         assert app.file.read_text().startswith("# theirs")
         app.page.get_by_role("button", name="Overwrite the file").click()
@@ -252,6 +253,10 @@ def test_exports_and_examples(tmp_path):
         assert "distal export scene.py -o scene.html" in app.page.locator(".result").inner_text()
         app.page.keyboard.press("Escape")
         app.page.get_by_role("button", name="Gallery").click()
+        loaded = "() => document.querySelector('.posters img').naturalWidth === 320"
+        app.wait(loaded)
+        app.page.get_by_label("Search the gallery").fill("no such")
+        assert app.page.locator(".sheet [role=status]").inner_text() == "No example of that name."
         app.page.get_by_label("Search the gallery").fill("melt")
         app.page.get_by_role("button", name=re.compile("^melting")).click()
         app.wait("() => studio.picture.player.payload.parameters.length === 2")
@@ -311,10 +316,16 @@ def test_every_screen_is_accessible(tmp_path, scheme, size):
             )
 
         assert violations() == []
-        for name in ("Gallery", "Export", "?"):
-            app.page.get_by_role("button", name=name, exact=True).click()
+        for name in ("gallery", "export", "help", "commands"):
+            app.page.evaluate(
+                "(name) => void studio.commands.all.find(({ id }) => id === name).act()", name
+            )
             assert violations() == [], name
             app.page.keyboard.press("Escape")
+        app.page.evaluate("() => studio.sharing.share()")
+        app.page.locator("dialog .code svg").wait_for()
+        assert violations() == []
+        app.page.keyboard.press("Escape")
         app.page.get_by_role("tab", name="Emitted text").click()
         assert violations() == []
         app.page.get_by_role("tab", name="scene.py").click()

@@ -13,6 +13,7 @@ from distal.editor.local.files import SceneFiles
 from distal.editor.local.guard import Guard
 from distal.editor.local.server import StudioServer
 from distal.editor.messages import parsed
+from distal.loading import gallery, posters
 
 websockets = pytest.importorskip("websockets.sync.client")
 
@@ -113,12 +114,24 @@ def test_other_hosts_and_origins_are_refused(server):
         "/gallery/../x",
         "/gallery/%2e%2e%2fmelting",
         "/gallery/none",
+        "/gallery/none.webp",
+        "/gallery/posters/melting.webp",
         "//etc/passwd",
         "/studio.js/",
     ],
 )
 def test_there_are_no_other_files(server, path):
     assert asked(server, path, Cookie=cookie_of(server))[0] == 404
+
+
+def test_examples_have_texts_and_posters(server):
+    cookie = cookie_of(server)
+    status, headers, body = asked(server, "/gallery/melting.webp", Cookie=cookie)
+    assert (status, headers["Content-Type"]) == (200, "image/webp")
+    assert body == posters()["melting"].read_bytes()
+    status, headers, body = asked(server, "/gallery/melting.json", Cookie=cookie)
+    assert (status, headers["Content-Type"]) == (200, "application/json; charset=utf-8")
+    assert json.loads(body)["files"]["melting.py"] == gallery()["melting"].read_text("utf-8")
 
 
 def test_the_page_allows_only_its_own(server):

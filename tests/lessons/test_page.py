@@ -86,6 +86,10 @@ def test_a_phrase_visibly_moves_its_slider(pages):
 def test_layers_enlarge_and_follow_the_sliders(pages):
     with opened(pages[6], **DESK) as page:
         first = page.locator(".layer img").first.get_attribute("src")
+        # The page holds its first picture once.
+        poster = page.locator(".picture [data-distal] > img").get_attribute("src")
+        assert page.locator(".layer[aria-pressed=true] img").get_attribute("src") == poster
+        assert pages[6].read_text(encoding="utf-8").count(poster) == 1
         page.get_by_role("button", name="Signal").click()
         assert page.evaluate(_VIEW) == "local:t"
         assert page.locator(".caption").inner_text().startswith("Signal")

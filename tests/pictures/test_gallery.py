@@ -32,6 +32,13 @@ def test_the_page_is_fresh_and_no_picture_is_missing():
     assert done.returncode == 0, done.stderr
 
 
+def test_every_example_has_a_poster_that_shows_it():
+    command = [sys.executable, ROOT / "tools/gen_posters.py", "--check"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert sorted(distal.loading.posters()) == EXAMPLES
+
+
 def test_every_example_is_listed_once():
     lines = (ROOT / "docs/gallery.md").read_text().splitlines()
     shown = [line for line in lines if line.startswith("![") and "catalogue_" not in line]

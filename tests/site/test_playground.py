@@ -108,7 +108,14 @@ def test_the_first_picture_needs_no_python(address):
         page.wait_for_function(_PLAYER, timeout=SLOW_MS)
         page.evaluate("() => document.querySelector('.picture .host').distal.settled()")
         page.locator(".knobs input[type=range]").first.press("ArrowRight")
+        page.get_by_role("button", name="Gallery").click()
+        loaded = "() => document.querySelector('.posters img').naturalWidth === 320"
+        page.wait_for_function(loaded, timeout=SLOW_MS)
+        page.keyboard.press("Escape")
         assert not [url for url in asked if url.endswith((".wasm", "distal.zip"))]
+        # Another view has no program yet: it needs the compiler.
+        with page.expect_request("**/distal.zip", timeout=SLOW_MS):
+            page.get_by_label("View", exact=True).select_option(index=1)
 
 
 def test_texts_are_those_of_this_python(address, tmp_path):

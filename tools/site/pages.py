@@ -18,7 +18,7 @@ from distal.editor.local.files import SceneFiles
 from distal.editor.local.server import examples
 from distal.export.page import page as scene_page
 from distal.export.page_options import PageOptions
-from distal.lessons.page import LessonLinks, lesson_page, still
+from distal.lessons.page import LessonLinks, lesson_page
 from distal.lessons.reading import read
 from distal.lessons.scenes import staged
 from distal.loading import gallery, load
@@ -46,7 +46,10 @@ def build_gallery(folder: Path, names: Sequence[str]) -> list[Found]:
         edit = f'<a class="edit" href="../playground/index.html#example={name}">Edit</a>'
         cards.append(card(f"{name}.html", f"{name}.webp", shown, titles[name], edit))
         found.append(Found(shown, "Gallery", f"gallery/{name}.html", titles[name]))
-    body = f'<h1>Gallery</h1>\n<p>Each opens live.</p>\n<ul class="cards">{"".join(cards)}</ul>'
+    body = (
+        "<h1>Gallery</h1>\n<p>Each opens live, in a page of its own; <em>Edit</em> opens it in the "
+        f'playground.</p>\n<ul class="cards">{"".join(cards)}</ul>'
+    )
     text = page("Gallery", body, "../", "wide")
     (folder / "gallery" / "index.html").write_text(text, encoding="utf-8")
     return found
@@ -104,12 +107,10 @@ def build_lessons(folder: Path, files: Sequence[Path]) -> list[Found]:
         texts = SceneFiles(path)
         editor = playground_link(texts.all().files, texts.main, "../")
         links = LessonLinks("index.html", *neighbours, editor)
-        staged_lesson = staged(read(file))
-        made = lesson_page(staged_lesson, links)
+        made = lesson_page(staged(read(file)), links)
         (folder / "lessons" / names[i]).write_text(made.text, encoding="utf-8")
         picture = f"{file.parent.name}.webp"
-        drawn = still(staged_lesson.seen, CARD, heads[i].time, heads[i].view)
-        (folder / "lessons" / picture).write_bytes(card_picture(Image.fromarray(drawn)))
+        (folder / "lessons" / picture).write_bytes(made.poster)
         title = f"{heads[i].number}. {heads[i].title}"
         rows.append(card(names[i], picture, title, heads[i].summary))
         found.append(Found(title, "Lessons", f"lessons/{names[i]}", heads[i].summary))

@@ -19,7 +19,7 @@ from distal.editor.local.files import SceneFiles
 from distal.editor.local.server import APP, examples
 from distal.editor.messages import LookRequest, SceneFound
 from distal.editor.worker import StudioWorker
-from distal.loading import gallery
+from distal.loading import gallery, posters
 from distal.version import __version__
 
 ROOT = Path(__file__).parents[2]
@@ -57,6 +57,7 @@ def build(folder: Path, names: Sequence[str]) -> None:
     write_package(folder / "python" / "distal.zip")
     for name, opened in opened_examples([START, *names]).items():
         (folder / "gallery" / f"{name}.json").write_text(json.dumps(opened), encoding="utf-8")
+        shutil.copyfile(posters()[name], folder / "gallery" / f"{name}.webp")
     (folder / "index.html").write_text(_page(folder), encoding="utf-8")
     _write_offline(folder)
 

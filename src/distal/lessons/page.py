@@ -78,10 +78,18 @@ def write(file: str | Path, path: Path, links: LessonLinks | None = None) -> Exp
 
 @dataclass(frozen=True, slots=True)
 class LessonPage:
-    """A page: its text, the sizes of its parts in bytes, and the views that it leaves out."""
+    """A page of a lesson.
+
+    Attributes:
+        text: The HTML.
+        parts: The sizes of its parts in bytes.
+        poster: The picture that it shows first, as WebP.
+        omitted: The views that it leaves out, with reasons.
+    """
 
     text: str
     parts: Mapping[str, int]
+    poster: bytes
     omitted: dict[str, str] = field(default_factory=dict)
 
 
@@ -112,7 +120,7 @@ def lesson_page(made: StagedLesson, links: LessonLinks) -> LessonPage:
         "layers": len(layers),
         "text": len(article),
     }
-    return LessonPage(text, parts, omitted)
+    return LessonPage(text, parts, still, omitted)
 
 
 @cache
@@ -164,12 +172,15 @@ def _layers(made: StagedLesson) -> str:
     items = []
     for name in LAYERS:
         view = part.views[name]
-        picture = _image(still(made.seen, size, head.time, view))
-        pressed = str(view == head.view).lower()
+        is_first = view == head.view
+        pressed = str(is_first).lower()
+        # The view that the page begins with stands in it already, as the poster: the script shows
+        # that one again, because a second picture of it may take 9 kB.
+        picture = "" if is_first else f' src="{_image(still(made.seen, size, head.time, view))}"'
         items.append(
             f'<button type="button" class="layer" data-view="{escaped(view)}"'
             f' data-caption="{escaped(part.captions.get(name, ""))}" aria-pressed="{pressed}">'
-            f'<img src="{picture}" width="{width}" height="{height}" alt="">'
+            f'<img{picture} width="{width}" height="{height}" alt="">'
             f"<span>{name.capitalize()}</span></button>"
         )
     caption = escape(part.captions.get("color", ""))

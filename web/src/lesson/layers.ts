@@ -1,9 +1,13 @@
-/** The strip of stills: a press shows the layer large; the stills follow the sliders. */
+/**
+ * The strip of stills: a press shows the layer large; the stills follow the sliders.
+ *
+ * The first view has no still of its own in the page: at the beginning it is the poster.
+ */
 
 import type { Player } from "../player";
 import { later, show, type Stills } from "./stills";
 
-export function followLayers(player: Player, stills: Stills): void {
+export function followLayers(player: Player, stills: Stills, poster: string): void {
   const buttons = [...document.querySelectorAll<HTMLButtonElement>(".layer")];
   const caption = document.querySelector<HTMLElement>(".caption");
   if (buttons.length === 0) return;
@@ -16,6 +20,8 @@ export function followLayers(player: Player, stills: Stills): void {
   };
   for (const button of buttons) {
     button.onclick = () => player.setView(button.dataset["view"]!);
+    const image = button.querySelector("img")!;
+    if (!image.getAttribute("src")) image.src = poster;
   }
   player.on("view", name);
   name();

@@ -24,7 +24,7 @@ function start(): void {
   const announcer = document.querySelector<HTMLElement>(".announcer")!;
   const changes = new Changes(player, sliders, (text) => (announcer.textContent = text));
   const stills = new Stills(player.payload as Payload);
-  followLayers(player, stills);
+  followLayers(player, stills, host.querySelector("img")!.src);
   followTries(player, changes);
   followGoals(player, stills, changes);
   present();

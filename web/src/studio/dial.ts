@@ -14,7 +14,6 @@ export interface Dial {
   element: HTMLElement;
   /** The literal has another place or value. */
   update(literal: SourceLiteral): void;
-  focus(): void;
 }
 
 export interface Turned {
@@ -38,7 +37,6 @@ export function dialOf(literal: SourceLiteral, turned: Turned): Dial {
   return {
     element,
     update: body.show,
-    focus: () => element.querySelector<HTMLElement>("input, select")?.focus(),
   };
 }
 

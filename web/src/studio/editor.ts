@@ -28,6 +28,7 @@ import {
   keymap,
   lineNumbers,
   type DecorationSet,
+  type KeyBinding,
 } from "@codemirror/view";
 import { tags } from "@lezer/highlight";
 import type { Edit, Mistake, SourceLiteral } from "../generated/messages";
@@ -42,8 +43,6 @@ export interface EditorEvents extends Turning {
   moved(name: string, line: number): void;
   /** The mouse is over a line, or over none; or the caret went to one without a change of the text. */
   pointed(name: string, line: number | null, isMouse: boolean): void;
-  save(): void;
-  run(): void;
 }
 
 const HIGHLIGHT = HighlightStyle.define([
@@ -83,6 +82,7 @@ export class Editor {
   constructor(
     parent: HTMLElement,
     readonly events: EditorEvents,
+    keys: readonly KeyBinding[],
     nonce: string,
   ) {
     this.#extensions = [
@@ -106,8 +106,7 @@ export class Editor {
       literals(events),
       names(),
       keymap.of([
-        { key: "Mod-s", run: () => (events.save(), true), preventDefault: true },
-        { key: "Mod-Enter", run: () => (events.run(), true) },
+        ...keys,
         ...closeBracketsKeymap,
         ...defaultKeymap,
         ...searchKeymap,

@@ -94,6 +94,15 @@ interface Opened {
   tooltip: Tooltip;
 }
 
+/** Opens the dial of the literal at the caret, with the focus in it. */
+export function dialAtCaret(view: EditorView): void {
+  const literal = literalAt(view.state, view.state.selection.main.head);
+  if (!literal) return;
+  view.dispatch({ effects: openDial.of(null) });
+  view.dispatch({ effects: openDial.of(literal) });
+  requestAnimationFrame(() => view.dom.querySelector<HTMLElement>(".dial :is(input, select)")?.focus());
+}
+
 /** What extends an editor by marks and dials. */
 export function literals(turning: Turning): Extension {
   let dial: Dial | null = null;
@@ -141,17 +150,13 @@ export function literals(turning: Turning): Extension {
     view.dispatch({ effects: openDial.of(null) });
     view.focus();
   };
-  const open = (view: EditorView, at: number, isFocused: boolean): boolean => {
+  const open = (view: EditorView, at: number) => {
     const literal = literalAt(view.state, at);
-    if (!literal && !view.state.field(opened)) return false;
-    const isSame = literal && view.state.field(opened)?.literal.start === literal.start;
-    if (!isSame) {
-      // Another dial is another element.
-      if (view.state.field(opened)) view.dispatch({ effects: openDial.of(null) });
-      view.dispatch({ effects: openDial.of(literal) });
-    }
-    if (isFocused) requestAnimationFrame(() => dial?.focus());
-    return !!literal;
+    const now = view.state.field(opened);
+    if (literal?.start === now?.literal.start) return;
+    // Another dial is another element.
+    if (now) view.dispatch({ effects: openDial.of(null) });
+    view.dispatch({ effects: openDial.of(literal) });
   };
   return [
     marks,
@@ -160,11 +165,10 @@ export function literals(turning: Turning): Extension {
       click(event, view) {
         const pressed = (event.target as HTMLElement).closest?.(".literal, .swatch");
         const isPressed = pressed && view.state.selection.main.empty;
-        open(view, isPressed ? view.posAtDOM(pressed) : -1, false);
+        open(view, isPressed ? view.posAtDOM(pressed) : -1);
       },
     }),
     keymap.of([
-      { key: "Mod-.", run: (view) => open(view, view.state.selection.main.head, true) },
       {
         key: "Escape",
         run(view) {

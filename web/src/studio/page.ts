@@ -31,14 +31,14 @@ export class Page {
     const status = make("footer", { className: "status" }, this.work, this.drawn);
     parent.append(header, this.#narrow, this.notice, main, status, this.announcer);
     this.#fillSwitch(main);
-    document.addEventListener("keydown", (event) => {
-      if (event.key !== "F6") return;
-      event.preventDefault();
-      const parts = [this.left, this.show];
-      const at = parts.findIndex((part) => part.contains(document.activeElement));
-      const next = parts[(at + 1) % parts.length]!;
-      (next.querySelector<HTMLElement>(".cm-content") ?? next.querySelector("select") ?? next).focus();
-    });
+  }
+
+  /** Puts the focus into the code, or from there into the picture's controls. */
+  nextPart(): void {
+    const parts = [this.left, this.show];
+    const at = parts.findIndex((part) => part.contains(document.activeElement));
+    const next = parts[(at + 1) % parts.length]!;
+    (next.querySelector<HTMLElement>(".cm-content") ?? next.querySelector("select") ?? next).focus();
   }
 
   /** On a phone the picture is on top, and below it either the code or the controls. */
@@ -66,6 +66,12 @@ export class Page {
       void address().then((href) => whole && (whole.location.href = href));
     };
     this.buttons.after(open);
+  }
+
+  /** What the code has printed. */
+  print(text: string): void {
+    this.printed.hidden = !text;
+    this.printed.textContent = text;
   }
 
   /** A sentence over everything, with what can be done; null takes it away. */

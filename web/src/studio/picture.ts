@@ -27,6 +27,10 @@ export interface PictureEvents {
   program(view: string): Promise<Program | null>;
   /** Which shape each pixel shows. */
   map(): Promise<ShapeMap | null>;
+  /** The button of a command. */
+  button(id: string): HTMLElement;
+  /** What commands do may have changed. */
+  changed(): void;
 }
 
 /** A press that moves farther is a drag. */
@@ -111,7 +115,10 @@ export class Picture {
         this.#moved(name, value);
         this.layers.drawSoon(player);
       }),
-      player.on("steering", () => this.layers.drawSoon(player)),
+      player.on("steering", () => {
+        this.layers.drawSoon(player);
+        this.events.changed();
+      }),
       player.on("frame", ({ ms, fps, width, height, samples, rate }) => {
         this.outline.follow(player);
         const speed = fps ? `${fps.toFixed(0)} fps` : `${ms.toFixed(0)} ms`;
@@ -168,22 +175,27 @@ export class Picture {
     const player = this.player!;
     const parts: HTMLElement[] = [];
     if (payload.time.animated) parts.push(...this.#time(player));
-    if (payload.views.length > 1) parts.push(this.#views(player, payload), this.#layersButton());
-    if (payload.steering) parts.push(this.#keepCamera(player));
+    if (payload.views.length > 1) parts.push(this.#views(player, payload), this.events.button("layers"));
+    if (payload.steering) parts.push(this.events.button("keepCamera"));
     parts.push(iconButton("Save a picture", ICONS.camera, () => void player.saveScreenshot()));
     this.strip.replaceChildren(...parts);
   }
 
-  #layersButton(): HTMLElement {
-    const title = "Small pictures of all views";
-    const toggle = make("button", { type: "button", title }, "Layers");
-    toggle.setAttribute("aria-pressed", String(this.layers.isOpen));
-    toggle.onclick = () => {
-      this.layers.isOpen = !this.layers.isOpen;
-      toggle.setAttribute("aria-pressed", String(this.layers.isOpen));
-      if (this.player) void this.layers.draw(this.player);
-    };
-    return toggle;
+  toggleLayers(): void {
+    this.layers.isOpen = !this.layers.isOpen;
+    this.events.changed();
+    if (this.player) void this.layers.draw(this.player);
+  }
+
+  /** Writes into the code where the camera is. */
+  async keepCamera(): Promise<void> {
+    let text = await this.player?.cameraText();
+    if (!text) {
+      // In the first moment after a change nothing knows yet where the camera is.
+      await this.events.guide();
+      text = await this.player?.cameraText();
+    }
+    if (text) this.events.keepCamera(text);
   }
 
   #views(player: Player, { views }: Payload): HTMLElement {
@@ -193,23 +205,6 @@ export class Picture {
     menu.onchange = () => player.setView(menu.value);
     this.#ends.push(player.on("view", ({ name }) => (menu.value = name)));
     return menu;
-  }
-
-  #keepCamera(player: Player): HTMLElement {
-    const button = make("button", { type: "button", className: "text" }, "Keep camera");
-    button.title = "Write the camera's place into the code";
-    button.disabled = !player.camera?.moved;
-    button.onclick = async () => {
-      let text = await player.cameraText();
-      if (!text) {
-        // In the first moment after a change nothing knows yet where the camera is.
-        await this.events.guide();
-        text = await player.cameraText();
-      }
-      if (text) this.events.keepCamera(text);
-    };
-    this.#ends.push(player.on("steering", () => (button.disabled = !player.camera?.moved)));
-    return button;
   }
 
   #time(player: Player): HTMLElement[] {

@@ -1,64 +1,37 @@
 /**
- * Sheets over the page: the gallery, exports, keys, and a choice between two texts.
+ * Sheets over the page: exports, keys, and the dialog that all sheets are.
  *
  * Input: what they list. Output: dialogs; Escape and a press beside them close them.
  */
 
 import { make } from "../dom";
+import { shownKeys } from "./command_keys";
+import type { Command } from "./commands";
 
-export interface Example {
-  name: string;
-  title: string;
-}
-
-/** A dialog that is removed when it closes. */
-export function sheet(title: string, ...children: (Node | string)[]): HTMLDialogElement {
-  const close = make("button", { type: "button", className: "icon", "aria-label": "Close" }, "×");
-  const heading = make("h2", {}, title);
-  const body = make("div", { className: "sheet-body" }, ...children);
-  const dialog = make("dialog", { className: "sheet" }, make("header", {}, heading, close), body);
-  dialog.setAttribute("aria-label", title);
-  close.onclick = () => dialog.close();
+/** A dialog without a heading that is removed when it closes. */
+export function bareSheet(title: string, ...children: (Node | string)[]): HTMLDialogElement {
+  const dialog = make("dialog", { className: "sheet", "aria-label": title }, ...children);
   dialog.onclick = (event) => {
     if (event.target === dialog) dialog.close();
   };
   dialog.onclose = () => dialog.remove();
+  // One that was closed a moment ago has not heard of it yet.
+  for (const closed of document.querySelectorAll("dialog.sheet:not([open])")) closed.remove();
   document.body.append(dialog);
   dialog.showModal();
   return dialog;
 }
 
-export function gallery(examples: readonly Example[], open: (name: string) => void): void {
-  const search = make("input", { type: "search", placeholder: "Search", "aria-label": "Search the gallery" });
-  const list = make("ul", { className: "examples" });
-  const show = () => {
-    const words = search.value.toLowerCase().split(/\s+/);
-    const found = examples.filter(({ name, title }) => {
-      const text = `${name} ${title}`.toLowerCase();
-      return words.every((word) => text.includes(word));
-    });
-    list.replaceChildren(
-      ...found.map(({ name, title }) => {
-        const button = make(
-          "button",
-          { type: "button" },
-          make("strong", {}, name.replaceAll("_", " ")),
-          make("span", {}, title),
-        );
-        button.onclick = () => {
-          dialog.close();
-          open(name);
-        };
-        return make("li", {}, button);
-      }),
-    );
-    if (!found.length) list.replaceChildren(make("li", {}, "Nothing of that name."));
-  };
-  search.oninput = show;
-  const dialog = sheet("Gallery", search, list);
-  show();
+/** A dialog with a heading. */
+export function sheet(title: string, ...children: (Node | string)[]): HTMLDialogElement {
+  const close = make("button", { type: "button", className: "icon", "aria-label": "Close" }, "×");
+  const header = make("header", {}, make("h2", {}, title), close);
+  const dialog = bareSheet(title, header, make("div", { className: "sheet-body" }, ...children));
+  close.onclick = () => dialog.close();
+  return dialog;
 }
 
+/** What each format is. */
 export const EXPORTS: Record<string, string> = {
   page: "A page: one HTML file that needs no network",
   shadertoy: "Shadertoy",
@@ -71,21 +44,21 @@ export const EXPORTS: Record<string, string> = {
   "wgsl-compute": "WGSL as a compute shader",
 };
 
-export function exports(
-  formats: readonly string[],
+/** Exports: the formats come once the worker is there. */
+export async function exports(
+  formats: Promise<readonly string[]>,
   take: (format: string) => Promise<string>,
   saveSource: () => void,
-): void {
-  const status = make("p", { className: "result", role: "status" });
-  const source = make("button", { type: "button" }, make("strong", {}, "py"), make("span", {}, "The code itself"));
+): Promise<void> {
+  const status = make("p", { className: "result", role: "status" }, "Starting Python …");
+  const choice = (name: string, about: string) =>
+    make("button", { type: "button" }, make("strong", {}, name), make("span", {}, about));
+  const source = choice("py", "The code itself");
   source.onclick = saveSource;
-  const items = formats.map((format) => {
-    const button = make(
-      "button",
-      { type: "button" },
-      make("strong", {}, format),
-      make("span", {}, EXPORTS[format] ?? ""),
-    );
+  const last = make("li", {}, source);
+  sheet("Export", make("ul", { className: "examples" }, last), status);
+  const items = (await formats).map((format) => {
+    const button = choice(format, EXPORTS[format] ?? "");
     button.onclick = async () => {
       button.disabled = true;
       status.textContent = `Making ${format} …`;
@@ -94,61 +67,15 @@ export function exports(
     };
     return make("li", {}, button);
   });
-  sheet("Export", make("ul", { className: "examples" }, ...items, make("li", {}, source)), status);
+  last.before(...items);
+  status.textContent = "";
 }
 
-/** A link with the code, and one that has values, camera and time too; or a frame for another page. */
-export function share(plain: string, full: string, title: string): void {
-  const field = make("input", { type: "text", readOnly: true, "aria-label": "Link" });
-  const isFull = make("input", { type: "checkbox" });
-  const isFrame = make("input", { type: "checkbox" });
-  const length = make("p", { className: "quiet" });
-  const copied = make("button", { type: "button" }, "Copy");
-  const show = () => {
-    const link = isFull.checked ? full : plain;
-    field.value = isFrame.checked ? frameOf(link, title) : link;
-    length.textContent = `${field.value.length.toLocaleString("en")} characters. The link has the code in it: nothing is stored elsewhere.`;
-    copied.textContent = "Copy";
-  };
-  isFull.onchange = isFrame.onchange = show;
-  copied.onclick = async () => {
-    field.select();
-    await navigator.clipboard?.writeText(field.value).catch(() => document.execCommand("copy"));
-    copied.textContent = "Copied";
-  };
-  show();
-  const option = make("label", { className: "option" }, isFull, "With the sliders' values, the camera and the time");
-  const frame = make("label", { className: "option" }, isFrame, "As a frame: the HTML that shows it in another page");
-  sheet("Share", make("div", { className: "choices" }, field, copied), option, frame, length);
-}
-
-/** The HTML of a frame that shows a link. */
-function frameOf(link: string, title: string): string {
-  const [address, code] = link.split("#");
-  const frame = make("iframe", { src: `${address!.split("?")[0]}?embed#${code}`, title, width: "800", height: "460" });
-  frame.setAttribute("loading", "lazy");
-  frame.style.border = "0";
-  return frame.outerHTML;
-}
-
-const KEYS: [string, string][] = [
-  ["Mod S", "Save the file"],
-  ["Mod Enter", "Run the code now"],
-  ["Mod .", "Turn the number, color or switch at the caret"],
-  ["Mod Z", "Undo"],
-  ["Mod F", "Search"],
-  ["Mod Space", "Complete a name"],
-  ["F8", "Go to the next mistake"],
-  ["F6", "Go to the next part of the page"],
-  ["Escape, then Tab", "Leave the code"],
-];
-
-export function help(version: string): void {
-  const mod = /Mac|iP/.test(navigator.platform) ? "⌘" : "Ctrl";
-  const rows = KEYS.flatMap(([keys, text]) => [
-    make("dt", {}, make("kbd", {}, keys.replace("Mod", mod))),
-    make("dd", {}, text),
-  ]);
+/** The list of keys. */
+export function help(commands: readonly Command[], version: string): void {
+  const rows = commands.flatMap(({ keys, text }) =>
+    keys ? [make("dt", {}, make("kbd", {}, shownKeys(keys))), make("dd", {}, text)] : [],
+  );
   sheet(
     "Keys",
     make("dl", { className: "keys" }, ...rows),

@@ -19,7 +19,7 @@ from distal.editor.local.files import SceneFiles
 from distal.editor.local.serving import HttpReply, LocalServer
 from distal.editor.local.tab import CODE_S, StudioTab
 from distal.editor.messages import Changed, encoded
-from distal.loading import gallery
+from distal.loading import gallery, posters
 from distal.version import __version__
 
 APP: Final = Path(__file__).parent.parent / "app"
@@ -111,7 +111,7 @@ class StudioServer(LocalServer):
         if path == "/":
             return self._page()
         if path.startswith("/gallery/"):
-            return self._example(unquote(path.removeprefix("/gallery/")).removesuffix(".json"))
+            return _of_gallery(unquote(path.removeprefix("/gallery/")))
         name = path.removeprefix("/")
         if name in ("studio.js", "studio.css"):
             return HttpReply(200, (APP / name).read_bytes(), _TYPES[Path(name).suffix])
@@ -139,13 +139,19 @@ class StudioServer(LocalServer):
         )
         return HttpReply(200, body, "text/html", (("Content-Security-Policy", policy),))
 
-    def _example(self, name: str) -> HttpReply:
-        path = gallery().get(name)
-        if path is None:
-            return HttpReply(404, b"There is no such example.\n")
+
+def _of_gallery(file: str) -> HttpReply:
+    """Return the texts or the poster of an example: NAME.json or NAME.webp."""
+    name, _, kind = file.rpartition(".")
+    path = gallery().get(name)
+    poster = posters().get(name)
+    if path is not None and kind == "json":
         files = SceneFiles(path)
         body = json.dumps({"main": files.main, "files": files.all().files}).encode()
         return HttpReply(200, body, "application/json")
+    if poster is not None and kind == "webp":
+        return HttpReply(200, poster.read_bytes(), "image/webp")
+    return HttpReply(404, b"There is no such example.\n")
 
 
 def examples() -> list[dict[str, str]]:

@@ -121,9 +121,10 @@ class LocalServer(ABC):
         return self._response(self._reply(path))
 
     def _response(self, reply: HttpReply) -> Any:
+        charset = "" if reply.media_type.startswith("image/") else "; charset=utf-8"
         headers = self._headers(
             [
-                ("Content-Type", f"{reply.media_type}; charset=utf-8"),
+                ("Content-Type", reply.media_type + charset),
                 ("Content-Length", str(len(reply.body))),
                 ("Cache-Control", "no-store"),
                 ("X-Content-Type-Options", "nosniff"),

@@ -1,0 +1,84 @@
+/**
+ * What leaves the app: links with the code in them, and exported files.
+ *
+ * Input: the text and the picture as they are. Output: addresses, files that the browser saves.
+ */
+
+import { make } from "../dom";
+import { linkOf, type Shared } from "./links";
+import { openShare } from "./share_sheet";
+import { exports } from "./sheets";
+import type { Studio } from "./studio";
+
+export class Sharing {
+  constructor(readonly studio: Studio) {}
+
+  /** Shows the link of the code, and one that has values, camera and time too. */
+  async share(): Promise<void> {
+    const { picture, settings, texts } = this.studio;
+    const { player } = picture;
+    const plain: Shared = { files: texts.files, main: settings.main };
+    const full: Shared = { ...plain };
+    if (player) {
+      full.values = player.parameters();
+      full.time = player.time;
+      const camera = player.steering();
+      if (camera) full.camera = camera;
+    }
+    const links = await Promise.all([plain, full].map(async (what) => address() + (await linkOf(what))));
+    openShare(links[0]!, links[1]!, document.title);
+  }
+
+  /** The address of the playground with the text as it is. */
+  async whole(): Promise<string> {
+    const { settings, texts } = this.studio;
+    return address() + (await linkOf({ files: texts.files, main: settings.main }));
+  }
+
+  /** Shows what the picture can be exported as. */
+  export(): Promise<void> {
+    const { channel, looking } = this.studio;
+    void channel.start?.();
+    return exports(
+      looking.whenReady().then(({ formats }) => formats),
+      (format) => this.exportAs(format),
+      () => this.saveSource(),
+    );
+  }
+
+  /** Saves a format's file; returns a sentence about it. */
+  async exportAs(format: string): Promise<string> {
+    const { client, looking } = this.studio;
+    const poster = format === "page" ? await this.#poster() : null;
+    const answer = await client.ask({ kind: "export", ...looking.source, format, poster });
+    if (answer?.kind === "mistakes") return answer.mistakes[0]!.message;
+    if (answer?.kind !== "answer" || answer.request !== "export") return "Nobody answers.";
+    const { name, media_type, text, base64, command } = answer.result;
+    const data = text ?? Uint8Array.from(atob(base64 ?? ""), (letter) => letter.charCodeAt(0));
+    download(new Blob([data], { type: media_type }), name);
+    return `${name} is saved. The same: ${command}`;
+  }
+
+  saveSource(): void {
+    const { main } = this.studio.settings;
+    download(new Blob([this.studio.texts.files[main]!]), `${main.replace(/\.py$/, "")}.py`);
+  }
+
+  /** The picture that a page shows first, as base64. */
+  async #poster(): Promise<string | null> {
+    const blob = await this.studio.picture.player?.screenshot(4);
+    if (!blob) return null;
+    const bytes = new Uint8Array(await blob.arrayBuffer());
+    return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
+  }
+}
+
+function address(): string {
+  return location.href.split(/[?#]/)[0]!;
+}
+
+function download(blob: Blob, name: string): void {
+  const link = make("a", { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}
