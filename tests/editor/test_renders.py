@@ -19,16 +19,17 @@ from distal.editor.local import render_choices
 from distal.editor.local.files import SceneFiles
 from distal.editor.local.renders import RenderLimits, placed
 from distal.editor.local.server import StudioServer
-from distal.editor.messages import ExportRequest, RenderRequest
+from distal.editor.messages import ExportRequest, RenderRequest, parsed
 from distal.images.picture_files import read
-from tests.editor.test_local_server import asked, connected, cookie_of, until
+from tests.editor.test_local_server import ANSWER_S, asked, connected, cookie_of
+from tests.editor.test_local_server import until as until_any
 
 pytest.importorskip("websockets")
 
 SCENE = '''"""A ball that grows."""
 
 from distal import *
-from distal.lang import choice, color, integer, slider, time, toggle
+from distal.lang import color, slider
 
 size = slider("Size", 0.4, 0.1, 1.0)
 tint = color("Tint", (0.8, 0.3, 0.1))
@@ -66,19 +67,31 @@ def rendering(number, text=SCENE, kind="render", **more):
     return json.dumps({**request, **SMALL, **more})
 
 
+def until(socket, kind, number=None):
+    """The next message of a kind; another answer than the one that is expected fails at once."""
+    if number is None:
+        return until_any(socket, kind)
+    while True:
+        message = parsed(socket.recv(timeout=ANSWER_S))
+        if getattr(message, "id", None) == number:
+            if message.kind == kind:
+                return message
+            assert message.kind in ("progress", "printed"), message
+
+
 def leftovers():
     return set(Path(tempfile.gettempdir()).glob("distal_render_*"))
 
 
 @pytest.fixture
-def server(tmp_path, monkeypatch):
+def server(tmp_path, monkeypatch, request):
     own = tmp_path / "temporary"
     own.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(own))
     folder = tmp_path / "scenes"
     folder.mkdir()
     (folder / "scene.py").write_text(SCENE)
-    limits = RenderLimits(code=2.0, picture=2.0)
+    limits = getattr(request, "param", None)
     running = StudioServer(SceneFiles(folder / "scene.py"), renders=limits)
     thread = threading.Thread(target=running.serve, daemon=True)
     thread.start()
@@ -117,7 +130,7 @@ def test_a_picture_is_the_one_of_its_command(server, tmp_path, monkeypatch):
     folder, cookie = tmp_path / "scenes", cookie_of(server)
     there = folder / "scene.png"
     there.write_bytes(b"mine")
-    chosen = {"Size": 0.55, "Tint": [0.1, 0.5, 0.25]}
+    chosen = {"size": 0.55, "tint": [0.1, 0.5, 0.25]}
     more = {"values": chosen, "time": 0.5, "steering": MOVED, "bits": 16, "transparent": True}
     with connected(server, cookie) as socket:
         socket.send(rendering(7, **more))
@@ -132,7 +145,7 @@ def test_a_picture_is_the_one_of_its_command(server, tmp_path, monkeypatch):
     assert data == by_command(folder, result.command, "other.png", monkeypatch)
     found = read(folder / "other.png").provenance
     assert found.steering == tuple(MOVED.values())
-    assert found.parameters == {"Size": 0.55, "Tint": (0.1, 0.5, 0.25)}
+    assert found.parameters == {"size": 0.55, "tint": [0.1, 0.5, 0.25]}
     assert found.transparent and found.time == 0.5
 
 
@@ -173,19 +186,23 @@ def test_a_cancelled_render_leaves_nothing_and_the_worker_answers_meanwhile(
     assert os.listdir(tmp_path / "scenes") == ["scene.py"]
 
 
+@pytest.mark.parametrize("server", [RenderLimits(code=8.0, picture=6.0)], indirect=True, ids=[""])
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("while True: pass\n", "the scene's code came to no end within 2 s"),
+        (
+            "import time\nwhile True: time.sleep(1)\n",
+            "the scene's code came to no end within 8 s",
+        ),
         ("import os\nos._exit(7)\n", "the scene's code ended its process (exit status 7)"),
         ("import os\nos.kill(os.getpid(), 11)\n", "the scene's code ended its process (signal 11)"),
-        (ENDLESS, "there was no progress for 2 s: does a loop run for ever?"),
+        (ENDLESS, "there was no progress for 6 s: does a loop run for ever?"),
         ("import sys\nsys.exit(0)\n", "scene.py:2"),
         ("x = 1\n", "scene.py defines no picture"),
     ],
     ids=["loop", "exit", "crash", "endless", "quit", "nothing"],
 )
-def test_code_that_makes_no_picture_is_told(socket, text, reason):
+def test_code_that_makes_no_picture_is_told(server, socket, text, reason):
     socket.send(rendering(1, text))
     assert reason in until(socket, "mistakes", 1).mistakes[0].message
 

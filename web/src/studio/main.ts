@@ -26,9 +26,11 @@ import { Client } from "./client";
 import { runsOf, type Runs } from "./costs";
 import { Editor } from "./editor";
 import { Emitted } from "./emitted";
+import { Jobs } from "./jobs";
 import { linkOf, sharedOf, type Shared } from "./links";
 import { Page } from "./page";
 import { Picture } from "./picture";
+import { drawnPicture, renderPart } from "./render_form";
 import { exports, gallery, help, share, sheet, type Example } from "./sheets";
 import { Texts } from "./texts";
 
@@ -75,12 +77,15 @@ const POINTED_MS = 70;
 const CARET_MS = 1600;
 const SIZE: [number, number] = [640, 480];
 const TEXT_TAB = "Emitted text";
+/** A page's fragment for other pages. */
+const EMBED = "embed";
 
 class Studio {
   readonly texts: Texts;
   readonly page = new Page(document.body);
   readonly channel: Channel;
   readonly client: Client;
+  readonly jobs: Jobs;
   readonly editor: Editor;
   readonly picture: Picture;
   readonly emitted: Emitted;
@@ -167,6 +172,12 @@ class Studio {
       restarted: ({ reason }) => this.#restarted(reason),
       state: (isOpen) => this.#connected(isOpen),
     });
+    this.jobs = new Jobs(
+      this.client,
+      (text) => (this.page.announcer.textContent = text),
+      () => this.#export(),
+    );
+    this.page.work.after(this.jobs.chip);
     document.title = `${main} · distal`;
     if (settings.start) void this.#begin(settings.start);
     addEventListener("beforeunload", () => this.texts.names.forEach((name) => this.texts.keepDraft(name)));
@@ -812,11 +823,20 @@ class Studio {
 
   #export(): void {
     const stem = this.settings.main.replace(/\.py$/, "");
+    const formats = (this.#ready?.formats ?? []).flatMap((format) => (format === "page" ? [format, EMBED] : [format]));
+    const player = () => this.picture.player;
+    const scene = {
+      source: () => this.#source,
+      player,
+      isUnsaved: () => this.texts.names.some((name) => this.texts.isChanged(name)),
+    };
     exports(
-      this.#ready?.formats ?? [],
-      async (format) => {
+      formats,
+      async (chosen) => {
+        const embed = chosen === EMBED;
+        const format = embed ? "page" : chosen;
         const poster = format === "page" ? await this.#poster() : null;
-        const answer = await this.client.ask({ kind: "export", ...this.#source, format, poster });
+        const answer = await this.client.ask({ kind: "export", ...this.#source, format, embed, poster });
         if (answer?.kind === "mistakes") return answer.mistakes[0]!.message;
         if (answer?.kind !== "answer" || answer.request !== "export") return "Nobody answers.";
         const { name, media_type, text, base64, command } = answer.result;
@@ -825,6 +845,7 @@ class Studio {
         return `${name} is saved. The same: ${command}`;
       },
       () => download(new Blob([this.texts.files[this.settings.main]!]), `${stem}.py`),
+      this.settings.python ? drawnPicture(player) : renderPart(this.client, scene, this.jobs),
     );
   }
 

@@ -61,6 +61,7 @@ export function gallery(examples: readonly Example[], open: (name: string) => vo
 
 export const EXPORTS: Record<string, string> = {
   page: "A page: one HTML file that needs no network",
+  embed: "A page's picture alone, as HTML to paste into another page",
   shadertoy: "Shadertoy",
   isf: "ISF, for VJ programs",
   glslcanvas: "glslCanvas, The Book of Shaders",
@@ -75,6 +76,7 @@ export function exports(
   formats: readonly string[],
   take: (format: string) => Promise<string>,
   saveSource: () => void,
+  pictures: HTMLElement,
 ): void {
   const status = make("p", { className: "result", role: "status" });
   const source = make("button", { type: "button" }, make("strong", {}, "py"), make("span", {}, "The code itself"));
@@ -94,7 +96,8 @@ export function exports(
     };
     return make("li", {}, button);
   });
-  sheet("Export", make("ul", { className: "examples" }, ...items, make("li", {}, source)), status);
+  const list = make("ul", { className: "examples" }, ...items, make("li", {}, source));
+  sheet("Export", pictures, make("h3", {}, "Pages and code"), list, status);
 }
 
 /** A link with the code, and one that has values, camera and time too; or a frame for another page. */

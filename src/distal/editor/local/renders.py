@@ -46,6 +46,7 @@ render_choices: Any = LazyModule("distal.editor.local.render_choices")  # needs 
 # Seconds without any progress, until a picture and a film are ended: frames of paths take minutes.
 PICTURE_S: Final = 120.0
 FILM_S: Final = 600.0
+CODE_S: Final = 30.0  # for the author's code and the imports before it
 _START_S: Final = 60.0  # until the command has begun
 _TICK_S: Final = 0.05
 _WAITING: Final = "waiting"
@@ -63,7 +64,7 @@ class RenderLimits:
         film: Without progress, of a film.
     """
 
-    code: float
+    code: float = CODE_S
     picture: float = PICTURE_S
     film: float = FILM_S
 

@@ -16,6 +16,7 @@ from urllib.parse import unquote
 from distal.diagnostics import LoadError
 from distal.editor.local.early import EarlyWorker
 from distal.editor.local.files import SceneFiles
+from distal.editor.local.renders import CODE_S as RENDER_CODE_S
 from distal.editor.local.renders import RenderLimits, RenderQueue
 from distal.editor.local.serving import NOT_FOUND, HttpReply, LocalServer
 from distal.editor.local.tab import CODE_S, StudioTab
@@ -52,7 +53,9 @@ class StudioServer(LocalServer):
         renders: RenderLimits | None = None,
     ) -> None:
         self._files, self._limit, self._early = files, limit, early
-        self._renders = RenderQueue(files.folder, renders or RenderLimits(limit))
+        self._renders = RenderQueue(
+            files.folder, renders or RenderLimits(max(limit, RENDER_CODE_S))
+        )
         super().__init__(port)
 
     def serve(self) -> None:
