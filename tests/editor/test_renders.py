@@ -33,7 +33,7 @@ from distal.lang import color, slider
 
 size = slider("Size", 0.4, 0.1, 1.0)
 tint = color("Tint", (0.8, 0.3, 0.1))
-ball = Sphere(size + 0.2 * time).paint(tint)
+ball = Sphere(size + time).paint(tint)
 
 scene = Scene(ball, lights=DistantLight((1, 2, 3)), background="#123456",
               camera=Camera((1.0, 1.5, 4.0), target=(0.0, 0.0, 0.0)))

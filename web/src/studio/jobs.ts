@@ -76,6 +76,8 @@ export class Jobs {
   }
 
   #done(job: Job, { name, bytes, address, command, said }: Rendered): void {
+    const own = job.name;
+    job.name = name;
     const where = address ? "saved by the browser" : "beside the scene";
     this.#ended(job, "done", `${size(bytes)}, ${where}`);
     job.row.querySelector("strong")!.textContent = name;
@@ -85,7 +87,7 @@ export class Jobs {
       link.click();
     }
     job.row.append(commandOf(command));
-    const notes = said.split("\n").filter((line) => line && !line.startsWith(`${job.name}: `));
+    const notes = said.split("\n").filter((line) => line && !line.startsWith(`${own}: `));
     if (notes.length) job.row.append(make("pre", { className: "said" }, notes.join("\n")));
     this.announce(`${name} is there`);
   }

@@ -87,7 +87,7 @@ export class RenderForm {
       ["length", "Length, s", this.#length],
       ["fps", "Frames a second", this.#fps],
       ["mode", "Light", this.#mode],
-      ["samples", "Samples of a pixel", this.#samples],
+      ["samples", "Samples", this.#samples],
       ["limit", "Time limit, s", this.#limit],
       ["bits", "Bits of a channel", this.#bits],
       ["quality", "Quality", this.#quality],
@@ -145,23 +145,31 @@ export class RenderForm {
     this.#go.textContent = `Render ${format.name.toUpperCase()}`;
     this.#go.disabled = !!format.missing;
     this.#note.textContent = format.missing ?? "";
+    this.#command.setAttribute("aria-busy", "true");
     clearTimeout(this.#timer);
     this.#timer = window.setTimeout(() => void this.#ask(), ASKING_MS);
   }
 
   async #ask(): Promise<void> {
     const asked = ++this.#asked;
+    const stop = () => this.#command.removeAttribute("aria-busy");
     if (this.#chosen.missing || this.#mistake()) {
       this.#note.textContent = this.#chosen.missing ?? this.#mistake();
+      stop();
       return this.#command.replaceChildren();
     }
     const answer = await this.client.ask({ kind: "command", ...this.#wanted() });
     if (asked !== this.#asked) return;
+    stop();
     const isThere = answer?.kind === "answer" && answer.request === "command";
     this.#command.replaceChildren(...(isThere ? [commandOf(answer.result.command)] : []));
-    const unsaved = "The command reads the saved file: save first for the same picture.";
+    const isStill = this.#chosen.film && this.scene.player()?.payload.time.animated === false;
+    const notes = [
+      isStill && "Nothing moves in this picture: all frames are the same.",
+      this.scene.isUnsaved() && "The command reads the saved file: save first for the same picture.",
+    ];
     if (answer?.kind === "mistakes") this.#note.textContent = answer.mistakes[0]!.message;
-    else this.#note.textContent = isThere && this.scene.isUnsaved() ? unsaved : "";
+    else this.#note.textContent = notes.filter(Boolean).join(" ");
   }
 
   /** What a field has that is not allowed. */

@@ -97,6 +97,7 @@ class RenderJob:
         self._is_done = False  # from now on it cannot be cancelled
         self.is_unwanted = False  # its tab is gone
         self._stage, self._begin, self._ends = "", 0.0, 0.0
+        self._known = ("", 0.0)
         self._status: tuple[int, str] = (0, "")
 
     def waits(self) -> None:
@@ -206,7 +207,9 @@ class RenderJob:
             return
         if stage not in STAGES or not 0.0 <= done <= 1.0:
             return
-        self._ends = time.monotonic() + (self._limits.code if stage == LOADING else idle)
+        if (stage, done) != self._known:  # a device reports the same share again and again
+            self._known = (stage, done)
+            self._ends = time.monotonic() + (self._limits.code if stage == LOADING else idle)
         self._report(stage, done, text)
 
     def _report(self, stage: str, done: float, text: str) -> None:
