@@ -197,8 +197,8 @@ def test_a_cancelled_render_leaves_nothing_and_the_worker_answers_meanwhile(
         ("import os\nos._exit(7)\n", "the scene's code ended its process (exit status 7)"),
         ("import os\nos.kill(os.getpid(), 11)\n", "the scene's code ended its process (signal 11)"),
         (ENDLESS, "there was no progress for 6 s: does a loop run for ever?"),
-        ("import sys\nsys.exit(0)\n", "scene.py:2"),
-        ("x = 1\n", "scene.py defines no picture"),
+        ("import sys\nsys.exit(0)\n", "scene.py left with sys.exit(0) while it was loaded"),
+        ("x = 1\n", "scene.py defines no scene and no @image"),
     ],
     ids=["loop", "exit", "crash", "endless", "quit", "nothing"],
 )
