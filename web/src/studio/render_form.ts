@@ -22,7 +22,7 @@ export interface Scene {
 
 /** After the last change of a field, so long until its command is asked for. */
 const ASKING_MS = 150;
-const AS_IT_IS = "As the scene says";
+const AS_IT_IS = "Scene's own";
 
 export class RenderForm {
   readonly element = make("section", { className: "render", "aria-label": "Pictures and films" });
