@@ -349,8 +349,8 @@ class RenderQueue:
             places = {place.name: place for _, place in self._kept}
         if folder not in places:
             return None
-        files = {file.name: file for file in (places[folder] / "made").iterdir()}
-        with contextlib.suppress(OSError):
+        with contextlib.suppress(OSError):  # removed in this moment
+            files = {file.name: file for file in (places[folder] / "made").iterdir()}
             return files[token].read_bytes() if token in files else None
         return None
 
