@@ -20,7 +20,7 @@ JSON: Final = "json"
 _PAUSE_S: Final = 0.1  # at least, between two lines of one stage
 
 
-class _Lines:
+class _ProgressWriter:
     """Writes lines; may be called by several threads."""
 
     def __init__(self) -> None:
@@ -54,7 +54,7 @@ class _Lines:
             sys.stdout.flush()
 
 
-class PictureLines(_Lines):
+class PictureLines(_ProgressWriter):
     """The progress of a picture. Call it with the finished fraction."""
 
     def __init__(self) -> None:
@@ -70,7 +70,7 @@ class PictureLines(_Lines):
         self._write(RENDERING, done, self._figures)
 
 
-class FrameLines(_Lines):
+class FrameLines(_ProgressWriter):
     """The progress of a sequence. Call it as a ``FrameBar``."""
 
     def __call__(self, done: int, total: int, what: str) -> None:
