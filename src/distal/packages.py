@@ -102,6 +102,13 @@ def is_installed(module: str) -> bool:
         return False
 
 
+def missing(module: str) -> str | None:
+    """Return the line that says that a package is not installed, and how to install it; or None."""
+    if is_installed(module):
+        return None
+    return str(_reported(ModuleNotFoundError(name=module), _BY_MODULE[module]))
+
+
 @contextmanager
 def loading(module: str) -> Iterator[None]:
     """Convert every error raised in the block into a report about a package.

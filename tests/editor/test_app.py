@@ -250,7 +250,15 @@ def test_exports_and_examples(tmp_path):
         with app.page.expect_download(timeout=SLOW_MS) as found:
             app.page.get_by_role("button", name=re.compile("^page")).click()
         assert found.value.suggested_filename == "scene.html"
-        assert "distal export scene.py -o scene.html" in app.page.locator(".result").inner_text()
+        result = app.page.locator(".sheet-body > .result")
+        assert "distal export scene.py -o scene.html" in result.inner_text()
+        with app.page.expect_download(timeout=SLOW_MS) as found:
+            app.page.get_by_role("button", name=re.compile("^embed")).click()
+        assert found.value.suggested_filename == "scene-embed.html"
+        assert "<html" not in found.value.path().read_text()
+        app.wait(
+            "() => document.querySelector('.sheet-body > .result').textContent.includes('--embed')"
+        )
         app.page.keyboard.press("Escape")
         app.page.get_by_role("button", name="Gallery").click()
         loaded = "() => document.querySelector('.posters img').naturalWidth === 320"

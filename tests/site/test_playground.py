@@ -192,6 +192,18 @@ def test_a_link_has_the_code_values_and_camera(address):
         assert other.evaluate("() => studio.picture.player.parameters().size") == 0.75
 
 
+def test_the_drawn_picture_is_saved_and_more_is_explained(address):
+    with context(address) as made:
+        page = shown(made, address)
+        page.get_by_role("button", name="Export").click()
+        sheet = page.get_by_role("region", name="Pictures and films")
+        with page.expect_download(timeout=SLOW_MS) as found:
+            sheet.get_by_role("button", name="PNG of the picture").click()
+        assert found.value.path().read_bytes()[:4] == b"\x89PNG"
+        assert "pip install 'distal[studio]'" in sheet.inner_text()
+        assert not sheet.get_by_label("Format").is_visible()
+
+
 def test_another_page_has_it_in_a_frame(address, folder):
     code = '<iframe src="playground/?embed#example=raymarcher" width=800 height=460></iframe>'
     (folder.parent / "other.html").write_text(f'<link rel="icon" href="data:,">{code}')

@@ -5,6 +5,7 @@ import pytest
 from PIL import Image
 
 import distal
+from distal import Camera, DistantLight, Scene, Sphere, Steering, time
 from distal.images.atomic_files import SaveError
 from distal.video import video
 from distal.video.formats import VideoError
@@ -126,3 +127,19 @@ def test_a_video_can_leave_its_frames_behind(moving, tmp_path):
         assert (np.asarray(picture.convert("RGB")) == still(moving, SIZE, 0.3)).all()
     with pytest.raises(VideoError, match="keep_frames is for videos"):
         video(moving, folder / "%05d.png", duration=1, keep_frames=folder, size=SIZE)
+
+
+def test_frames_of_a_moved_camera_are_pictures_of_it(moving, tmp_path):
+    moved = Steering(yaw=0.5, zoom=0.8)
+    scene = Scene(Sphere(0.5 + time), camera=Camera((1.0, 1.0, 4.0)), lights=DistantLight())
+    pattern = tmp_path / "%02d.png"
+    video(scene, pattern, duration=0.2, fps=10, size=SIZE, steering=moved)
+    scene.render(size=SIZE, time=0.1, steering=moved).save(tmp_path / "still.png")
+    with Image.open(tmp_path / "01.png") as frame, Image.open(tmp_path / "still.png") as picture:
+        off = np.asarray(frame.convert("RGB")).astype(int) - np.asarray(picture.convert("RGB"))
+        assert abs(off).max() <= 1  # encoded in the program, or after it
+        assert frame.info["distal:steering"] == picture.info["distal:steering"]
+    video(scene, pattern, duration=0.2, fps=10, size=SIZE, tell=(told := []).append)
+    assert told == []  # frames of another camera are not kept
+    with pytest.raises(VideoError, match="is an @image: it has no camera to move"):
+        video(moving, tmp_path / "a-%d.png", duration=0.2, fps=10, size=SIZE, steering=moved)

@@ -15,6 +15,7 @@ from distal.ir.limits import LARGEST_TIME
 from distal.lang.parameter_values import LARGEST_FLOAT, Value
 from distal.lang.parameters import Parameter
 from distal.loading import EXAMPLE_PREFIX, split_source
+from distal.scene.steering import Steering
 
 
 class UsageError(Exception):
@@ -65,6 +66,30 @@ def read_time(text: str) -> float:
             f"a time is within {LARGEST_TIME:.0f} seconds (12 days) of 0, not {time:g}"
         )
     return time
+
+
+def read_steering(text: str) -> Steering:
+    """Parse NAME=NUMBER,NAME=NUMBER: how a person has moved the camera.
+
+    Raises:
+        UsageError: The text is not of this form, or a name or number is invalid.
+    """
+    numbers: dict[str, float] = {}
+    for part in text.split(","):
+        name, equals, number = (piece.strip() for piece in part.partition("="))
+        try:
+            value = float(number) if equals else math.nan
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value) or name in numbers:
+            raise UsageError(
+                f"--steering takes names and numbers, like yaw=0.3,zoom=0.8, not '{text:.60}'"
+            )
+        numbers[name] = value
+    try:
+        return Steering.of(numbers)
+    except ValueError as error:
+        raise UsageError(f"--steering: {error}") from None
 
 
 def read_plane(text: str) -> tuple[tuple[float, float, float], float]:

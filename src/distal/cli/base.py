@@ -71,6 +71,13 @@ class Device(StrEnum):
     REFERENCE = device_names.REFERENCE
 
 
+class ProgressKind(StrEnum):
+    """How a command shows its progress."""
+
+    BAR = "bar"
+    JSON = "json"
+
+
 # Commands that do not import NumPy.
 _WITHOUT_ARRAYS: Final = ("compile", "doctor", "examples")
 _NUMPY_BYTES: Final = 96 * 2**20  # measured: 85 with one OpenBLAS thread, 41 per further thread
@@ -148,6 +155,22 @@ CausticsOption = Annotated[
     typer.Option(
         "--caustics/--no-caustics",
         help="In mode path: whether photons find the light that glass and mirrors bundle.",
+    ),
+]
+SteeringOption = Annotated[
+    str | None,
+    typer.Option(
+        "--steering",
+        metavar="NAME=X,…",
+        help="How the camera is moved, like yaw=0.3,pitch=0.1,zoom=0.8,pan_x=0,pan_y=0.",
+        show_default=False,
+    ),
+]
+ProgressOption = Annotated[
+    ProgressKind,
+    typer.Option(
+        "--progress",
+        help="bar: on a terminal; json: for other programs, a line of JSON for each step.",
     ),
 ]
 TimeOption = Annotated[str, typer.Option("--time", metavar="S", help="Seconds.")]

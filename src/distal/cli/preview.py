@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Self
 from distal.cli.messages import say
 
 if TYPE_CHECKING:
+    from distal.cli.progress_lines import PictureLines
     from distal.cli.report import ProgressBar
     from distal.images.picture import Picture
 
@@ -27,10 +28,12 @@ class PreviewFile:
         output: The picture's file.
         bits: Bits of a channel; None for the default.
         film: The file that keeps the samples.
-        progress: The progress bar, which shows the figures.
+        progress: The progress, which shows the figures.
     """
 
-    def __init__(self, output: Path, bits: int | None, film: Path, progress: ProgressBar) -> None:
+    def __init__(
+        self, output: Path, bits: int | None, film: Path, progress: ProgressBar | PictureLines
+    ) -> None:
         self._output, self._bits, self._film, self._progress = output, bits, film, progress
         self._shown: Mapping[str, Any] | None = None
 

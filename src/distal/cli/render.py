@@ -15,17 +15,20 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from distal.cli.arguments import UsageError, read_plane, read_size, read_time
+from distal.cli.arguments import UsageError, read_plane, read_size, read_steering, read_time
 from distal.cli.base import (
     AdapterOption,
     CausticsOption,
     Device,
     DeviceOption,
     LookOption,
+    ProgressKind,
+    ProgressOption,
     SamplesOption,
     SceneArgument,
     SetOption,
     SizeOption,
+    SteeringOption,
     ThreadsOption,
     TimeOption,
     answer,
@@ -35,10 +38,12 @@ from distal.cli.base import (
     load_picture,
     reporting,
 )
+from distal.lang.progress_lines import COMPILING, LOADING
 
 if TYPE_CHECKING:
     from distal.images.picture import Picture
     from distal.lang.render_options import RenderOptions
+    from distal.scene.steering import Steering
     from distal.scene.viewing.viewable import Viewable
 
 
@@ -105,6 +110,7 @@ class ViewArguments:
     transparent: bool
     exposure: float | None
     tone_map: str | None
+    steering: Steering | None = None
     paths: PathArguments | None = None
 
     def refuse_for_image(self, name: str, layers: tuple[str, ...]) -> None:
@@ -118,6 +124,7 @@ class ViewArguments:
             "--transparent": self.transparent or None,
             "--exposure": self.exposure,
             "--tone-map": self.tone_map,
+            "--steering": self.steering,
             "--mode": None if self.paths is None else self.paths.mode,
             "--layers": layers or None,
         }
@@ -209,6 +216,7 @@ def render(
         str | None, typer.Option(help="none, reinhard, aces, agx or neutral.", show_default=False)
     ] = None,
     look: LookOption = None,
+    steering: SteeringOption = None,
     bits: Annotated[
         int | None,
         typer.Option(help="Of each channel: 8 or 16 of a PNG; 16 or 32 of an EXR."),
@@ -225,6 +233,7 @@ def render(
     device: DeviceOption = Device.CPU,
     adapter: AdapterOption = None,
     threads: ThreadsOption = None,
+    shown_progress: ProgressOption = ProgressKind.BAR,
     stats: Annotated[
         bool, typer.Option("--stats", help="Print one line of JSON with the figures.")
     ] = False,
@@ -232,7 +241,7 @@ def render(
     """Render a scene, a shape or an image to a picture."""
     from distal.cli.messages import say
     from distal.cli.preview import PreviewFile, described
-    from distal.cli.report import ProgressBar, stages
+    from distal.cli.report import picture_progress, stages
     from distal.images.picture import check_savable
     from distal.lang.render_options import LARGEST_SIDE_PX, RenderOptions
     from distal.scene.viewing.viewable import viewable
@@ -240,15 +249,20 @@ def render(
     width_height, seconds = read_size(size, LARGEST_SIDE_PX), read_time(at)
     suffix, _ = check_savable(output, bits)
     film = output.with_name(output.name + ".film")
-    progress = ProgressBar()
+    progress = picture_progress(shown_progress)
     preview = PreviewFile(output, bits, film, progress)
     paths = PathArguments(
         mode, time_limit, noise, filter, shutter, clamp, denoise, film, goes_on, preview, caustics
     )
-    arguments = replace(read_view(view, plane, transparent, exposure, tone_map), paths=paths)
+    moved = None if steering is None else read_steering(steering)
+    arguments = replace(
+        read_view(view, plane, transparent, exposure, tone_map), paths=paths, steering=moved
+    )
     device_name = chosen_device(device, adapter)
     begin = time.perf_counter()
+    progress.stage(LOADING)
     obj, values = load_picture(scene, assignments)
+    progress.stage(COMPILING)
     seen = viewable(obj, values, seconds, look)
     wanted = read_layers(layers, suffix, seen, arguments)
     check_shown(seen, arguments, wanted)
@@ -388,6 +402,7 @@ def rendered_picture(
             view=arguments.view,
             transparent=arguments.transparent,
             layers=layers,
+            steering=arguments.steering,
             **({} if paths is None else paths.view_options(scene.mode)),
         )
         refinement = view.refinement(scene.mode, options.samples)

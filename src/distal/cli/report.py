@@ -22,6 +22,7 @@ from rich.progress import (
 )
 
 from distal.cli.messages import say
+from distal.cli.progress_lines import JSON, FrameLines, PictureLines
 
 PATIENCE_S: Final = 1.0  # shorter work shows no bar
 
@@ -45,6 +46,9 @@ class _Bar:
         traceback: TracebackType | None,
     ) -> None:
         self._stop()
+
+    def stage(self, name: str) -> None:
+        """Begin a stage of the work; a bar shows only the one that takes long."""
 
     def _shown(self) -> Progress | None:
         """Return the bar, started if necessary; None if it must not be shown (yet)."""
@@ -132,6 +136,16 @@ class FrameBar(_Bar):
         self._stop()
         self._tasks = {}
         say(line)
+
+
+def picture_progress(kind: str) -> ProgressBar | PictureLines:
+    """Return the progress of a picture, as a bar or as lines of JSON."""
+    return PictureLines() if kind == JSON else ProgressBar()
+
+
+def frame_progress(kind: str) -> FrameBar | FrameLines:
+    """Return the progress of a sequence, as a bar or as lines of JSON."""
+    return FrameLines() if kind == JSON else FrameBar()
 
 
 def stages(figures: Mapping[str, Any]) -> str:

@@ -11,22 +11,26 @@ from typing import Annotated
 
 import typer
 
-from distal.cli.arguments import UsageError, read_size
+from distal.cli.arguments import UsageError, read_size, read_steering
 from distal.cli.base import (
     AdapterOption,
     Device,
     DeviceOption,
     ModeOption,
+    ProgressKind,
+    ProgressOption,
     SamplesOption,
     SceneArgument,
     SetOption,
     SizeOption,
+    SteeringOption,
     ThreadsOption,
     application,
     chosen_device,
     load_picture,
     reporting,
 )
+from distal.lang.progress_lines import COMPILING, LOADING
 
 
 @application.command()
@@ -76,6 +80,7 @@ def video(
     ] = None,
     assignments: SetOption = None,
     view: Annotated[str, typer.Option(help="What to show, as in distal render.")] = "color",
+    steering: SteeringOption = None,
     device: DeviceOption = Device.CPU,
     adapter: AdapterOption = None,
     threads: ThreadsOption = None,
@@ -86,21 +91,26 @@ def video(
     fresh: Annotated[
         bool, typer.Option("--fresh", help="Render all frames again after an interrupted run.")
     ] = False,
+    shown_progress: ProgressOption = ProgressKind.BAR,
 ) -> None:
     """Render an animated scene to a video or to numbered pictures."""
     from distal.cli.messages import say
-    from distal.cli.report import FrameBar
+    from distal.cli.report import frame_progress
     from distal.lang.render_options import LARGEST_SIDE_PX
     from distal.video import video as record
-    from distal.video.formats import VideoError, format_of
+    from distal.video.formats import QUALITY, VideoError, format_of
 
     width_height = read_size(size, LARGEST_SIDE_PX)
     format = format_of(output)
     if quality is not None and not format.lossy and quality != "lossless":
         raise UsageError(f"--quality is for mp4, webm and webp; {format.name} keeps what it can")
     device_name = chosen_device(device, adapter)
+    moved = None if steering is None else read_steering(steering)
+    bar = frame_progress(shown_progress)
+    bar.stage(LOADING)
     obj, values = load_picture(scene, assignments)
-    with FrameBar() as bar:
+    bar.stage(COMPILING)
+    with bar:
         try:
             made = record(
                 obj,
@@ -111,11 +121,12 @@ def video(
                 start=start,
                 params=values,
                 view=view,
+                steering=moved,
                 samples=samples,
                 mode=mode,
                 shutter=shutter,
                 loop=loop,
-                quality=quality or "high",
+                quality=quality or QUALITY,
                 device=device_name,
                 threads=threads,
                 keep_frames=keep_frames,

@@ -13,6 +13,7 @@ from typing import Any, Final, Literal, cast
 
 from distal.backends import TEXT_TARGETS
 from distal.compiler.driver import compile as compile_text
+from distal.editor.commands import PAGE, export_arguments, file_stem, shown
 from distal.editor.counting import counting
 from distal.editor.edits import edits_of
 from distal.editor.looks import Looks, known_values, mistake_at
@@ -87,8 +88,8 @@ def _export(work: AnswerWork) -> Result:
     request = cast(ExportRequest, work.request)
     _, seen = work.looks.load(request, request.files)
     params = known_values(seen.parameters, request.values)
-    stem = PurePath(request.main).stem
-    if request.format == "page":
+    stem = file_stem(request)
+    if request.format == PAGE:
         options = PageOptions(
             size=request.size,
             time=request.time,
@@ -98,16 +99,17 @@ def _export(work: AnswerWork) -> Result:
             embed=request.embed,
             poster=False,
         )
-        shown = base64.b64decode(request.poster or "")
-        made = page.page(seen, options, shown, "png")
+        poster = base64.b64decode(request.poster or "")
+        made = page.page(seen, options, poster, "png")
+        name = f"{stem}-embed.html" if request.embed else f"{stem}.html"
         return ExportedFile(
-            name=f"{stem}.html",
+            name=name,
             media_type="text/html",
             text=made.text,
-            command=f"distal export {request.main} -o {stem}.html",
+            command=shown(export_arguments(request, name)),
         )
     if request.format not in TEXT_TARGETS:
-        known = ", ".join(("page", *TEXT_TARGETS))
+        known = ", ".join((PAGE, *TEXT_TARGETS))
         raise ValueError(f"there is no format '{request.format[:40]}'; formats: {known}")
     suffix = TEXT_TARGETS[request.format].suffix or ".txt"
     values = TextOptions(params=params, view=request.view)
@@ -115,7 +117,7 @@ def _export(work: AnswerWork) -> Result:
         name=f"{stem}{suffix}",
         media_type="text/plain",
         text=texts.text(seen, request.format, values).text,
-        command=f"distal export {request.main} -o {stem}{suffix} --target {request.format}",
+        command=shown(export_arguments(request, f"{stem}{suffix}")),
     )
 
 
@@ -142,7 +144,7 @@ def _probe(work: AnswerWork) -> Result:
         raise ValueError("pixels of scenes and shapes are probed; this is an @image")
     values = known_values(seen.parameters, request.values)
     pixel = (int(request.x), int(request.y))
-    moved = _steering(request.steering)
+    moved = Steering.of(request.steering) if request.steering else None
     found = probing.probe(seen.scene, pixel, request.size, values, request.time, moved)
     if not found.hit:
         return ProbeResult(numbers={"steps": float(found.seen.steps)})
@@ -158,14 +160,6 @@ def _probe(work: AnswerWork) -> Result:
         normal=tuple(map(float, found.seen.normal)),
         numbers={"steps": float(found.seen.steps), "distance": float(found.seen.t)},
     )
-
-
-def _steering(numbers: Mapping[str, float]) -> Steering | None:
-    """Return how the app's camera was moved: "yaw", "pitch", "zoom", "pan_x" and "pan_y"."""
-    if not numbers:
-        return None
-    plain = {name: numbers[name] for name in ("yaw", "pitch", "zoom") if name in numbers}
-    return Steering(**plain, pan=(numbers.get("pan_x", 0.0), numbers.get("pan_y", 0.0)))
 
 
 _SEVERITIES: Final[Mapping[str, Literal["error", "warning", "note"]]] = {

@@ -28,6 +28,7 @@ from distal.editor.messages import (
 )
 from distal.editor.places import column, shapes_of
 from distal.editor.programs import KeptPrograms, key_of, numbers_of
+from distal.editor.scene_folder import check_name
 from distal.export.page_options import PageOptions
 from distal.export.payload import Facts, lowered, parameter_entry, payload
 from distal.ir.nodes import Module, Origin
@@ -92,8 +93,7 @@ class Looks:
     def _put(self, files: Mapping[str, str], main: str) -> None:
         """Write the modules beside the scene's file, and remove those that are gone."""
         for name in {*files, *self._written}:
-            if PurePath(name).name != name or not name.endswith(".py"):
-                raise LoadError(f"'{name[:80]}' is not the name of a Python file")
+            check_name(name)
             if self._written.get(name) == files.get(name):
                 continue
             if name in files:

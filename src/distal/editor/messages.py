@@ -8,7 +8,8 @@ Each request has an ``id`` and the ``revision`` of the text it is about. It is a
 one message with the same two numbers: ``scene``, ``numbers``, ``answer``, ``mistakes`` or
 ``dropped``; before that there may be ``printed`` and ``progress``. The worker does one request at a
 time. A request that waits is dropped when a newer one of its kind arrives, and a ``look`` drops all
-that wait for an older revision.
+that wait for an older revision. ``render`` has processes of its own: it waits for earlier ones
+only, and is dropped by ``cancel``, which is not answered itself.
 
 Offsets and columns are counted in UTF-16 units, as a browser does; offsets from the beginning of a
 file's text, columns from 0, lines from 1. Texts of files end lines by a newline alone.
@@ -243,8 +244,86 @@ class Saved:
     conflict: str | None = None
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RenderFormat:
+    """A format of ``render``.
+
+    Attributes:
+        film: Whether it is a film; it is then written beside the scene.
+        bits: The bits of a channel that there are; the first is the default.
+        lossy: Whether it has a quality.
+        loops: Whether the file says if it repeats.
+        missing: What has to be installed first, or None.
+    """
+
+    name: str
+    film: bool
+    bits: tuple[int, ...] = ()
+    lossy: bool = False
+    loops: bool = False
+    missing: str | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RenderChoices:
+    """What ``render`` can be asked for.
+
+    Attributes:
+        modes: How light may be computed.
+        qualities: Names of qualities; numbers from 0 to 100 are allowed, too.
+        quality: The one that is used without.
+        largest_side: Of a picture, in pixels.
+        most_samples: Of a pixel.
+        path_samples: Samples of a pixel in mode "path" without ``samples`` and ``time_limit``.
+    """
+
+    formats: tuple[RenderFormat, ...]
+    modes: tuple[str, ...]
+    qualities: tuple[str, ...]
+    quality: str
+    largest_side: int
+    most_samples: int
+    path_samples: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Planned:
+    """The command that renders a picture or film, in the folder of the scene."""
+
+    command: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rendered:
+    """A finished picture or film.
+
+    Attributes:
+        name: The file's name.
+        bytes: Its size.
+        address: Where the page gets it, for a picture; None for a film, which is beside the scene.
+        command: The command that makes the same file.
+        said: What the command has said: figures, warnings.
+    """
+
+    name: str
+    bytes: int
+    address: str | None
+    command: str
+    said: str = ""
+
+
 Result: TypeAlias = (
-    Written | Counting | ShapeMap | ProbeResult | EmittedText | ExportedFile | Checked | Saved
+    Written
+    | Counting
+    | ShapeMap
+    | ProbeResult
+    | EmittedText
+    | ExportedFile
+    | Checked
+    | RenderChoices
+    | Planned
+    | Rendered
+    | Saved
 )  # in TypeScript, the type that `Results` has for the kind of the request
 
 
@@ -405,22 +484,70 @@ class ExportRequest(SourceRequest):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RenderRequest(SourceRequest):
-    """Render a picture or video (local only), with ``progress``.
+class PictureRequest(SourceRequest):
+    """A request about a picture or film to render (local only; the server answers).
+
+    Its time is that of the picture, or of the first frame of a film.
 
     Attributes:
-        format: "png", "exr", "mp4", "webm" ...
-        steering: How the camera was moved.
-        duration: Seconds of a video.
+        format: The name of a format of ``choices``.
+        samples: Samples of a pixel; None: as ``distal render`` has it.
+        time_limit: In mode "path", of a picture: seconds after which no more samples are begun.
+        bits: Bits of a channel of a picture; None for the format's own.
+        transparent: Whether a picture's background is left out.
+        steering: How the camera was moved; empty where it was not.
+        duration: Seconds of a film.
+        fps: Frames of a film in a second: "30", "29.97", "30000/1001".
+        quality: Of a lossy film: a name, or a number from 0 to 100; None for the default.
+        loop: Whether a film repeats, where its format says so.
     """
 
-    kind: ClassVar[str] = "render"
-    result: ClassVar[type | None] = ExportedFile
     format: str
     samples: int | None = None
+    time_limit: float | None = None
+    bits: int | None = None
+    transparent: bool = False
     steering: dict[str, float] = field(default_factory=dict)
-    duration: float | None = None
-    frames_per_s: float = 30.0
+    duration: float = 2.0
+    fps: str = "30"
+    quality: str | None = None
+    loop: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RenderRequest(PictureRequest):
+    """Render a picture or film, with ``progress``."""
+
+    kind: ClassVar[str] = "render"
+    result: ClassVar[type | None] = Rendered
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CommandRequest(PictureRequest):
+    """Give the command that renders it."""
+
+    kind: ClassVar[str] = "command"
+    result: ClassVar[type | None] = Planned
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChoicesRequest(AppRequest):
+    """Tell what ``render`` can be asked for (local only; the server answers)."""
+
+    kind: ClassVar[str] = "choices"
+    result: ClassVar[type | None] = RenderChoices
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CancelRequest(AppRequest):
+    """End a ``render`` (local only), which is then ``dropped``; it has no answer of its own.
+
+    Attributes:
+        job: The ``id`` of the render.
+    """
+
+    kind: ClassVar[str] = "cancel"
+    job: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -453,7 +580,6 @@ class Ready:
         versions: By name: "distal", "python", "payload", "messages".
         targets: The targets of ``text``.
         formats: The formats of ``export``.
-        render_formats: The formats of ``render``.
     """
 
     kind: ClassVar[str] = "ready"
@@ -461,7 +587,6 @@ class Ready:
     versions: dict[str, str]
     targets: tuple[str, ...] = ()
     formats: tuple[str, ...] = ()
-    render_formats: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -560,11 +685,20 @@ class Printed(Reply):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Progress(Reply):
-    """How much of a long request is done, from 0 to 1."""
+    """How much of a long request is done.
+
+    Attributes:
+        done: From 0 to 1, of what ``label`` names.
+        label: What is done now: "waiting", "loading", "compiling", "rendering", "encoding".
+        text: Figures for people: "12 of 60 frames".
+        remaining_s: Seconds that are left of it, if that is known.
+    """
 
     kind: ClassVar[str] = "progress"
     done: float
     label: str = ""
+    text: str = ""
+    remaining_s: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -596,6 +730,9 @@ REQUESTS: Final = (
     TextRequest,
     ExportRequest,
     RenderRequest,
+    CommandRequest,
+    ChoicesRequest,
+    CancelRequest,
     SaveRequest,
     StopRequest,
 )
@@ -614,6 +751,9 @@ Message: TypeAlias = (
     | TextRequest
     | ExportRequest
     | RenderRequest
+    | CommandRequest
+    | ChoicesRequest
+    | CancelRequest
     | SaveRequest
     | StopRequest
     | Ready
@@ -793,7 +933,7 @@ def _named(wanted: Any) -> str:
 def records() -> Iterator[type]:
     """Yield every record that a message is or has, each once: those in a message first."""
     yield from (Change, Edit, SourceLiteral, ShapePlace, Mistake)
-    yield from (made.result for made in REQUESTS if made.result not in (None, ExportedFile))
-    yield ExportedFile
+    yield RenderFormat
+    yield from (made.result for made in REQUESTS if made.result is not None)
     yield from REQUESTS
     yield from RESPONSES

@@ -11,7 +11,6 @@ from __future__ import annotations
 import contextlib
 import gc
 import io
-import itertools
 import os
 import queue
 import sys
@@ -26,6 +25,7 @@ from distal.backends import TEXT_TARGETS
 from distal.compiler.driver import COMPILE_TARGETS
 from distal.diagnostics import CompileError, DeviceError, LoadError
 from distal.editor.answers import ANSWERS, NEEDS_NUMPY, AnswerWork
+from distal.editor.commands import PAGE
 from distal.editor.edits import EditError, applied, edits_of
 from distal.editor.literals import LiteralError, find_literals
 from distal.editor.looks import Looks, mistakes_of
@@ -50,11 +50,11 @@ from distal.editor.messages import (
     encoded,
     parsed,
 )
+from distal.editor.scene_folder import link_beside
 from distal.export.payload import FORMAT
 from distal.packages import explained, is_installed
 from distal.version import __version__
 
-MOST_LINKS: Final = 1000  # entries of the scene's folder
 PAUSE_S: Final = 1.0  # without a request, until memory is tidied
 
 Send = Callable[[Message], None]
@@ -86,7 +86,7 @@ class StudioWorker:
                 "messages": "1",
             },
             targets=COMPILE_TARGETS,
-            formats=("page", *TEXT_TARGETS),
+            formats=(PAGE, *TEXT_TARGETS),
         )
 
     def answers(self, request: AppRequest) -> list[Message]:
@@ -237,16 +237,8 @@ def main() -> None:
 
     with tempfile.TemporaryDirectory(prefix="distal_studio_") as folder:
         if len(sys.argv) > 1:
-            _link_beside(Path(sys.argv[1]), Path(folder))
+            link_beside(Path(sys.argv[1]), Path(folder))
         serve(StudioWorker(Path(folder), send), requests, send)
-
-
-def _link_beside(source: Path, folder: Path) -> None:
-    """Link what a folder has, apart from Python files, where links are allowed."""
-    for entry in itertools.islice(source.iterdir(), MOST_LINKS):
-        if entry.suffix != ".py" and entry.name != "__pycache__":
-            with contextlib.suppress(OSError):
-                (folder / entry.name).symlink_to(entry, target_is_directory=entry.is_dir())
 
 
 if __name__ == "__main__":

@@ -32,6 +32,8 @@ else:
 
 # The possible bits of a channel by suffix; the first is the default.
 FORMATS: Final = {".png": (8, 16), ".exr": (16, 32)}
+# The optional packages that write them.
+PACKAGES: Final = {".exr": "OpenEXR"}
 
 __all__ = ["FORMATS", "Picture", "Provenance", "check_savable"]
 
@@ -189,9 +191,9 @@ def check_savable(path: Path, bits: int | None = None) -> tuple[str, int]:
     usual = FORMATS[suffix]
     if bits is not None and bits not in usual:
         raise SaveError(f"cannot write {path}: a channel has {usual[0]} or {usual[1]} bits")
-    if suffix == ".exr":
+    if suffix in PACKAGES:
         try:
-            imported("OpenEXR")
+            imported(PACKAGES[suffix])
         except PackageError as error:
             raise SaveError(f"cannot write {path}: {error}") from None
     check_destination(path)

@@ -18,6 +18,7 @@ from distal.packages import explained
 if TYPE_CHECKING:
     from distal.export.exported import Exported
     from distal.notebook.widget import LiveView
+    from distal.scene.steering import Steering
     from distal.video.recording import FinishedSequence, Progress
     from distal.video.store import Tell
 
@@ -63,6 +64,7 @@ class VideoOptions(TypedDict, total=False):
     samples: int | None
     mode: str | None
     shutter: float | None
+    steering: Steering | None
     loop: bool
     quality: str | float
     device: str
@@ -134,9 +136,10 @@ class Presentable:
         Args:
             path: ``.mp4``, ``.webm``, ``.gif``, ``.apng``, ``.webp``, or ``frames/%05d.png``.
             duration: Seconds.
-            options: ``fps``, ``size``, ``start``, ``samples``, ``mode``, ``shutter``, ``loop``,
-                ``quality``, ``params``, ``view``, ``device``, ``threads``, ``keep_frames``,
-                ``fresh``, ``progress``, ``cancel``. The devices are those of ``render``.
+            options: ``fps``, ``size``, ``start``, ``samples``, ``mode``, ``shutter``,
+                ``steering``, ``loop``, ``quality``, ``params``, ``view``, ``device``,
+                ``threads``, ``keep_frames``, ``fresh``, ``progress``, ``cancel``. The
+                devices are those of ``render``.
 
         Raises:
             CompileError: The scene code has mistakes.

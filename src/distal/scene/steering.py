@@ -6,6 +6,7 @@ the uniforms that a steered view reads; ``render/steer.py`` defines their effect
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -20,6 +21,8 @@ NUMBERS: Final[tuple[tuple[str, Type, Any], ...]] = (
     ("pan", VEC2, (0.0, 0.0)),
 )
 PREFIX: Final = "View_"
+# The five numbers by name, where each stands alone: in messages and on the command line.
+NAMES: Final = ("yaw", "pitch", "zoom", "pan_x", "pan_y")
 
 # What the program that guides a camera reads, besides the numbers that the camera has: the numbers
 # that a gesture asks for, the action of a key, the size of the picture.
@@ -52,6 +55,24 @@ class Steering:
             raise ValueError(f"a camera is moved by finite numbers, not {self!r}")
         if not self.zoom > 0.0:
             raise ValueError(f"zoom is a factor above 0, not {self.zoom:g}")
+
+    @classmethod
+    def of(cls, numbers: Mapping[str, float]) -> Steering:
+        """Return the steering of numbers by name; those that are not there keep their defaults.
+
+        Args:
+            numbers: By the names in ``NAMES``.
+
+        Raises:
+            ValueError: There is no such name, or a number is invalid.
+        """
+        for name in numbers:
+            if name not in NAMES:
+                known = ", ".join(NAMES)
+                raise ValueError(f"a camera is moved by {known}, not by '{name:.40}'")
+        given = {**dict(zip(NAMES, STILL.numbers, strict=True)), **numbers}
+        yaw, pitch, zoom, pan_x, pan_y = (float(given[name]) for name in NAMES)
+        return cls(yaw, pitch, zoom, (pan_x, pan_y))
 
     @property
     def numbers(self) -> tuple[float, ...]:

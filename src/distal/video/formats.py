@@ -21,6 +21,8 @@ from distal.packages import PackageError, imported
 # Names for qualities; a quality is a number from 0 to 100.
 QUALITIES: Final[Mapping[str, float]] = {"low": 60.0, "medium": 70.0, "high": 80.0}
 LOSSLESS: Final = "lossless"
+QUALITY: Final = "high"  # without another one
+PACKAGE: Final = "av"
 # GIF counts in hundredths of a second, and viewers show a delay of 1/100 s as 1/10 s.
 GIF_FASTEST: Final = 50
 _NUMBERED: Final = re.compile(r"%(0\d+|)d")
@@ -225,6 +227,6 @@ def library() -> Any:
         SaveError: It is missing or broken.
     """
     try:
-        return imported("av")
+        return imported(PACKAGE)
     except PackageError as error:
         raise SaveError(f"videos need PyAV: {error}") from error

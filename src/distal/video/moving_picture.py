@@ -24,6 +24,7 @@ from distal.scene.checks.warnings import (
     warn_of_camera,
     warn_of_functions,
 )
+from distal.scene.steering import Steering
 from distal.scene.view_options import ViewOptions
 from distal.scene.view_ranges import with_range
 from distal.scene.viewing.viewable import COLOR, Viewable, viewable
@@ -53,6 +54,7 @@ class MovingPicture:
     _image: Image | Composed = field(repr=False)
     _scene: Scene | None = field(repr=False)
     _view: str = COLOR
+    _steering: Steering | None = None
 
     @property
     def size(self) -> tuple[int, int]:
@@ -79,6 +81,7 @@ class MovingPicture:
             .with_provenance(
                 view=self._view,
                 stage=None if self._scene is None else self._scene.staged,
+                steering=None if self._steering is None else self._steering.numbers,
             )
         )
 
@@ -94,6 +97,7 @@ def moving_picture(
     view: str,
     mode: str | None = None,
     shutter: float | None = None,
+    steering: Steering | None = None,
 ) -> MovingPicture:
     """Return the animated picture of an object.
 
@@ -104,6 +108,7 @@ def moving_picture(
         view: One of its views.
         mode: How light is computed; None: as the scene says.
         shutter: Seconds that the shutter is open; None: as the scene says.
+        steering: How a person has moved the camera; None if it was not moved.
 
     Raises:
         LoadError: The object is not a picture.
@@ -113,7 +118,7 @@ def moving_picture(
         shown = viewable(obj, options.params, options.time).in_mode(mode)
     except ValueError as error:
         raise VideoError(str(error)) from None
-    image, settings = _image(shown, view, options.samples)
+    image, settings = _image(shown, view, options.samples, steering)
     refinement = _refinement(shown, view, options.samples, shutter)
     lowered = Lowered.of(image, None)
     values = _values(shown, lowered, options.params)
@@ -133,11 +138,12 @@ def moving_picture(
         _image=image,
         _scene=shown.scene,
         _view=view,
+        _steering=steering,
     )
 
 
 def _image(
-    shown: Viewable, view: str, samples: int | None
+    shown: Viewable, view: str, samples: int | None, steering: Steering | None
 ) -> tuple[Image | Composed, Mapping[str, Any]]:
     """Return the program of the frames, and its settings.
 
@@ -145,8 +151,14 @@ def _image(
     """
     try:
         if shown.scene is None:
+            if steering is not None:
+                raise VideoError(f"'{shown.name}' is an @image: it has no camera to move")
             return shown.image(view), {}
-        return shown.scene.program(view, samples, encoded=True, mode=shown.mode)
+        moved = steering is not None
+        image, settings = shown.scene.program(
+            view, samples, encoded=True, mode=shown.mode, steered=moved
+        )
+        return image, {**settings, **({} if steering is None else steering.settings)}
     except ValueError as error:
         raise VideoError(str(error)) from None
 

@@ -25,6 +25,7 @@ from distal.devices.threads import usable_threads
 from distal.images.atomic_files import check_destination
 from distal.images.picture import Picture
 from distal.lang.render_options import Cancel, RenderOptions, checked_samples, checked_size
+from distal.scene.steering import Steering
 from distal.version import __version__
 from distal.video.animation import Animation, animate
 from distal.video.encoding import Encoding, piece_name
@@ -100,6 +101,7 @@ def video(
     samples: int | None = None,
     mode: str | None = None,
     shutter: float | None = None,
+    steering: Steering | None = None,
     loop: bool = False,
     quality: str | float = "high",
     device: str = "cpu",
@@ -129,6 +131,7 @@ def video(
         mode: How light is computed: "direct" or "path"; None: as the scene says.
         shutter: In mode "path": seconds that the shutter is open in each frame, from its time on;
             ``0.5 / fps`` is a shutter of 180 degrees. None: as the scene says.
+        steering: How a person has moved the camera; None if it was not moved.
         loop: Whether gif, apng and webp repeat forever; otherwise they are played once.
         quality: "low", "medium", "high", a number from 0 to 100, or "lossless".
         device: The device to render on: "auto" (a hardware GPU, else the CPU), "cpu", "gpu",
@@ -174,15 +177,18 @@ def video(
         threads=threads,
         cancel=lambda: stop.is_set() or is_cancelled(),
     )
+    shown: dict[str, Any] = {"view": view, "samples": samples, "mode": mode, "shutter": shutter}
+    if steering is not None:
+        shown["steering"] = steering.numbers
     job = _RecordingJob(
         output=output,
         format=format,
-        moving=moving_picture(obj, options, view, mode, shutter),
+        moving=moving_picture(obj, options, view, mode, shutter, steering),
         timing=when,
         quality=chosen,
         loop=loop,
         fresh=fresh,
-        shown={"view": view, "samples": samples, "mode": mode, "shutter": shutter},
+        shown=shown,
         progress=progress or (lambda done, total, what: None),
         tell=tell or (lambda words: None),
         stop=stop,

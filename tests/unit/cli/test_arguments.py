@@ -9,6 +9,7 @@ from distal.cli.arguments import (
     read_plane,
     read_scene,
     read_size,
+    read_steering,
     read_time,
 )
 from distal.lang.parameters import choice, color, slider
@@ -102,6 +103,31 @@ def test_setting_twice_and_setting_nothing():
         read_assignments(["mode=lit", "mode=flat"], PARAMETERS)
     with pytest.raises(UsageError, match="this scene has no parameters"):
         read_assignments(["mode=lit"], [])
+
+
+def test_a_steering_is_names_and_numbers():
+    found = read_steering("yaw=0.3, zoom=0.8,pan_y=-1")
+    assert found.numbers == (0.3, 0.0, 0.8, 0.0, -1.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("0.3", "--steering takes names and numbers, like yaw=0.3,zoom=0.8, not '0.3'"),
+        ("yaw=x", "--steering takes names and numbers"),
+        ("yaw=nan", "--steering takes names and numbers"),
+        ("yaw=1,yaw=2", "--steering takes names and numbers"),
+        (
+            "yow=1",
+            "--steering: a camera is moved by yaw, pitch, zoom, pan_x, pan_y, not by 'yow'",
+        ),
+        ("zoom=0", "--steering: zoom is a factor above 0, not 0"),
+    ],
+)
+def test_a_bad_steering_is_named(text, reason):
+    with pytest.raises(UsageError) as caught:
+        read_steering(text)
+    assert str(caught.value).startswith(reason)
 
 
 def test_a_slice_is_an_axis_and_an_offset():

@@ -1,10 +1,13 @@
 """The progress bar: only for a person, only when the work takes long."""
 
 import io
+import json
 import sys
 
-from distal.cli import report
-from distal.cli.report import ProgressBar, stages
+import pytest
+
+from distal.cli import progress_lines, report
+from distal.cli.report import ProgressBar, frame_progress, picture_progress, stages
 
 
 class Terminal(io.StringIO):
@@ -39,3 +42,38 @@ def test_long_work_shows_nothing_elsewhere(monkeypatch):
 def test_stages_name_the_figures_that_are_seconds():
     figures = {"load_s": 0.0104, "compile_s": None, "render_s": 1.5, "lanes": 32}
     assert stages(figures) == "load 0.010 s, render 1.500 s"
+
+
+def test_progress_for_programs_is_lines_of_json(monkeypatch, capsys):
+    monkeypatch.setattr(progress_lines, "_PAUSE_S", 0.0)
+    with picture_progress("json") as progress:
+        progress.stage("loading")
+        progress.describe("4 samples")
+        progress(0.5)
+    with frame_progress("json") as frames:
+        frames(3, 12, "encoding")
+    found = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert found == [
+        {"stage": "loading", "done": 0.0, "text": ""},
+        {"stage": "rendering", "done": 0.5, "text": "4 samples"},
+        {"stage": "encoding", "done": 0.25, "text": "3 of 12 frames"},
+    ]
+
+
+def test_lines_of_progress_are_few_and_the_last_is_there(capsys):
+    progress = picture_progress("json")
+    for step in range(1001):
+        progress(step / 1000)
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) < 50
+    assert json.loads(lines[-1])["done"] == 1.0
+
+
+def test_a_reader_that_is_gone_ends_the_command(monkeypatch):
+    class Gone(io.StringIO):
+        def flush(self):
+            raise BrokenPipeError
+
+    monkeypatch.setattr(sys, "stdout", Gone())
+    with pytest.raises(BrokenPipeError):
+        picture_progress("json")(0.5)

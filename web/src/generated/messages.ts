@@ -88,6 +88,21 @@ export interface Mistake {
   hint: string | null;
 }
 
+/** A format of `render`. */
+export interface RenderFormat {
+  name: string;
+  /** Whether it is a film; it is then written beside the scene. */
+  film: boolean;
+  /** The bits of a channel that there are; the first is the default. */
+  bits: number[];
+  /** Whether it has a quality. */
+  lossy: boolean;
+  /** Whether the file says if it repeats. */
+  loops: boolean;
+  /** What has to be installed first, or None. */
+  missing: string | null;
+}
+
 /** Edits that make the changes; the new literals are found by the next `look`. */
 export interface Written {
   edits: Edit[];
@@ -146,12 +161,6 @@ export interface EmittedText {
   places: [number, number, number, number][];
 }
 
-/** The file is on the disk, with this digest; or a conflict: what is there instead. */
-export interface Saved {
-  digest: string;
-  conflict: string | null;
-}
-
 /** A file to save: its data as text, or in base64 where it is bytes. */
 export interface ExportedFile {
   name: string;
@@ -159,6 +168,48 @@ export interface ExportedFile {
   text: string | null;
   base64: string | null;
   command: string;
+}
+
+/** A finished picture or film. */
+export interface Rendered {
+  /** The file's name. */
+  name: string;
+  /** Its size. */
+  bytes: number;
+  /** Where the page gets it, for a picture; None for a film, which is beside the scene. */
+  address: string | null;
+  /** The command that makes the same file. */
+  command: string;
+  /** What the command has said: figures, warnings. */
+  said: string;
+}
+
+/** The command that renders a picture or film, in the folder of the scene. */
+export interface Planned {
+  command: string;
+}
+
+/** What `render` can be asked for. */
+export interface RenderChoices {
+  formats: RenderFormat[];
+  /** How light may be computed. */
+  modes: string[];
+  /** Names of qualities; numbers from 0 to 100 are allowed, too. */
+  qualities: string[];
+  /** The one that is used without. */
+  quality: string;
+  /** Of a picture, in pixels. */
+  largest_side: number;
+  /** Of a pixel. */
+  most_samples: number;
+  /** Samples of a pixel in mode "path" without `samples` and `time_limit`. */
+  path_samples: number;
+}
+
+/** The file is on the disk, with this digest; or a conflict: what is there instead. */
+export interface Saved {
+  digest: string;
+  conflict: string | null;
 }
 
 /** Compile a scene's view. Answered by `scene`, `numbers` or `mistakes`. */
@@ -435,7 +486,7 @@ export interface ExportRequest {
   poster?: string | null;
 }
 
-/** Render a picture or video (local only), with `progress`. */
+/** Render a picture or film, with `progress`. */
 export interface RenderRequest {
   kind: "render";
   /** The app's number of the request, never used twice. */
@@ -460,14 +511,93 @@ export interface RenderRequest {
   mode?: "direct" | "path" | null;
   /** The author's frame in pixels. */
   size?: [number, number];
-  /** "png", "exr", "mp4", "webm" ... */
+  /** The name of a format of `choices`. */
   format: string;
+  /** Samples of a pixel; None: as `distal render` has it. */
   samples?: number | null;
-  /** How the camera was moved. */
+  /** In mode "path", of a picture: seconds after which no more samples are begun. */
+  time_limit?: number | null;
+  /** Bits of a channel of a picture; None for the format's own. */
+  bits?: number | null;
+  /** Whether a picture's background is left out. */
+  transparent?: boolean;
+  /** How the camera was moved; empty where it was not. */
   steering?: Record<string, number>;
-  /** Seconds of a video. */
-  duration?: number | null;
-  frames_per_s?: number;
+  /** Seconds of a film. */
+  duration?: number;
+  /** Frames of a film in a second: "30", "29.97", "30000/1001". */
+  fps?: string;
+  /** Of a lossy film: a name, or a number from 0 to 100; None for the default. */
+  quality?: string | null;
+  /** Whether a film repeats, where its format says so. */
+  loop?: boolean;
+}
+
+/** Give the command that renders it. */
+export interface CommandRequest {
+  kind: "command";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  /** The texts by name: the scene's file and modules beside it. */
+  files: Record<string, string>;
+  /** The name of the scene's file. */
+  main: string;
+  /** The name of the object in it; None for the only one. */
+  object?: string | null;
+  /** The view to show. */
+  view?: string;
+  /** Values of parameters by name; others have their defaults. */
+  values?: Record<string, boolean | number | number[]>;
+  /** In seconds. */
+  time?: number;
+  /** The look to show it in; None for its own. */
+  look?: string | null;
+  /** How light is computed; None: as the scene says. */
+  mode?: "direct" | "path" | null;
+  /** The author's frame in pixels. */
+  size?: [number, number];
+  /** The name of a format of `choices`. */
+  format: string;
+  /** Samples of a pixel; None: as `distal render` has it. */
+  samples?: number | null;
+  /** In mode "path", of a picture: seconds after which no more samples are begun. */
+  time_limit?: number | null;
+  /** Bits of a channel of a picture; None for the format's own. */
+  bits?: number | null;
+  /** Whether a picture's background is left out. */
+  transparent?: boolean;
+  /** How the camera was moved; empty where it was not. */
+  steering?: Record<string, number>;
+  /** Seconds of a film. */
+  duration?: number;
+  /** Frames of a film in a second: "30", "29.97", "30000/1001". */
+  fps?: string;
+  /** Of a lossy film: a name, or a number from 0 to 100; None for the default. */
+  quality?: string | null;
+  /** Whether a film repeats, where its format says so. */
+  loop?: boolean;
+}
+
+/** Tell what `render` can be asked for (local only; the server answers). */
+export interface ChoicesRequest {
+  kind: "choices";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+}
+
+/** End a `render` (local only), which is then `dropped`; it has no answer of its own. */
+export interface CancelRequest {
+  kind: "cancel";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  /** The `id` of the render. */
+  job: number;
 }
 
 /** Write a file (local only; the server answers). `digest` is that of the text it replaces. */
@@ -502,8 +632,6 @@ export interface Ready {
   targets: string[];
   /** The formats of `export`. */
   formats: string[];
-  /** The formats of `render`. */
-  render_formats: string[];
 }
 
 /** A compiled view: the payload of a player, with its program. */
@@ -569,7 +697,9 @@ export interface Results {
   check: Checked;
   text: EmittedText;
   export: ExportedFile;
-  render: ExportedFile;
+  render: Rendered;
+  command: Planned;
+  choices: RenderChoices;
   save: Saved;
 }
 
@@ -593,13 +723,19 @@ export interface Printed {
   text: string;
 }
 
-/** How much of a long request is done, from 0 to 1. */
+/** How much of a long request is done. */
 export interface Progress {
   kind: "progress";
   id: number;
   revision: number;
+  /** From 0 to 1, of what `label` names. */
   done: number;
+  /** What is done now: "waiting", "loading", "compiling", "rendering", "encoding". */
   label: string;
+  /** Figures for people: "12 of 60 frames". */
+  text: string;
+  /** Seconds that are left of it, if that is known. */
+  remaining_s: number | null;
 }
 
 /** Files were changed by another program (local only; from the server): their new texts. */
@@ -616,6 +752,6 @@ export interface Restarted {
   reason: string;
 }
 
-export type Request = LookRequest | HoldRequest | WriteRequest | CountRequest | MapRequest | ProbeRequest | CheckRequest | TextRequest | ExportRequest | RenderRequest | SaveRequest | StopRequest;
+export type Request = LookRequest | HoldRequest | WriteRequest | CountRequest | MapRequest | ProbeRequest | CheckRequest | TextRequest | ExportRequest | RenderRequest | CommandRequest | ChoicesRequest | CancelRequest | SaveRequest | StopRequest;
 
 export type Response = Ready | SceneFound | NumbersFound | Mistakes | Answer | Dropped | Printed | Progress | Changed | Restarted;

@@ -5,7 +5,7 @@
  * will. All other messages are events.
  */
 
-import type { Changed, Printed, Ready, Request, Response, Restarted } from "../generated/messages";
+import type { Changed, Printed, Progress, Ready, Request, Response, Restarted } from "../generated/messages";
 import type { Channel } from "./channel";
 
 /** A request without its number, which the client gives. */
@@ -20,9 +20,14 @@ export interface ClientEvents {
   state(isOpen: boolean): void;
 }
 
+interface Waiting {
+  resolve(response: Response | null): void;
+  progress(message: Progress): void;
+}
+
 export class Client {
   #count = 0;
-  #waiting = new Map<number, (response: Response | null) => void>();
+  #waiting = new Map<number, Waiting>();
 
   constructor(
     readonly channel: Channel,
@@ -37,17 +42,31 @@ export class Client {
 
   /** Resolves to the answer, or to null where the request is lost. */
   ask(request: Asked): Promise<Response | null> {
+    return this.begin(request).answer;
+  }
+
+  /** As `ask`, with the request's number and what is told before its answer. */
+  begin(
+    request: Asked,
+    progress: Waiting["progress"] = () => {},
+  ): { id: number; answer: Promise<Response | null> } {
     const id = ++this.#count;
-    return new Promise((resolve) => {
-      this.#waiting.set(id, resolve);
+    const answer = new Promise<Response | null>((resolve) => {
+      this.#waiting.set(id, { resolve, progress });
       this.channel.post({ ...request, id } as Request);
     });
+    return { id, answer };
+  }
+
+  /** Sends a request that has no answer. */
+  tell(request: Asked): void {
+    this.channel.post({ ...request, id: ++this.#count } as Request);
   }
 
   #giveUp(): void {
     const waiting = [...this.#waiting.values()];
     this.#waiting.clear();
-    for (const resolve of waiting) resolve(null);
+    for (const { resolve } of waiting) resolve(null);
   }
 
   #received(message: Response): void {
@@ -60,14 +79,14 @@ export class Client {
         this.events.restarted(message);
         return this.#answer(message.id ?? -1, null);
       case "progress":
-        return;
+        return this.#waiting.get(message.id)?.progress(message);
       default:
         return this.#answer(message.id, message);
     }
   }
 
   #answer(id: number, message: Response | null): void {
-    this.#waiting.get(id)?.(message);
+    this.#waiting.get(id)?.resolve(message);
     this.#waiting.delete(id);
   }
 }

@@ -57,7 +57,7 @@ export function commandsNow(studio: Studio): Command[] {
     ...(objects.length < 2 ? [] : objects).map((name) =>
       command(`object:${name}`, `Picture of the file: ${name}`, () => looking.choose(name)),
     ),
-    ...(looking.ready?.formats ?? []).map((format) =>
+    ...sharing.formats.map((format) =>
       command(
         `export:${format}`,
         `Export: ${EXPORTS[format] ?? format}`,

@@ -6,8 +6,9 @@
 
 import { make } from "../dom";
 import { linkOf, type Shared } from "./links";
+import { drawnPicture, renderPart } from "./render_form";
 import { openShare } from "./share_sheet";
-import { exports } from "./sheets";
+import { EMBED, exports } from "./sheets";
 import type { Studio } from "./studio";
 
 export class Sharing {
@@ -40,17 +41,35 @@ export class Sharing {
     const { channel, looking } = this.studio;
     void channel.start?.();
     return exports(
-      looking.whenReady().then(({ formats }) => formats),
+      looking.whenReady().then(() => this.formats),
       (format) => this.exportAs(format),
       () => this.saveSource(),
+      this.#pictures(),
     );
   }
 
+  /** What a page or code can be exported as, once the worker is there. */
+  get formats(): string[] {
+    const known = this.studio.looking.ready?.formats ?? [];
+    return known.flatMap((format) => (format === "page" ? [format, EMBED] : [format]));
+  }
+
+  /** The sheet's part for pictures and films. */
+  #pictures(): HTMLElement {
+    const { client, jobs, looking, picture, settings, texts } = this.studio;
+    const player = () => picture.player;
+    if (settings.python) return drawnPicture(player);
+    const isUnsaved = () => texts.names.some((name) => texts.isChanged(name));
+    return renderPart(client, { source: () => looking.source, player, isUnsaved }, jobs);
+  }
+
   /** Saves a format's file; returns a sentence about it. */
-  async exportAs(format: string): Promise<string> {
+  async exportAs(chosen: string): Promise<string> {
     const { client, looking } = this.studio;
+    const embed = chosen === EMBED;
+    const format = embed ? "page" : chosen;
     const poster = format === "page" ? await this.#poster() : null;
-    const answer = await client.ask({ kind: "export", ...looking.source, format, poster });
+    const answer = await client.ask({ kind: "export", ...looking.source, format, embed, poster });
     if (answer?.kind === "mistakes") return answer.mistakes[0]!.message;
     if (answer?.kind !== "answer" || answer.request !== "export") return "Nobody answers.";
     const { name, media_type, text, base64, command } = answer.result;

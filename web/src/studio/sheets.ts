@@ -31,9 +31,13 @@ export function sheet(title: string, ...children: (Node | string)[]): HTMLDialog
   return dialog;
 }
 
+/** A page's fragment for other pages. */
+export const EMBED = "embed";
+
 /** What each format is. */
 export const EXPORTS: Record<string, string> = {
   page: "A page: one HTML file that needs no network",
+  [EMBED]: "A page's picture alone, as HTML to paste into another page",
   shadertoy: "Shadertoy",
   isf: "ISF, for VJ programs",
   glslcanvas: "glslCanvas, The Book of Shaders",
@@ -49,6 +53,7 @@ export async function exports(
   formats: Promise<readonly string[]>,
   take: (format: string) => Promise<string>,
   saveSource: () => void,
+  pictures: HTMLElement,
 ): Promise<void> {
   const status = make("p", { className: "result", role: "status" }, "Starting Python …");
   const choice = (name: string, about: string) =>
@@ -56,7 +61,8 @@ export async function exports(
   const source = choice("py", "The code itself");
   source.onclick = saveSource;
   const last = make("li", {}, source);
-  sheet("Export", make("ul", { className: "examples" }, last), status);
+  const list = make("ul", { className: "examples" }, last);
+  sheet("Export", pictures, make("h3", {}, "Pages and code"), list, status);
   const items = (await formats).map((format) => {
     const button = choice(format, EXPORTS[format] ?? "");
     button.onclick = async () => {

@@ -15,6 +15,7 @@ import { Commands } from "./command_keys";
 import { Editor } from "./editor";
 import { Emitted } from "./emitted";
 import { Files } from "./files";
+import { Jobs } from "./jobs";
 import { Looking } from "./looking";
 import { Opening } from "./opening";
 import { Page } from "./page";
@@ -38,6 +39,7 @@ export class Studio {
   readonly commands: Commands;
   readonly channel: Channel;
   readonly client: Client;
+  readonly jobs: Jobs;
   readonly editor: Editor;
   readonly picture: Picture;
   readonly emitted: Emitted;
@@ -62,6 +64,9 @@ export class Studio {
       restarted: ({ reason }) => this.looking.restarted(reason),
       state: (isOpen) => this.looking.connected(isOpen),
     });
+    const announce = (text: string) => (this.page.announcer.textContent = text);
+    this.jobs = new Jobs(this.client, announce, () => void this.sharing.export());
+    this.page.work.after(this.jobs.chip);
     document.title = `${main} · distal`;
     if (settings.start) void this.opening.begin(settings.start);
     addEventListener("beforeunload", () => this.texts.names.forEach((name) => this.texts.keepDraft(name)));

@@ -16,7 +16,9 @@ from urllib.parse import unquote
 from distal.diagnostics import LoadError
 from distal.editor.local.early import EarlyWorker
 from distal.editor.local.files import SceneFiles
-from distal.editor.local.serving import HttpReply, LocalServer
+from distal.editor.local.renders import CODE_S as RENDER_CODE_S
+from distal.editor.local.renders import RenderLimits, RenderQueue
+from distal.editor.local.serving import NOT_FOUND, HttpReply, LocalServer
 from distal.editor.local.tab import CODE_S, StudioTab
 from distal.editor.messages import Changed, encoded
 from distal.loading import gallery, posters
@@ -35,6 +37,7 @@ class StudioServer(LocalServer):
         port: The port; 0 for any that is free.
         limit: Seconds that the author's code has.
         early: A worker for the first tab.
+        renders: The limits of time of renders; None for those of ``RenderLimits``.
 
     Raises:
         PackageError: ``websockets`` is not installed.
@@ -47,8 +50,12 @@ class StudioServer(LocalServer):
         port: int = 0,
         limit: float = CODE_S,
         early: EarlyWorker | None = None,
+        renders: RenderLimits | None = None,
     ) -> None:
         self._files, self._limit, self._early = files, limit, early
+        self._renders = RenderQueue(
+            files.folder, renders or RenderLimits(max(limit, RENDER_CODE_S))
+        )
         super().__init__(port)
 
     def serve(self) -> None:
@@ -64,6 +71,7 @@ class StudioServer(LocalServer):
                 session.end()
         if self._early is not None:
             self._early.end()
+        self._renders.close()
         super().close()
 
     # Sockets
@@ -78,7 +86,12 @@ class StudioServer(LocalServer):
         send(encoded(self._files.all()))
         early, self._early = self._early, None
         session = StudioTab(
-            self._files, send, self._limit, lambda saved: self._tell(saved, connection), early
+            self._files,
+            send,
+            self._limit,
+            lambda saved: self._tell(saved, connection),
+            early,
+            self._renders,
         )
         with self._lock:
             self._tabs[connection] = session
@@ -112,6 +125,8 @@ class StudioServer(LocalServer):
             return self._page()
         if path.startswith("/gallery/"):
             return _of_gallery(unquote(path.removeprefix("/gallery/")))
+        if path.startswith("/results/"):
+            return self._result(path.removeprefix("/results/"))
         name = path.removeprefix("/")
         if name in ("studio.js", "studio.css"):
             return HttpReply(200, (APP / name).read_bytes(), _TYPES[Path(name).suffix])
@@ -138,6 +153,13 @@ class StudioServer(LocalServer):
             "frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
         )
         return HttpReply(200, body, "text/html", (("Content-Security-Policy", policy),))
+
+    def _result(self, name: str) -> HttpReply:
+        folder, _, token = name.partition("/")
+        data = self._renders.result(folder, token)
+        if data is None:
+            return HttpReply(NOT_FOUND, b"This picture is not there any more: render it again.\n")
+        return HttpReply(200, data, "application/octet-stream")
 
 
 def _of_gallery(file: str) -> HttpReply:

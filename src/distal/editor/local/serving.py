@@ -17,6 +17,8 @@ from distal.editor.messages import LONGEST_MESSAGE
 from distal.packages import imported
 
 MOST_TABS: Final = 8
+# A file has so long to be sent: a browser writes a large picture to a slow disk.
+SENDING_S: Final = 600.0
 
 _USED: Final = (
     "This address was used already. Open the page in the browser that has it, or start "
@@ -118,6 +120,8 @@ class LocalServer(ABC):
             if len(self._tabs) >= MOST_TABS:
                 return self._response(HttpReply(503, b"Too many tabs are open: close one.\n"))
             return None
+        # Without this the rest of an answer is cut off after ten seconds.
+        connection.close_timeout = SENDING_S
         return self._response(self._reply(path))
 
     def _response(self, reply: HttpReply) -> Any:

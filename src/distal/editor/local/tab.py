@@ -11,21 +11,27 @@ import json
 import threading
 import time
 from collections.abc import Callable
-from typing import Final
+from typing import Any, Final
 
 from distal.diagnostics import LoadError
 from distal.editor.local.early import EARLY_ID, EarlyWorker
 from distal.editor.local.files import SceneFiles
 from distal.editor.local.process import WorkerProcess
+from distal.editor.local.renders import RenderQueue, command_of, render_choices
 from distal.editor.messages import (
     Answer,
     AppRequest,
+    CancelRequest,
     Changed,
+    ChoicesRequest,
+    CommandRequest,
     Dropped,
     Message,
     MessageError,
     Mistake,
     Mistakes,
+    Planned,
+    RenderRequest,
     Restarted,
     SaveRequest,
     StopRequest,
@@ -49,6 +55,7 @@ class StudioTab:
         limit: Seconds that the author's code has.
         saved: Called with what was saved, for the other tabs.
         early: The worker to begin with, if there is one.
+        renders: Renders pictures and films; None where there are none.
         start: Starts a worker; by default a process.
     """
 
@@ -59,10 +66,11 @@ class StudioTab:
         limit: float = CODE_S,
         saved: Callable[[Changed], None] = lambda _: None,
         early: EarlyWorker | None = None,
+        renders: RenderQueue | None = None,
         start: Callable[..., WorkerProcess] = WorkerProcess,
     ) -> None:
         self._files, self._send, self._limit, self._start = files, send, limit, start
-        self._on_saved = saved
+        self._on_saved, self._renders = saved, renders
         self._lock = threading.RLock()
         self._waiting: dict[int, int] = {}  # the revision by id, in the order of arrival
         self._ends = 0.0
@@ -80,6 +88,8 @@ class StudioTab:
             return
         if isinstance(request, SaveRequest):
             self._tell(self._saved(request))
+        elif isinstance(request, RenderRequest | CommandRequest | ChoicesRequest | CancelRequest):
+            self._render(request)
         elif isinstance(request, AppRequest) and not isinstance(request, StopRequest):
             with self._lock:
                 if not self._waiting:
@@ -88,10 +98,34 @@ class StudioTab:
                 self._worker.send(encoded(request))
 
     def end(self) -> None:
-        """End the worker; the app is gone."""
+        """End the worker and the renders; the app is gone."""
         with self._lock:
             self._is_over = True
             self._worker.kill()
+        if self._renders is not None:
+            self._renders.forget(self)
+
+    def _render(
+        self, request: RenderRequest | CommandRequest | ChoicesRequest | CancelRequest
+    ) -> None:
+        """Begin or end a render, or answer a question about one."""
+        number: dict[str, Any] = {"id": request.id, "revision": request.revision}
+        if self._renders is None:
+            self._tell(_refusal(**number, text="nothing is rendered here"))
+        elif isinstance(request, CancelRequest):
+            self._renders.cancel(self, request.job)
+        elif isinstance(request, RenderRequest):
+            self._renders.add(self, request, self._tell)
+        elif isinstance(request, ChoicesRequest):
+            found = render_choices.choices()
+            self._tell(Answer(**number, request="choices", result=found))
+        else:
+            try:
+                planned = Planned(command=command_of(request))
+            except LoadError as error:
+                self._tell(_refusal(**number, text=error.reason))
+            else:
+                self._tell(Answer(**number, request="command", result=planned))
 
     def _saved(self, request: SaveRequest) -> Message:
         try:
@@ -160,6 +194,6 @@ class StudioTab:
         self._send(encoded(message))
 
 
-def _refusal(number: int, revision: int, text: str) -> Mistakes:
+def _refusal(id: int, revision: int, text: str) -> Mistakes:
     mistakes = (Mistake(severity="error", message=text),)
-    return Mistakes(id=number, revision=revision, mistakes=mistakes)
+    return Mistakes(id=id, revision=revision, mistakes=mistakes)
