@@ -315,6 +315,12 @@ def test_every_screen_is_accessible(tmp_path, scheme, size):
             app.page.get_by_role("button", name=name, exact=True).click()
             assert violations() == [], name
             app.page.keyboard.press("Escape")
+        app.page.get_by_role("button", name="Cost").click()
+        app.page.locator(".runs").first.wait_for()
+        app.page.get_by_label("Time (measured)").check()
+        app.page.get_by_role("button", name="Measure").click()
+        assert violations() == []
+        app.page.get_by_role("button", name="Cost").click()
         app.page.get_by_role("tab", name="Emitted text").click()
         assert violations() == []
         app.page.get_by_role("tab", name="scene.py").click()

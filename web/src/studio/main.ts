@@ -15,6 +15,7 @@ import type {
   NumbersFound,
   Ready,
   Response,
+  Results,
   SceneFound,
   ShapeMap,
   SourceLiteral,
@@ -22,8 +23,8 @@ import type {
 import type { Payload, Program, Value } from "../payload";
 import { CellChannel } from "./cell_channel";
 import { SocketChannel, type Channel } from "./channel";
-import { Client } from "./client";
-import { runsOf, type Runs } from "./costs";
+import { Client, type Asked } from "./client";
+import { CostBar } from "./cost_bar";
 import { Editor } from "./editor";
 import { Emitted } from "./emitted";
 import { linkOf, sharedOf, type Shared } from "./links";
@@ -103,9 +104,7 @@ class Studio {
   #line = 0;
   #keepsCamera = false;
   #shared: Shared | null = null;
-  /** Whether the editor shows how often lines run. */
-  #counts = false;
-  #runs = new Map<string, Runs[]>();
+  readonly costs: CostBar;
   #pointing = 0;
   #pointedAt: number | null = null;
   /** File and line of all that makes a shape. */
@@ -157,6 +156,15 @@ class Studio {
       () => void this.#emit(),
     );
     this.page.code.append(this.emitted.element);
+    this.costs = new CostBar({
+      count: (work) => this.#lineProgram("count", { work }),
+      time: () => this.#lineProgram("time"),
+      player: () => this.picture.player,
+      file: () => this.editor.name,
+      show: (figures) => this.editor.setFigures(figures),
+      wanted: () => void this.channel.start?.(),
+    });
+    this.page.tabRow.after(this.costs.element);
     this.page.tabRow.append(this.emitted.menu);
     this.#fillButtons();
     this.channel = python ? this.#cell(python) : new SocketChannel(`ws://${location.host}/socket`);
@@ -290,7 +298,7 @@ class Studio {
     }
     this.#isLooking = false;
     this.#guideSoon();
-    void this.#count();
+    void this.costs.compiled();
     if (this.picture.player && this.picture.layers.isOpen) void this.picture.layers.draw(this.picture.player);
   }
 
@@ -306,22 +314,13 @@ class Studio {
     return programs.encoding === "plain" ? (programs.data[number] ?? null) : null;
   }
 
-  /** Counts again, where counts are shown. */
-  async #count(): Promise<void> {
-    if (!this.#counts || !this.#can("count")) return;
+  /** The worker's program that measures lines of the text as it is. */
+  async #lineProgram<K extends "count" | "time">(kind: K, more: object = {}): Promise<Results[K] | null> {
+    if (!this.#can(kind)) return null;
     const { revision } = this.texts;
-    const { player } = this.picture;
-    const isWanted = () => this.#counts && this.texts.revision === revision && this.picture.player === player;
-    const answer = await this.client.ask({ kind: "count", ...this.#source });
-    if (answer?.kind !== "answer" || answer.request !== "count" || !player || !isWanted()) return;
-    const runs = await runsOf(answer.result, player, isWanted);
-    if (!runs) return;
-    this.#runs = runs;
-    this.#showRuns();
-  }
-
-  #showRuns(): void {
-    this.editor.setRuns(this.#counts ? (this.#runs.get(this.editor.name) ?? []) : []);
+    const answer = await this.client.ask({ kind, ...this.#source, ...more } as Asked);
+    const isIt = answer?.kind === "answer" && answer.request === kind && revision === this.texts.revision;
+    return isIt ? (answer.result as Results[K]) : null;
   }
 
   /** While one types, the camera moves freely; in a pause the program that guides it follows. */
@@ -413,6 +412,7 @@ class Studio {
     };
     this.#turn.value = value;
     this.#turn.isDone = false;
+    this.costs.changed();
     void this.#turnOn();
   }
 
@@ -531,6 +531,7 @@ class Studio {
     if (!name || this.texts.files[name] === text) return;
     this.texts.set(name, text);
     this.#isStopped = false;
+    this.costs.changed();
     this.picture.outline.show(null, null);
     this.#fillFiles();
     clearTimeout(this.#timer);
@@ -618,7 +619,7 @@ class Studio {
     if (was !== name) this.#fillFiles();
     if (was !== name && name !== TEXT_TAB) {
       this.#showMistakes(this.#mistakes);
-      this.#showRuns();
+      this.costs.shown();
     }
   }
 
@@ -630,6 +631,7 @@ class Studio {
   #moved(name: string, line: number): void {
     if (line === this.#line) return;
     this.#line = line;
+    this.costs.moved(line);
     if (this.#tab === TEXT_TAB) this.emitted.link(name, line);
   }
 
@@ -767,7 +769,7 @@ class Studio {
       button("Gallery", "Open a copy of an example", () =>
         gallery(this.settings.gallery, (name) => void this.#open(name)),
       ),
-      this.#costButton(),
+      this.costs.button,
       button("Export", "Make a page or a shader of it", () => {
         void this.channel.start?.();
         this.#export();
@@ -777,19 +779,6 @@ class Studio {
         : button("Save", "Save the file (Mod S)", () => void this.save()),
       button("?", "Keys", () => help(this.settings.version)),
     );
-  }
-
-  #costButton(): HTMLElement {
-    const title = "How often each line runs for a pixel";
-    const toggle = make("button", { type: "button", title, "aria-pressed": "false" }, "Cost");
-    toggle.onclick = () => {
-      this.#counts = !this.#counts;
-      toggle.setAttribute("aria-pressed", String(this.#counts));
-      this.#showRuns();
-      void this.channel.start?.();
-      void this.#count();
-    };
-    return toggle;
   }
 
   /** An example takes the place of the text; undo brings the old one back. */
