@@ -21,6 +21,7 @@ from distal.compiler.driver import run_passes
 from distal.editor.messages import Counting, LineTiming
 from distal.export.payload import TARGET, PagePrograms, lowered
 from distal.ir.nodes import Module
+from distal.passes.cost import own_cost
 from distal.scene.viewing.viewable import Viewable
 
 # They move, merge or drop statements.
@@ -42,7 +43,7 @@ def counting(seen: Viewable, view: str, files: Sequence[str], *, work: bool = Fa
     Raises:
         CompileError: WebGL 2 cannot express it.
     """
-    counts = (WorkCounts if work else Counts)(lambda file: PurePath(file).name in files)
+    counts = (WorkCounts if work else Counts)(lambda file: PurePath(file).name in files, own_cost)
     module = _unmoved(seen, view, MOVING if work else MOVING | KNOWING)
     artifact = emit_counting(module, get_target(TARGET), counts)
     return Counting(
@@ -65,7 +66,7 @@ def timing(seen: Viewable, view: str, files: Sequence[str]) -> LineTiming:
     Raises:
         CompileError: WebGL 2 cannot express it.
     """
-    measured = Repetitions(lambda file: PurePath(file).name in files)
+    measured = Repetitions(lambda file: PurePath(file).name in files, own_cost)
     module = _unmoved(seen, view, MOVING)
     artifact = emit_timing(module, get_target(TARGET), measured)
     return LineTiming(

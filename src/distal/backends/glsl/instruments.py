@@ -16,7 +16,7 @@ from distal.backends.clike.expense import Expense
 from distal.backends.clike.module_names import ModuleNames
 from distal.backends.glsl.writer import GlslWriter
 from distal.diagnostics import Span
-from distal.ir.nodes import Function, If
+from distal.ir.nodes import Expr, Function, If
 
 if TYPE_CHECKING:
     from distal.backends.glsl.stages import GlslProgram
@@ -28,11 +28,13 @@ class Instrument:
 
     Attributes:
         is_counted: Whether the statements of a file are measured.
+        cost: The operations of an expression, without those of the functions that it calls.
         places: File and line by the number of the place.
         names: The names that the text has for it, by the names they would like to have.
     """
 
     is_counted: Callable[[str], bool]
+    cost: Callable[[Expr], int]
     places: list[tuple[str, int]] = field(default_factory=list)
     names: dict[str, str] = field(default_factory=dict)
 

@@ -25,7 +25,6 @@ from distal.ir.contents import contents
 from distal.ir.nodes import Construct, Let, Origin, Read, Stmt, Var
 from distal.ir.types import Array, Kind, Matrix, Scalar, Vector, kind_of
 from distal.ir.walk import nodes_in, statements_in
-from distal.passes.cost import own_cost
 
 if TYPE_CHECKING:
     from distal.backends.glsl.stages import GlslProgram
@@ -73,7 +72,7 @@ class TimingWriter(InstrumentWriter):
 
     def statement(self, stmt: Stmt, *, tail: bool) -> None:
         """Append a statement."""
-        is_repeatable = isinstance(stmt, Let | Var) and _is_repeatable(stmt)
+        is_repeatable = isinstance(stmt, Let | Var) and self._is_repeatable(stmt)
         number = self.instrument.number(stmt.span) if is_repeatable else None
         if number is None or not isinstance(stmt, Let | Var):
             super().statement(stmt, tail=tail)
@@ -132,6 +131,11 @@ class TimingWriter(InstrumentWriter):
             self.line(f"{kept} = !{kept};" if is_truth else f"{kept} += {kept};")
         self.line("#endif")
 
+    def _is_repeatable(self, stmt: Let | Var) -> bool:
+        """Return whether a declaration computes anything."""
+        is_stored = isinstance(stmt.value, Construct) and is_table(stmt.value)
+        return self.instrument.cost(stmt.value) > 0 and not is_stored
+
     def _where(self, condition: str, lines: list[str]) -> None:
         self.line(f"if ({condition}) {{")
         self.depth += 1
@@ -139,12 +143,6 @@ class TimingWriter(InstrumentWriter):
             self.line(line)
         self.depth -= 1
         self.line("}")
-
-
-def _is_repeatable(stmt: Let | Var) -> bool:
-    """Return whether a declaration computes anything."""
-    is_stored = isinstance(stmt.value, Construct) and is_table(stmt.value)
-    return own_cost(stmt.value) > 0 and not is_stored
 
 
 def _is_short(stmt: Let | Var) -> bool:

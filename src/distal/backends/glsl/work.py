@@ -18,7 +18,6 @@ from distal.ir.contents import contents
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import Function, Let, Stmt, Var
 from distal.ir.types import Matrix, Scalar, Vector, component_count
-from distal.passes.cost import own_cost
 
 if TYPE_CHECKING:
     from distal.backends.glsl.stages import GlslProgram
@@ -74,7 +73,7 @@ class WorkWriter(InstrumentWriter):
         """Append a statement and the operations of its value."""
         names = self.instrument.names
         number = self.instrument.number(stmt.span)
-        cost = own_cost(stmt.value) if isinstance(stmt, Let | Var) else 0
+        cost = self.instrument.cost(stmt.value) if isinstance(stmt, Let | Var) else 0
         is_calling = isinstance(stmt, Let | Var) and bool(contents(stmt.value).called)
         if is_calling and number is not None:
             self.line(f"{names['enter']}({number});")
