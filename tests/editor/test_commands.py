@@ -126,6 +126,6 @@ def test_commands_by_touch(tmp_path):
     with studio(tmp_path, **PHONE) as app:
         app.page.get_by_role("button", name="Find a command").tap()
         app.page.locator(".palette li", has_text=re.compile("^Show how often")).tap()
-        app.wait("() => studio.asking.counts")
+        app.wait("() => studio.costs.isOpen")
         wide = app.page.evaluate("() => document.documentElement.scrollWidth")
         assert wide <= PHONE["viewport"]["width"]

@@ -74,10 +74,8 @@ export class Painter {
   /** Forgets all other programs, textures and buffers, for an editor. */
   keep(programs: Program[], resources: Payload["resources"]): void {
     if (!EDITED) return;
-    for (const [source, made] of this.#programs) {
-      if (programs.includes(source)) continue;
-      this.#programs.delete(source);
-      void made.then(({ handle }) => this.gl.deleteProgram(handle), () => {});
+    for (const source of this.#programs.keys()) {
+      if (!programs.includes(source)) this.forget(source);
     }
     const { sources, textures } = this.#resources;
     if (resources === sources || JSON.stringify(resources) === JSON.stringify(sources)) return;
@@ -93,11 +91,24 @@ export class Painter {
 
   /** What a program draws, byte by byte, as soon as the GPU has it; null where it was lost. */
   pixels(program: Linked, inputs: Inputs, size: [number, number]): Promise<Uint8Array | null> {
+    this.aside(program, inputs, size);
+    return this.#bytes(...size);
+  }
+
+  /** Draws a whole picture that is not shown. */
+  aside(program: Linked, inputs: Inputs, size: [number, number]): void {
     const work = this.#work;
     this.#work = this.#read;
     this.draw(program, inputs, size, 0, size[0]);
     this.#work = work;
-    return this.#bytes(...size);
+  }
+
+  /** Forgets a program, for an editor. */
+  forget(source: Program): void {
+    if (!EDITED) return;
+    const made = this.#programs.get(source);
+    this.#programs.delete(source);
+    void made?.then(({ handle }) => this.gl.deleteProgram(handle), () => {});
   }
 
   /** The bytes of the target that is bound, as soon as the GPU has them; null where it was lost. */

@@ -11,6 +11,7 @@ import { cameraOf, pythonOf } from "./code";
 import { Emitter, type Events } from "./events";
 import { Frame, type Theme } from "./frame";
 import { NOTHING_COVERED, frameOn } from "./framing";
+import { gpuMs } from "./gpu_clock";
 import { GUIDE_PIXELS, answer, numbersOf, question } from "./guide";
 import { Hands, movesOf } from "./hands";
 import type { Actions } from "./keyboard";
@@ -34,7 +35,7 @@ import {
   type Subject,
 } from "./renderer";
 import { copy, save } from "./taking";
-import type { Given } from "./uniforms";
+import type { Given, Inputs } from "./uniforms";
 
 type Numbers = Record<string, UniformEntry["default"]>;
 import { checked, clamp, same } from "./values";
@@ -72,7 +73,15 @@ export class Player {
   /** Draws with other numbers of the scene, until the next payload. */
   declare setNumbers: (numbers: Numbers) => void;
   /** What another program draws of the whole frame: its bytes; null where the GPU went away. */
-  declare drawn: (source: Program, number: Given, size: [number, number]) => Promise<Uint8Array | null>;
+  declare drawn: (source: Program, number: Given, size: [number, number], inputs?: Inputs) => Promise<Uint8Array | null>;
+  /** What a picture of the whole frame reads now. */
+  declare inputs: (size: [number, number]) => Inputs;
+  /** The milliseconds of some drawings of another program; null where it cannot be drawn. */
+  declare timed: (source: Program, inputs: Inputs, size: [number, number], draws: number) => Promise<number | null>;
+  /** Gives the GPU's program back. */
+  declare forget: (source: Program) => void;
+  /** Draws no new pictures meanwhile. */
+  declare pauseDrawing: (isPaused: boolean) => void;
   /** Of a page with paths: whether direct light is shown instead. */
   declare isDirect?: boolean;
 
@@ -126,8 +135,19 @@ export class Player {
         this.numbers = { ...this.numbers, ...numbers };
         this.#renderer.change();
       };
-      this.drawn = (source, number, size) => {
-        const { number: own, ...rest } = this.#subject().inputs(...size, true);
+      this.inputs = (size) => this.#subject().inputs(...size, true);
+      this.timed = async (source, inputs, size, draws) => {
+        const { painter } = this.#renderer;
+        try {
+          return painter && (await gpuMs(painter, await painter.program(source), inputs, size, draws));
+        } catch {
+          return null; // The driver refuses it.
+        }
+      };
+      this.forget = (source) => this.#renderer.painter?.forget(source);
+      this.pauseDrawing = (isPaused) => (this.#renderer.visible = !isPaused);
+      this.drawn = (source, number, size, inputs = this.inputs(size)) => {
+        const { number: own, ...rest } = inputs;
         return this.#renderer.pixels(source, { ...rest, number: { ...own, ...number } }, size);
       };
     }

@@ -205,6 +205,11 @@ export class Renderer {
     }
   }
 
+  /** What draws; null before it starts and after it was lost. */
+  get painter(): Painter | null {
+    return this.#painter;
+  }
+
   /** A PNG of what is to be seen, at the canvas's full scale, as if nothing covered it. */
   capture(samples: number): Promise<Blob | null> {
     return new Promise((resolve) => {

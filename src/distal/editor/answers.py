@@ -14,11 +14,12 @@ from typing import Any, Final, Literal, cast
 from distal.backends import TEXT_TARGETS
 from distal.compiler.driver import compile as compile_text
 from distal.editor.commands import PAGE, export_arguments, file_stem, shown
-from distal.editor.counting import counting
+from distal.editor.counting import counting, timing
 from distal.editor.edits import edits_of
 from distal.editor.looks import Looks, known_values, mistake_at
 from distal.editor.messages import (
     Checked,
+    CountRequest,
     EmittedText,
     ExportedFile,
     ExportRequest,
@@ -169,8 +170,14 @@ _SEVERITIES: Final[Mapping[str, Literal["error", "warning", "note"]]] = {
 
 
 def _count(work: AnswerWork) -> Result:
+    request = cast(CountRequest, work.request)
+    _, seen = work.looks.load(request, request.files)
+    return counting(seen, request.view, tuple(request.files), work=request.work)
+
+
+def _time(work: AnswerWork) -> Result:
     _, seen = work.looks.load(work.request, work.request.files)
-    return counting(seen, work.request.view, tuple(work.request.files))
+    return timing(seen, work.request.view, tuple(work.request.files))
 
 
 def _map(work: AnswerWork) -> Result:
@@ -184,6 +191,7 @@ ANSWERS: Final[Mapping[str, Callable[[AnswerWork], Result]]] = {
     "write": _write,
     "probe": _probe,
     "count": _count,
+    "time": _time,
     "map": _map,
     "check": _check,
     "text": _text,

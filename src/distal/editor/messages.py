@@ -158,19 +158,41 @@ class Written:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Counting:
-    """A program that counts how often statements run, and what to draw it with.
+    """A program that counts how often lines run, or their operations, and what to draw it with.
 
     Draw it as the view's program with the uniform ``which`` set to the number of a place: each
     pixel's color holds the count as red + 256 green + 65536 blue (bytes).
 
     Attributes:
+        most: The largest count of a pixel; it stands for all above.
         places: File (number in ``files``) and line by the number of the place.
     """
 
     program: Program
     which: str
+    most: int
     files: tuple[str, ...]
     places: tuple[tuple[int, int], ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LineTiming:
+    """A program that does what a line computes several times, without changing the picture.
+
+    Attributes:
+        choice: The program's line that picks a place. It ends in -1, for none; with n it repeats
+            place n, with -2 - n the loop of the place alone, without what it computes.
+        repeats: The uniform that says how often.
+        places: File (number in ``files``) and line by the number of the place.
+        evaluations: How often one repetition does the line, by the number of the place.
+    """
+
+    program: Program
+    choice: str
+    repeats: str
+    files: tuple[str, ...]
+    places: tuple[tuple[int, int], ...]
+    evaluations: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -315,6 +337,7 @@ class Rendered:
 Result: TypeAlias = (
     Written
     | Counting
+    | LineTiming
     | ShapeMap
     | ProbeResult
     | EmittedText
@@ -418,10 +441,23 @@ class WriteRequest(SourceRequest):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CountRequest(SourceRequest):
-    """Give the program that counts how often each statement runs."""
+    """Give the program that counts how often each line runs.
+
+    Attributes:
+        work: Whether its estimated operations are counted instead.
+    """
 
     kind: ClassVar[str] = "count"
     result: ClassVar[type | None] = Counting
+    work: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TimeRequest(SourceRequest):
+    """Give the program that repeats what a line computes, to measure its time."""
+
+    kind: ClassVar[str] = "time"
+    result: ClassVar[type | None] = LineTiming
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -724,6 +760,7 @@ REQUESTS: Final = (
     HoldRequest,
     WriteRequest,
     CountRequest,
+    TimeRequest,
     MapRequest,
     ProbeRequest,
     CheckRequest,
@@ -745,6 +782,7 @@ Message: TypeAlias = (
     | HoldRequest
     | WriteRequest
     | CountRequest
+    | TimeRequest
     | MapRequest
     | ProbeRequest
     | CheckRequest

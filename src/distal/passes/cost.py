@@ -121,6 +121,11 @@ def expression_cost(root: Expr, calls: Mapping[str, int]) -> int:
     return known.cost + sum([_call_cost(name, calls) for name in known.called])
 
 
+def own_cost(root: Expr) -> int:
+    """Return the cost of an expression without the bodies of the functions that it calls."""
+    return expression_cost(root, dict.fromkeys(contents(root).callees, 0))
+
+
 def _call_cost(function: str, calls: Mapping[str, int]) -> int:
     return 2 + calls.get(function, 100)
 

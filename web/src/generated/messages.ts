@@ -109,7 +109,7 @@ export interface Written {
 }
 
 /**
- * A program that counts how often statements run, and what to draw it with.
+ * A program that counts how often lines run, or their operations, and what to draw it with.
  *
  * Draw it as the view's program with the uniform `which` set to the number of a place: each
  * pixel's color holds the count as red + 256 green + 65536 blue (bytes).
@@ -117,9 +117,25 @@ export interface Written {
 export interface Counting {
   program: Program;
   which: string;
+  /** The largest count of a pixel; it stands for all above. */
+  most: number;
   files: string[];
   /** File (number in `files`) and line by the number of the place. */
   places: [number, number][];
+}
+
+/** A program that does what a line computes several times, without changing the picture. */
+export interface LineTiming {
+  program: Program;
+  /** The program's line that picks a place. It ends in -1, for none; with n it repeats place n, with -2 - n the loop of the place alone, without what it computes. */
+  choice: string;
+  /** The uniform that says how often. */
+  repeats: string;
+  files: string[];
+  /** File (number in `files`) and line by the number of the place. */
+  places: [number, number][];
+  /** How often one repetition does the line, by the number of the place. */
+  evaluations: number[];
 }
 
 /**
@@ -311,9 +327,38 @@ export interface WriteRequest {
   changes: Change[];
 }
 
-/** Give the program that counts how often each statement runs. */
+/** Give the program that counts how often each line runs. */
 export interface CountRequest {
   kind: "count";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  /** The texts by name: the scene's file and modules beside it. */
+  files: Record<string, string>;
+  /** The name of the scene's file. */
+  main: string;
+  /** The name of the object in it; None for the only one. */
+  object?: string | null;
+  /** The view to show. */
+  view?: string;
+  /** Values of parameters by name; others have their defaults. */
+  values?: Record<string, boolean | number | number[]>;
+  /** In seconds. */
+  time?: number;
+  /** The look to show it in; None for its own. */
+  look?: string | null;
+  /** How light is computed; None: as the scene says. */
+  mode?: "direct" | "path" | null;
+  /** The author's frame in pixels. */
+  size?: [number, number];
+  /** Whether its estimated operations are counted instead. */
+  work?: boolean;
+}
+
+/** Give the program that repeats what a line computes, to measure its time. */
+export interface TimeRequest {
+  kind: "time";
   /** The app's number of the request, never used twice. */
   id: number;
   /** The app's number of the text, greater after each change. */
@@ -692,6 +737,7 @@ export interface Mistakes {
 export interface Results {
   write: Written;
   count: Counting;
+  time: LineTiming;
   map: ShapeMap;
   probe: ProbeResult;
   check: Checked;
@@ -752,6 +798,6 @@ export interface Restarted {
   reason: string;
 }
 
-export type Request = LookRequest | HoldRequest | WriteRequest | CountRequest | MapRequest | ProbeRequest | CheckRequest | TextRequest | ExportRequest | RenderRequest | CommandRequest | ChoicesRequest | CancelRequest | SaveRequest | StopRequest;
+export type Request = LookRequest | HoldRequest | WriteRequest | CountRequest | TimeRequest | MapRequest | ProbeRequest | CheckRequest | TextRequest | ExportRequest | RenderRequest | CommandRequest | ChoicesRequest | CancelRequest | SaveRequest | StopRequest;
 
 export type Response = Ready | SceneFound | NumbersFound | Mistakes | Answer | Dropped | Printed | Progress | Changed | Restarted;

@@ -1,12 +1,11 @@
 /**
- * Questions about the picture: what a pixel shows, what a line makes, how often it runs.
+ * Questions about the picture: what a pixel shows, what a line makes, which program measures lines.
  *
- * Input: clicks, the line under the mouse, a switch. Output: marks in the code, outlines in the picture,
- * counts beside lines.
+ * Input: clicks, the line under the mouse. Output: marks in the code, outlines in the picture, programs.
  */
 
-import type { ShapeMap } from "../generated/messages";
-import { runsOf, type Runs } from "./costs";
+import type { Results, ShapeMap } from "../generated/messages";
+import type { Asked } from "./client";
 import type { Studio } from "./studio";
 
 /** The mouse rests so long on a line until its shape is outlined. */
@@ -15,41 +14,20 @@ const POINTED_MS = 70;
 const CARET_MS = 1600;
 
 export class Asking {
-  /** Whether the editor shows how often lines run. */
-  counts = false;
-  #runs = new Map<string, Runs[]>();
   #pointing = 0;
   #pointedAt: number | null = null;
   #shapes: { revision: number; object: string | null; map: Promise<ShapeMap | null> } | null = null;
 
   constructor(readonly studio: Studio) {}
 
-  toggleCounts(): void {
-    this.counts = !this.counts;
-    this.studio.commands.refresh();
-    this.showRuns();
-    void this.studio.channel.start?.();
-    void this.count();
-  }
-
-  /** Counts again, where counts are shown. */
-  async count(): Promise<void> {
-    const { client, looking, picture, texts } = this.studio;
-    if (!this.counts || !looking.can("count")) return;
+  /** The worker's program that measures lines of the text as it is. */
+  async lineProgram<K extends "count" | "time">(kind: K, more: object = {}): Promise<Results[K] | null> {
+    const { client, looking, texts } = this.studio;
+    if (!looking.can(kind)) return null;
     const { revision } = texts;
-    const { player } = picture;
-    const isWanted = () => this.counts && texts.revision === revision && picture.player === player;
-    const answer = await client.ask({ kind: "count", ...looking.source });
-    if (answer?.kind !== "answer" || answer.request !== "count" || !player || !isWanted()) return;
-    const runs = await runsOf(answer.result, player, isWanted);
-    if (!runs) return;
-    this.#runs = runs;
-    this.showRuns();
-  }
-
-  showRuns(): void {
-    const { editor } = this.studio;
-    editor.setRuns(this.counts ? (this.#runs.get(editor.name) ?? []) : []);
+    const answer = await client.ask({ kind, ...looking.source, ...more } as Asked);
+    const isIt = answer?.kind === "answer" && answer.request === kind && revision === texts.revision;
+    return isIt ? (answer.result as Results[K]) : null;
   }
 
   /** Outlines what a line makes: while the mouse is on it, and for a moment when the caret comes. */

@@ -97,12 +97,12 @@ function ofApp(studio: Studio): Command[] {
     },
     {
       id: "cost",
-      text: "Show how often each line runs",
+      text: "Show what each line costs",
       button: "Cost",
-      hint: "How often each line runs for a pixel",
-      words: "count speed",
-      act: () => studio.asking.toggleCounts(),
-      isOn: () => studio.asking.counts,
+      hint: "What each line costs: runs, work, time",
+      words: "count speed runs work time",
+      act: () => studio.costs.toggle(),
+      isOn: () => studio.costs.isOpen,
     },
     {
       id: "export",

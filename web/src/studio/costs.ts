@@ -1,70 +1,48 @@
 /**
- * How often each line runs: a program that counts is drawn once for each line, small.
+ * The editor's column of costs: a figure and a bar for each line.
  *
- * Input: the worker's counting program, a player. Output: runs of a line a pixel, on average and at
- * most. They are exact at the pixels that are drawn, for this view, time and values.
+ * Input: figures of the file that is shown. Output: a gutter of the editor. What a figure means, and
+ * where it comes from, is in `counts.ts` and `times.ts`.
  */
 
 import { EditorView, GutterMarker, gutter } from "@codemirror/view";
 import { RangeSet, StateEffect, StateField, type Extension } from "@codemirror/state";
-import type { Counting } from "../generated/messages";
 import { make } from "../dom";
-import type { Player } from "../player";
 
-/** The longer side of the drawing. */
-const PIXELS = 64;
-
-/** Runs of a line in a pixel. */
-export interface Runs {
+/** What a line costs, as it is shown. */
+export interface Figure {
   line: number;
-  mean: number;
-  most: number;
+  text: string;
+  /** A sentence that explains the text. */
+  hint: string;
+  /** The length of the bar, from 0 to 1. */
+  share: number;
 }
 
-/** The runs of all lines by file; null where the picture went away, or `isWanted` says so. */
-export async function runsOf(
-  counting: Counting,
-  player: Player,
-  isWanted: () => boolean,
-): Promise<Map<string, Runs[]> | null> {
-  const [wide, high] = player.payload.size;
-  const scale = PIXELS / Math.max(wide, high);
-  const size: [number, number] = [Math.round(wide * scale) || 1, Math.round(high * scale) || 1];
-  const found = new Map<string, Runs[]>(counting.files.map((file) => [file, []]));
-  for (const [number, [file, line]] of counting.places.entries()) {
-    const bytes = await player.drawn(counting.program, { [counting.which]: number }, size);
-    if (!bytes || !isWanted()) return null;
-    let sum = 0;
-    let most = 0;
-    for (let i = 0; i < bytes.length; i += 4) {
-      const runs = bytes[i]! + 256 * bytes[i + 1]! + 65536 * bytes[i + 2]!;
-      sum += runs;
-      most = Math.max(most, runs);
-    }
-    found.get(counting.files[file]!)!.push({ line, mean: (4 * sum) / bytes.length, most });
-  }
-  return found;
-}
+/** The figures of all files by name. */
+export type Figures = Map<string, Figure[]>;
 
-const setRuns = StateEffect.define<readonly Runs[]>();
+/** So many of the longest bars are printed bold. */
+const HOTTEST = 3;
 
-class RunsMarker extends GutterMarker {
+const setFigures = StateEffect.define<readonly Figure[]>();
+
+class CostMarker extends GutterMarker {
   constructor(
-    readonly runs: Runs,
-    readonly share: number,
+    readonly figure: Figure,
+    readonly isHot: boolean,
   ) {
     super();
   }
 
-  override eq(other: RunsMarker): boolean {
-    return other.runs.mean === this.runs.mean && other.runs.most === this.runs.most && other.share === this.share;
+  override eq(other: CostMarker): boolean {
+    return other.isHot === this.isHot && JSON.stringify(other.figure) === JSON.stringify(this.figure);
   }
 
   override toDOM(): Node {
-    const { mean, most } = this.runs;
-    const title = `Runs ${short(mean)} times a pixel on average, ${most.toLocaleString("en")} at most`;
-    const element = make("span", { className: "runs", title }, short(mean));
-    element.style.setProperty("--share", `${Math.round(100 * this.share)}%`);
+    const { text, hint, share } = this.figure;
+    const element = make("span", { className: this.isHot ? "runs hot" : "runs", title: hint }, text);
+    element.style.setProperty("--share", `${Math.round(100 * share)}%`);
     return element;
   }
 }
@@ -77,18 +55,18 @@ export function short(value: number): string {
   return value === 0 ? "0" : String(+value.toPrecision(value < 1 ? 2 : 3));
 }
 
-const marks = StateField.define<RangeSet<RunsMarker>>({
+const marks = StateField.define<RangeSet<CostMarker>>({
   create: () => RangeSet.empty,
   update(now, transaction) {
     let set = now.map(transaction.changes);
     for (const effect of transaction.effects) {
-      if (!effect.is(setRuns)) continue;
+      if (!effect.is(setFigures)) continue;
       const { doc } = transaction.state;
       const all = effect.value.filter(({ line }) => line <= doc.lines);
-      const most = Math.max(...all.map(({ mean }) => mean), 1);
-      const made = all.map((runs) => {
-        const share = Math.log1p(runs.mean) / Math.log1p(most);
-        return new RunsMarker(runs, share).range(doc.line(runs.line).from);
+      const shares = all.map(({ share }) => share).sort((a, b) => b - a);
+      const least = Math.max(shares[HOTTEST - 1] ?? 0, 0.05);
+      const made = all.map((figure) => {
+        return new CostMarker(figure, figure.share >= least).range(doc.line(figure.line).from);
       });
       set = RangeSet.of(made, true);
     }
@@ -96,13 +74,13 @@ const marks = StateField.define<RangeSet<RunsMarker>>({
   },
 });
 
-/** The editor's column of runs, which is there while it has something to show. */
+/** The editor's column of costs, which is there while costs are wanted. */
 export function costs(): Extension {
   return [marks, gutter({ class: "costs", markers: (view) => view.state.field(marks) })];
 }
 
-/** Shows the runs of the file in an editor; none takes the column away. */
-export function showRuns(view: EditorView, runs: readonly Runs[]): void {
-  view.dom.parentElement!.classList.toggle("counted", runs.length > 0);
-  view.dispatch({ effects: setRuns.of(runs) });
+/** Shows the figures of the file in an editor; null takes the column away. */
+export function showFigures(view: EditorView, figures: readonly Figure[] | null): void {
+  view.dom.parentElement!.classList.toggle("counted", figures !== null);
+  view.dispatch({ effects: setFigures.of(figures ?? []) });
 }

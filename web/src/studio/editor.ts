@@ -32,7 +32,7 @@ import {
 } from "@codemirror/view";
 import { tags } from "@lezer/highlight";
 import type { Edit, Mistake, SourceLiteral } from "../generated/messages";
-import { costs, showRuns, type Runs } from "./costs";
+import { costs, showFigures, type Figure } from "./costs";
 import { literals, setLiterals, type Turning } from "./literals";
 import { names } from "./names";
 
@@ -195,9 +195,9 @@ export class Editor {
     this.view.dispatch(setDiagnostics(state, found));
   }
 
-  /** Shows how often lines of the file that is shown run. */
-  setRuns(runs: readonly Runs[]): void {
-    showRuns(this.view, runs);
+  /** Shows what lines of the file that is shown cost; null takes the column away. */
+  setFigures(figures: readonly Figure[] | null): void {
+    showFigures(this.view, figures);
   }
 
   /** Marks lines of the file that is shown. */

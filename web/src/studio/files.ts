@@ -67,9 +67,10 @@ export class Files {
   }
 
   typed(name: string, text: string): void {
-    const { looking, picture, tabs, texts } = this.studio;
+    const { costs, looking, picture, tabs, texts } = this.studio;
     if (!name || texts.files[name] === text) return;
     texts.set(name, text);
+    costs.changed();
     picture.outline.show(null, null);
     tabs.fill();
     looking.lookSoon();

@@ -111,7 +111,7 @@ export class Looking {
   }
 
   async #lookOn(): Promise<void> {
-    const { asking, client, page, picture, texts, turning } = this.studio;
+    const { client, costs, page, picture, texts, turning } = this.studio;
     if (this.#isBusy || this.isStopped || !this.ready || turning.isOn) return;
     this.#isBusy = true;
     while (this.#done !== this.#wanted && !this.isStopped && !turning.isOn) {
@@ -125,7 +125,7 @@ export class Looking {
     }
     this.#isBusy = false;
     this.#guideSoon();
-    void asking.count();
+    void costs.compiled();
     if (picture.player && picture.layers.isOpen) void picture.layers.draw(picture.player);
   }
 

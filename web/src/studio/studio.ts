@@ -11,6 +11,7 @@ import { Asking } from "./asking";
 import { CellChannel } from "./cell_channel";
 import { SocketChannel, type Channel } from "./channel";
 import { Client } from "./client";
+import { CostBar } from "./cost_bar";
 import { Commands } from "./command_keys";
 import { Editor } from "./editor";
 import { Emitted } from "./emitted";
@@ -36,6 +37,7 @@ export class Studio {
   readonly tabs = new Tabs(this);
   readonly opening = new Opening(this);
   readonly sharing = new Sharing(this);
+  readonly costs: CostBar;
   readonly commands: Commands;
   readonly channel: Channel;
   readonly client: Client;
@@ -52,6 +54,7 @@ export class Studio {
     if (isFramed) this.page.beFramed(() => this.sharing.whole());
     this.texts = new Texts(isFramed ? location.href : folder);
     this.picture = this.#picture();
+    this.costs = this.#costs();
     this.commands = new Commands(this);
     this.editor = this.#editor();
     this.emitted = this.#emitted();
@@ -100,6 +103,23 @@ export class Studio {
     const { element, strip, layers, knobs } = picture;
     page.show.append(element, strip, layers.element, knobs);
     return picture;
+  }
+
+  #costs(): CostBar {
+    const { asking, page } = this;
+    const costs = new CostBar({
+      count: (work) => asking.lineProgram("count", { work }),
+      time: () => asking.lineProgram("time"),
+      player: () => this.picture.player,
+      file: () => this.editor.name,
+      show: (figures) => this.editor.setFigures(figures),
+      toggled: () => {
+        this.commands.refresh();
+        void this.channel.start?.();
+      },
+    });
+    page.tabRow.after(costs.element);
+    return costs;
   }
 
   #editor(): Editor {

@@ -47,7 +47,7 @@ export class Tabs {
   }
 
   show(name: string): void {
-    const { asking, editor, texts } = this.studio;
+    const { costs, editor, texts } = this.studio;
     const was = this.#now;
     this.#now = name;
     if (name === TEXT_TAB) void this.emit();
@@ -55,7 +55,7 @@ export class Tabs {
     if (was !== name) this.fill();
     if (was !== name && name !== TEXT_TAB) {
       this.showMistakes(this.#mistakes);
-      asking.showRuns();
+      costs.shown();
     }
   }
 
@@ -75,6 +75,7 @@ export class Tabs {
   moved(name: string, line: number): void {
     if (line === this.#line) return;
     this.#line = line;
+    this.studio.costs.moved(line);
     if (this.isText) this.studio.emitted.link(name, line);
   }
 

@@ -38,6 +38,7 @@ export class Turning {
     this.#turn ??= { literal, value, held: null, edits: [], isDone: false, isBusy: false, answered: null };
     this.#turn.value = value;
     this.#turn.isDone = false;
+    this.studio.costs.changed();
     void this.#turnOn();
   }
 

@@ -7,6 +7,7 @@ and the interface. ``distal.backends.glsl.writer`` writes functions, and
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any, Final
 
@@ -22,11 +23,13 @@ from distal.backends.clike.module_names import ModuleNames, Vocabulary, name_mod
 from distal.backends.clike.module_text import joined, without_frame
 from distal.backends.clike.names import Reserved
 from distal.backends.clike.packing import Packing, pack
-from distal.backends.glsl import counting
+from distal.backends.glsl import counting, timing
 from distal.backends.glsl.counting import Counts
 from distal.backends.glsl.isf import IsfHeader
+from distal.backends.glsl.own_values import with_own_values
 from distal.backends.glsl.stages import GlslProgram, fragment_lines, vertex_lines
 from distal.backends.glsl.targets import GlslTarget
+from distal.backends.glsl.timing import Repetitions
 from distal.backends.glsl.uniforms import beyond_room
 from distal.backends.glsl.writer import trust_macro
 from distal.backends.targets import Declares
@@ -50,14 +53,30 @@ def emit(module: Module, target: Target) -> Artifact:
 
 
 def emit_counting(module: Module, target: Target, counts: Counts) -> Artifact:
-    """Return a program of WebGL 2 that draws how often statements run (``glsl.counting``).
+    """Return a program of WebGL 2 that draws counts of lines (``glsl.counting``, ``glsl.work``).
 
     Raises:
         CompileError: The target cannot express the author's code.
     """
     assert isinstance(target, GlslTarget), target
-    program = counting.prepared(_program(without_frame(module), target), counts)
+    module = without_frame(module)
+    if counts.splits:
+        # All statements, not the author's alone: the work of what they call is added up as well.
+        module = with_own_values(module, lambda _: True)
+    program = counting.prepared(_program(module, target), counts)
     return counting.counting(_text(program, target), counts)
+
+
+def emit_timing(module: Module, target: Target, measured: Repetitions) -> Artifact:
+    """Return a program of WebGL 2 that does one line several times (``glsl.timing``).
+
+    Raises:
+        CompileError: The target cannot express the author's code.
+    """
+    assert isinstance(target, GlslTarget), target
+    own = with_own_values(without_frame(module), measured.is_placed)
+    program = timing.prepared(_program(own, target, macros=(timing.MEASURED,)), measured)
+    return timing.timed(_text(program, target), measured)
 
 
 def _text(program: GlslProgram, target: GlslTarget) -> Artifact:
@@ -72,22 +91,22 @@ def _text(program: GlslProgram, target: GlslTarget) -> Artifact:
     return Artifact(text, _interface(program, target), vertex, places, vertex_places)
 
 
-def vocabulary(target: GlslTarget) -> Vocabulary:
-    """Return the names that are reserved in a text for the target."""
+def vocabulary(target: GlslTarget, macros: Iterable[str] = ()) -> Vocabulary:
+    """Return the names that are reserved in a text for the target; ``macros``: the text's own."""
     # A macro replaces its word everywhere, even in names of locals and fields.
-    macros = target.host_macros.union(_TRUST.values() if target.rough else ())
+    macros = target.host_macros.union(macros, _TRUST.values() if target.rough else ())
     words = GLSL_KEYWORDS | GLSL_METHODS | macros
     fields = Reserved(words, (*GLSL_PREFIXES, *target.host_prefixes), target.host_parts)
     return Vocabulary(fields, fields | GLSL_FUNCTIONS | target.host_names | target.written_names)
 
 
-def _program(module: Module, target: GlslTarget) -> GlslProgram:
+def _program(module: Module, target: GlslTarget, macros: Iterable[str] = ()) -> GlslProgram:
     fixed = {
         uniform.name: target.texts[uniform.name]
         for uniform in module.uniforms
         if uniform.origin is Origin.FRAME and uniform.name in target.texts
     }
-    words = vocabulary(target)
+    words = vocabulary(target, macros)
     header: tuple[str, ...] = ()
     resources = target.resource_names(module.resources) if target.resource_names else {}
     if target.described and module.kind is EntryKind.IMAGE:

@@ -17,7 +17,7 @@ from distal.backends.clike.functions import place
 from distal.backends.clike.module_names import ModuleNames, reachable, types_in
 from distal.backends.clike.module_text import uniform_comment
 from distal.backends.clike.packing import Packing, value_text, vector_texts
-from distal.backends.glsl.counting import CountingWriter, Counts, declaration_lines
+from distal.backends.glsl.instruments import Instrument
 from distal.backends.glsl.isf import IsfWriter, sampler_lines
 from distal.backends.glsl.resources import accessor_lines, resource_lines
 from distal.backends.glsl.targets import GlslTarget, target_name
@@ -53,7 +53,7 @@ class GlslProgram:
     packing: Packing | None
     vectors: list[str]  # the names of the packed vectors
     header: tuple[str, ...] = ()  # comments that the host reads
-    counts: Counts | None = None  # of a program that counts
+    instrument: Instrument | None = None  # of a program that measures lines
 
     def writer(self) -> GlslWriter:
         """Return a new writer for one stage."""
@@ -63,11 +63,7 @@ class GlslProgram:
 
     def pixel_writer(self) -> GlslWriter:
         """Return a new writer for the stage of the pixels."""
-        if self.counts is None:
-            return self.writer()
-        writer = CountingWriter(self.names, Expense(self.module), self.fixed)
-        writer.counts = self.counts
-        return writer
+        return self.writer() if self.instrument is None else self.instrument.writer(self)
 
 
 def fragment_lines(program: GlslProgram) -> list[Line]:
@@ -92,8 +88,8 @@ def fragment_lines(program: GlslProgram) -> list[Line]:
     lines += _frame_lines(program, in_functions)
     if is_image and program.target.output == "fragment_color":
         lines += [Line(""), *map(Line, _output_lines(entry))]
-    if program.counts is not None:
-        lines += declaration_lines(program.counts)
+    if program.instrument is not None:
+        lines += program.instrument.declaration_lines()
     lines += _type_lines(program, writer, used)
     lines += _table_lines(writer)
     return [*lines, Line(""), *body]
