@@ -41,7 +41,7 @@ def test_flanks_are_involutes(teeth, module, backlash):
     flank = [involute(teeth, module, backlash, r) for r in np.linspace(0.1, tip - 0.02, 12)]
     assert values(gear, flank) == pytest.approx(0.0, abs=1e-5 * module)
     # the normals of the flank, and of curves beside it, touch the base circle
-    beside = np.array(flank) + [0.01 * module, 0.0, 0.0]
+    beside = np.array(flank) + np.array([0.01 * module, 0.0, 0.0])
     normals = np.asarray(executor().call(gear._gradient, (beside,), {}, device="reference"))
     reach = np.abs(np.cross(normals, beside)[:, 2])
     assert reach == pytest.approx(0.5 * module * teeth * math.cos(ANGLE), rel=2e-5)

@@ -91,7 +91,10 @@ MISTAKES = [
         lambda: (distal.Box(1) | distal.Sphere(0.6)).translate(1, 0, 0).chamfer(0.1),
         "call chamfer right after the operator: (a - b).chamfer(0.1).translate(…)",
     ),
-    (lambda: (distal.Box(1) - distal.Sphere(0.6)).fillet(-1), "'radius of fillet' must be 0 or more"),
+    (
+        lambda: (distal.Box(1) - distal.Sphere(0.6)).fillet(-1),
+        "'radius of fillet' must be 0 or more",
+    ),
     (lambda: distal.Box(1).infill(0.2, 0.1), "an infill is a lattice, not 0.2"),
     (lambda: distal.Circle(1).infill(distal.Gyroid(), 0.1), "an infill is a lattice"),
 ]

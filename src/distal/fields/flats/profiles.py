@@ -140,7 +140,9 @@ def gear_profile(
     root = radius - dedendum * module
     base = radius * cos(pressure_angle)
     # Angles from the tooth's middle to the start of its involute on the base circle, and its ends.
-    middle = 0.5 * PI / float(count) - 0.5 * backlash / radius + tan(pressure_angle) - pressure_angle
+    middle = (
+        0.5 * PI / float(count) - 0.5 * backlash / radius + tan(pressure_angle) - pressure_angle
+    )
     roll_tip = sqrt(max(tip * tip - base * base, 0.0)) / base
     roll_foot = sqrt(max(root * root - base * base, 0.0)) / base
     at_tip = middle - roll_tip + atan(roll_tip)

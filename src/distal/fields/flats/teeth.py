@@ -15,9 +15,7 @@ from distal.lang import abs, clamp, func, length, max, round, select, tan, vec2
 
 
 @func
-def below_teeth(
-    p: vec2, half_crest: float, half_root: float, pitch: float, depth: float
-) -> float:
+def below_teeth(p: vec2, half_crest: float, half_root: float, pitch: float, depth: float) -> float:
     """Return the exact distance to the region below an infinite row of teeth, negative inside.
 
     The crests are at y = 0, one of them at x = 0; the roots are at y = -depth.

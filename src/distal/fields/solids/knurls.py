@@ -5,7 +5,6 @@ Input: a point and the sizes of the grooves. Output: a lower bound of the distan
 
 from __future__ import annotations
 
-
 from distal.fields.constants import HALF_ROOT, PI, TAU
 from distal.fields.flats.teeth import below_teeth
 from distal.fields.guarantees import LOWER_BOUND, Bounds, Limit, primitive

@@ -65,7 +65,9 @@ def offset_on(
     (own_low, own_high), (low, high) = (
         _fixed_extents(s, "on()", range(_count(shape)), place) for s in (shape, other)
     )
-    middles = [(a + b - c - d) / 2.0 for a, b, c, d in zip(low, high, own_low, own_high, strict=True)]
+    middles = [
+        (a + b - c - d) / 2.0 for a, b, c, d in zip(low, high, own_low, own_high, strict=True)
+    ]
     axis, sign = _SIDES[side]
     touching = high[axis] - own_low[axis] if sign > 0.0 else low[axis] - own_high[axis]
     return tuple(touching + sign * gap if i == axis else m for i, m in enumerate(middles))

@@ -20,7 +20,6 @@ from distal.ir.build import number as constant
 from distal.ir.nodes import Call, Compose, Construct, Expr, Return
 from distal.ir.types import FLOAT, VEC2, VEC3, tuple_type
 from distal.lang.composed import Composed
-from distal.lang.lazy_module import LazyModule
 from distal.lang.runtime_access import executor
 from distal.packages import imported
 from distal.scene.lowering.parts.table import rolled_for
@@ -64,7 +63,9 @@ class FarDistances(Composed):
         type_ = VEC2 if node.flat else VEC3
         found: list[Expr] = []
         for sign, axis in itertools.product((-1.0, 1.0), range(type_.size)):
-            parts = [m + (sign * self._far if i == axis else 0.0) for i, m in enumerate(self._middle)]
+            parts = [
+                m + (sign * self._far if i == axis else 0.0) for i, m in enumerate(self._middle)
+            ]
             point = Compose(tuple(constant(part) for part in parts), type_)
             found.append(Call(field.name, (point, *field.captures), FLOAT))
         body = (Return(Construct(tuple(found), self.result)),)

@@ -1,4 +1,4 @@
-"""Metric screws: ``MetricThread``, ``MetricHole``, ``Bolt`` and ``Nut``, by the names of their sizes.
+"""Metric screws: ``MetricThread``, ``MetricHole``, ``Bolt`` and ``Nut``, by names of sizes.
 
 Input: a size such as "M6" and lengths in millimetres. Output: solids around the y axis, made of the
 library's threads, prisms and cones. Does not contain formulas of distances.

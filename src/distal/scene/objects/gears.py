@@ -169,7 +169,9 @@ class Rack(Toothed):
         thick = 2.0 * module if base is None else base
         numbers = (module, angle, thick, backlash, clearance, teeth)
         made = CLASSES["RackProfile"](*numbers).extrude(width)
-        self._set(made, module=module, teeth=teeth, pressure_angle=angle, helix=0.0, pitch_radius=0.0)
+        self._set(
+            made, module=module, teeth=teeth, pressure_angle=angle, helix=0.0, pitch_radius=0.0
+        )
 
 
 def _checked(
@@ -221,7 +223,7 @@ def mesh_gears(first: Gear, second: Toothed, turn: Any = 0.0) -> tuple[Shape, Sh
     radius, quarter = first.pitch_radius, 0.5 * math.pi
     half_step = quarter * first.module  # half of the distance from tooth to tooth
     if isinstance(second, Rack):
-        # The gap of the rack that takes the tooth at -y; of an odd number, a tooth is in the middle.
+        # The gap of the rack that takes the tooth at -y; an odd number has a tooth in the middle.
         start = radius * math.pi - (half_step if second.teeth % 2 else 0.0)
         start -= 2.0 * half_step * round(start / (2.0 * half_step))
         return turned, second.translate(radius * turn + start, -radius, 0.0)
@@ -245,7 +247,9 @@ def _check_pair(first: Gear, second: Toothed, place: Span | None) -> None:
     for name in ("module", "pressure_angle"):
         own, other = getattr(first, name), getattr(second, name)
         if not math.isclose(own, other, rel_tol=1e-9):
-            refuse(f"gears mesh if they have one {name}; these have {own:g} and {other:g}", None, place)
+            refuse(
+                f"gears mesh if they have one {name}; these have {own:g} and {other:g}", None, place
+            )
     wanted = first.helix if isinstance(second, RingGear) else -first.helix
     if not math.isclose(second.helix, wanted, abs_tol=1e-9):
         hint = f"helix={wanted:g} for the second"

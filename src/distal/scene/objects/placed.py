@@ -179,8 +179,8 @@ class Placed(BaseShape):
         """Make a skin of this shape and fill it with a lattice, as for printing.
 
         Args:
-            lattice: What fills the skin: ``Gyroid(0.4)``, ``OctetLattice(0.5, 0.04)``. In a solid, a
-                flat one such as ``Honeycomb(0.3, 0.04)`` stands upright: its walls run along y.
+            lattice: What fills the skin: ``Gyroid(0.4)``, ``OctetLattice(0.5, 0.04)``. In a solid,
+                a flat one such as ``Honeycomb(0.3, 0.04)`` stands upright: its walls run along y.
             wall: Thickness of the skin, inside the surface.
         """
         place = author_place()
@@ -250,7 +250,7 @@ class Placed(BaseShape):
         The extents of both shapes are measured, as by ``on``.
 
         Raises:
-            SceneValueError: A word is none of these, or the extents change with a parameter or time.
+            SceneValueError: A word is none of these, or the extents follow a parameter or time.
         """
         words = {"x": x, "y": y, "z": z}
         return self._with(placing.TRANSLATE, offset_aligned(self, other, words, author_place()))

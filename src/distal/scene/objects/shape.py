@@ -475,9 +475,7 @@ class Shape2D(Placed):
         )
         return filled(self, options, box, inside, outside, samples)
 
-    def extrude(
-        self, height: Any = 1.0, *, rounding: Any = None, chamfer: Any = None
-    ) -> Shape:
+    def extrude(self, height: Any = 1.0, *, rounding: Any = None, chamfer: Any = None) -> Shape:
         """Extrude along z to a solid whose middle is at z = 0.
 
         Args:
@@ -553,8 +551,8 @@ class Shape2D(Placed):
     def wrap_around(self, radius: Any, height: Any, *, depth: Any = None) -> Shape:
         """Put the outline on a cylinder about the y axis, raised: text on a bottle, for instance.
 
-        It is ``wrap_cylinder`` with the sizes of what is seen. Its front faces +z. Unite it with the
-        cylinder, or subtract it for an engraving.
+        It is ``wrap_cylinder`` with the sizes of what is seen. Its front faces +z. Unite it with
+        the cylinder, or subtract it for an engraving.
 
         Args:
             radius: Radius of the cylinder.

@@ -64,7 +64,9 @@ def shaped_edge(node: Node, word: str, size: Any, place: Span | None) -> Node:
         return _replaced(node, shaped, numbers, constants, place)
     if rule is extrude.EXTRUDE:
         shaped, name = _EXTRUDED[word]
-        numbers, constants = bound(shaped, (), {"height": node.numbers["height"].value, name: size}, place)
+        numbers, constants = bound(
+            shaped, (), {"height": node.numbers["height"].value, name: size}, place
+        )
         return _replaced(node, shaped, numbers, constants, place)
     found = _INSTEAD[word].get(rule.name)
     if found is None and not node.children:
