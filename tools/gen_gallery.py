@@ -36,7 +36,7 @@ SECONDS: Final = {"melting": 1.0, "sdfray_glass": 0.6, "course_5_animation": 0.7
 GROUPS: Final = {
     "Showpieces": (
         *("city", "castle", "still_life", "room_door", "gyroid_part", "enclosure", "catalogue"),
-        *("bunny", "sea", "beach", "forest", "bricks", "molecule"),
+        *("bolt_and_nut", "gears", "bunny", "sea", "beach", "forest", "bricks", "molecule"),
     ),
     "True optics": ("wine", "caustics", "prism", "cornell_box", "depth_of_field"),
     "The first pictures": ("raymarcher", "melting"),

@@ -44,7 +44,7 @@ class MetricThread(Shape):
         row = metric_size(size, "MetricThread", author_place())
         pitch = row.pitch if pitch is None else pitch
         made = CLASSES["Thread"](row.diameter, pitch, length, _CHAMFER * pitch, left=left)
-        BaseShape.__init__(self, made.node)
+        BaseShape.__init__(self, made.named("MetricThread").node)
 
 
 class MetricHole(Shape):
@@ -84,7 +84,7 @@ class MetricHole(Shape):
             beyond = 2.0 * pitch if through else pitch
             made = CLASSES["Cylinder"](0.5 * row.hole, length + beyond)
             made = made if through else made.translate(0.0, 0.5 * pitch, 0.0)
-        BaseShape.__init__(self, made.node)
+        BaseShape.__init__(self, made.named("MetricHole").node)
 
 
 class Bolt(Shape):
@@ -120,7 +120,7 @@ class Bolt(Shape):
             shank = CLASSES["Cylinder"](0.5 * row.diameter, plain + 0.5 * row.head)
             parts.append(shank.translate(0.0, 0.25 * row.head - 0.5 * plain, 0.0))
         head = _hexagon(row, row.head, both=False).translate(0.0, 0.5 * row.head, 0.0)
-        BaseShape.__init__(self, head.union(*parts).node)
+        BaseShape.__init__(self, head.union(*parts).named("Bolt").node)
 
 
 class Nut(Shape):
@@ -147,7 +147,8 @@ class Nut(Shape):
         sink = _SINK * row.diameter
         self.__dict__.update(pitch=row.pitch, left=left)
         hole = CLASSES["TappedHole"](row.diameter, row.pitch, row.nut, clearance, sink, left=left)
-        BaseShape.__init__(self, (_hexagon(row, row.nut, both=True) - hole).node)
+        made = _hexagon(row, row.nut, both=True) - hole
+        BaseShape.__init__(self, made.named("Nut").node)
 
     def screwed(self, height: Any) -> Shape:
         """Return the nut with its middle at a height on its bolt, turned as the thread turns it.

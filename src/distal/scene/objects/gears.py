@@ -44,7 +44,7 @@ class Toothed(Shape):
     pitch_radius: float
 
     def _set(self, made: BaseShape, **known: Any) -> None:
-        BaseShape.__init__(self, made.node)
+        BaseShape.__init__(self, made.named(type(self).__name__).node)
         self.__dict__.update(known)
 
 
@@ -239,11 +239,7 @@ def mesh_gears(first: Gear, second: Toothed, turn: Any = 0.0) -> tuple[Shape, Sh
 
 
 def _check_pair(first: Gear, second: Toothed, place: Span | None) -> None:
-    """Refuse gears that do not mesh.
-
-    Source: the condition that tips touch involutes alone, beyond the point where the line of action
-    touches the other gear's base circle.
-    """
+    """Refuse gears that do not mesh."""
     for name in ("module", "pressure_angle"):
         own, other = getattr(first, name), getattr(second, name)
         if not math.isclose(own, other, rel_tol=1e-9):
@@ -254,8 +250,16 @@ def _check_pair(first: Gear, second: Toothed, place: Span | None) -> None:
     if not math.isclose(second.helix, wanted, abs_tol=1e-9):
         hint = f"helix={wanted:g} for the second"
         refuse("the teeth of helical gears must run along each other", hint, place)
-    sine = math.sin(first.pressure_angle)
-    cosine = math.cos(first.pressure_angle)
+    _check_tips(first, second, place)
+
+
+def _check_tips(first: Gear, second: Toothed, place: Span | None) -> None:
+    """Refuse gears whose tips reach into feet.
+
+    Source: the condition that tips touch involutes alone, not beyond the point where the line of
+    action touches the other gear's base circle.
+    """
+    sine, cosine = math.sin(first.pressure_angle), math.cos(first.pressure_angle)
     if isinstance(second, RingGear):
         apart = second.pitch_radius - first.pitch_radius
         limit = math.hypot(second.pitch_radius * cosine, apart * sine)
