@@ -57,9 +57,9 @@ def test_a_gear_has_its_radii():
 
 
 PAIRS = [
-    (lambda: distal.Gear(1.0, 20), lambda: distal.Gear(1.0, 40), (10.0, 0.0)),
-    (lambda: distal.Gear(1.0, 18), lambda: distal.Gear(1.0, 18), (9.0, 0.0)),
-    (lambda: distal.Gear(1.0, 24), lambda: distal.RingGear(1.0, 60), (12.0, 0.0)),
+    (lambda: distal.Gear(1.0, 20), lambda: distal.Gear(1.0, 41), (10.0, 0.0)),
+    (lambda: distal.Gear(1.0, 18), lambda: distal.Gear(1.0, 19), (9.0, 0.0)),
+    (lambda: distal.Gear(1.0, 25), lambda: distal.RingGear(1.0, 61), (12.5, 0.0)),
     (lambda: distal.Gear(1.0, 20), lambda: distal.Rack(1.0, 12), (0.0, -10.0)),
     (lambda: distal.Gear(1.0, 30), lambda: distal.Rack(1.0, 13), (0.0, -15.0)),
 ]

@@ -98,10 +98,10 @@ def offset_aligned(
         _fixed_extents(s, "align()", axes, place) for s in (shape, other)
     )
     offset = [0.0] * _count(shape)
-    for axis, word in zip(axes, named.values(), strict=True):
+    for i, word in zip(axes, named.values(), strict=True):
         share = _SHARES[word]
-        there = low[axis] + share * (high[axis] - low[axis])
-        offset[axis] = there - own_low[axis] - share * (own_high[axis] - own_low[axis])
+        there = low[i] + share * (high[i] - low[i])
+        offset[i] = there - own_low[i] - share * (own_high[i] - own_low[i])
     return tuple(offset)
 
 

@@ -96,10 +96,8 @@ def extents_of(
         message = f"{what} needs shapes that end, and '{shape.name}' is infinite"
         refuse(message, "cut it first: shape & Box(…)", place)
     size = max(b - a for a, b in zip(low, high, strict=True))
-    if Guarantee.EXACT_OUTSIDE in shape.claims:
-        found = _from_far(shape, low, high, size, params, time)
-    else:
-        found = _searched(shape, low, high, size, params, time)
+    measure = _from_far if Guarantee.EXACT_OUTSIDE in shape.claims else _searched
+    found = measure(shape, low, high, size, params, time)
     if found is None:
         message = f"{what} found nothing of '{shape.name}' in its box"
         refuse(message, "is something left of it? Look at it with distal view", place)

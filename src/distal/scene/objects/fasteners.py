@@ -12,7 +12,7 @@ from typing import Any, Final
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.metric_sizes import MetricSize, metric_size
 from distal.scene.objects.shape import Shape
-from distal.scene.objects.shapes import CLASSES
+from distal.scene.objects.shapes import made_of
 from distal.scene.tree.conversion import is_scalar
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.source_places import author_place
@@ -43,7 +43,7 @@ class MetricThread(Shape):
     ) -> None:
         row = metric_size(size, "MetricThread", author_place())
         pitch = row.pitch if pitch is None else pitch
-        made = CLASSES["Thread"](row.diameter, pitch, length, _CHAMFER * pitch, left=left)
+        made = made_of("Thread", row.diameter, pitch, length, _CHAMFER * pitch, left=left)
         BaseShape.__init__(self, made.named("MetricThread").node)
 
 
@@ -79,10 +79,10 @@ class MetricHole(Shape):
         if threaded:
             sink = _SINK * row.diameter
             numbers = (row.diameter, pitch, length, clearance, sink)
-            made = CLASSES["TappedHole"](*numbers, left=left, through=through)
+            made = made_of("TappedHole", *numbers, left=left, through=through)
         else:
             beyond = 2.0 * pitch if through else pitch
-            made = CLASSES["Cylinder"](0.5 * row.hole, length + beyond)
+            made = made_of("Cylinder", 0.5 * row.hole, length + beyond)
             made = made if through else made.translate(0.0, 0.5 * pitch, 0.0)
         BaseShape.__init__(self, made.named("MetricHole").node)
 
@@ -113,11 +113,11 @@ class Bolt(Shape):
         thread = _threaded_length(row, length, thread, place)
         # The thread goes on a little into the head or the shank, where it is not seen.
         chamfer = _CHAMFER * row.pitch
-        turned = CLASSES["Thread"](row.diameter, row.pitch, thread + chamfer, chamfer, left=left)
+        turned = made_of("Thread", row.diameter, row.pitch, thread + chamfer, chamfer, left=left)
         parts = [_screwed(turned, 0.5 * (thread + chamfer) - length, row.pitch, left)]
         plain = length - thread
         if not isinstance(plain, float | int) or plain > 0.0:
-            shank = CLASSES["Cylinder"](0.5 * row.diameter, plain + 0.5 * row.head)
+            shank = made_of("Cylinder", 0.5 * row.diameter, plain + 0.5 * row.head)
             parts.append(shank.translate(0.0, 0.25 * row.head - 0.5 * plain, 0.0))
         head = _hexagon(row, row.head, both=False).translate(0.0, 0.5 * row.head, 0.0)
         BaseShape.__init__(self, head.union(*parts).named("Bolt").node)
@@ -146,7 +146,7 @@ class Nut(Shape):
         row = metric_size(size, "Nut", author_place())
         sink = _SINK * row.diameter
         self.__dict__.update(pitch=row.pitch, left=left)
-        hole = CLASSES["TappedHole"](row.diameter, row.pitch, row.nut, clearance, sink, left=left)
+        hole = made_of("TappedHole", row.diameter, row.pitch, row.nut, clearance, sink, left=left)
         made = _hexagon(row, row.nut, both=True) - hole
         BaseShape.__init__(self, made.named("Nut").node)
 
@@ -177,8 +177,8 @@ def _threaded_length(row: MetricSize, length: Any, thread: Any, place: Any) -> A
 
 def _hexagon(row: MetricSize, height: float, *, both: bool) -> Any:
     """Return a hexagon whose corners are cut off by a cone, on top or on both ends."""
-    body = CLASSES["HexPrism"](0.5 * row.across, height)
-    cone = CLASSES["InfiniteCone"](_BEVEL_ANGLE)
+    body = made_of("HexPrism", 0.5 * row.across, height)
+    cone = made_of("InfiniteCone", _BEVEL_ANGLE)
     rise = 0.5 * height + 0.5 * _BEVEL * row.across / math.tan(_BEVEL_ANGLE)
     cut = body & cone.translate(0.0, rise, 0.0)
     return cut & cone.rotate(x=math.pi).translate(0.0, -rise, 0.0) if both else cut

@@ -12,7 +12,7 @@ from typing import Any, Final
 from distal.diagnostics import Span
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.shape import Shape
-from distal.scene.objects.shapes import CLASSES
+from distal.scene.objects.shapes import made_of
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.source_places import author_place
 
@@ -83,10 +83,10 @@ class Gear(Toothed):
         angle = _checked(module, teeth, pressure_angle, helix, "Gear", place)
         radius = 0.5 * module * teeth
         numbers = {"addendum": 1.0, "dedendum": 1.0 + clearance, "backlash": backlash}
-        profile = CLASSES["GearProfile"](radius, angle, teeth, **numbers)
+        profile = made_of("GearProfile", radius, angle, teeth, **numbers)
         made = _wide(profile, width, radius, helix)
         if not isinstance(bore, float | int) or bore > 0.0:
-            made = made - CLASSES["Circle"](0.5 * bore).extrude(None)
+            made = made - made_of("Circle", 0.5 * bore).extrude(None)
         self._set(
             made, module=module, teeth=teeth, pressure_angle=angle, helix=helix, pitch_radius=radius
         )
@@ -126,13 +126,13 @@ class RingGear(Toothed):
         radius = 0.5 * module * teeth
         # The hole has the outline of a gear whose tips reach as far as the ring's gaps.
         numbers = {"addendum": 1.0 + clearance, "dedendum": 1.0, "backlash": -backlash}
-        hole = CLASSES["GearProfile"](radius, angle, teeth, **numbers)
+        hole = made_of("GearProfile", radius, angle, teeth, **numbers)
         outer = radius + (1.0 + clearance) * module + (2.0 * module if rim is None else rim)
         if helix == 0.0:
-            made = (CLASSES["Circle"](outer) - hole).extrude(width)
+            made = (made_of("Circle", outer) - hole).extrude(width)
         else:
             long = 1.02 * width  # past the ring's faces
-            made = CLASSES["Circle"](outer).extrude(width) - _wide(hole, long, radius, helix)
+            made = made_of("Circle", outer).extrude(width) - _wide(hole, long, radius, helix)
         self._set(
             made, module=module, teeth=teeth, pressure_angle=angle, helix=helix, pitch_radius=radius
         )
@@ -168,7 +168,7 @@ class Rack(Toothed):
         angle = _checked(module, teeth, pressure_angle, 0.0, "Rack", author_place())
         thick = 2.0 * module if base is None else base
         numbers = (module, angle, thick, backlash, clearance, teeth)
-        made = CLASSES["RackProfile"](*numbers).extrude(width)
+        made = made_of("RackProfile", *numbers).extrude(width)
         self._set(
             made, module=module, teeth=teeth, pressure_angle=angle, helix=0.0, pitch_radius=0.0
         )
