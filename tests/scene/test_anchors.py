@@ -9,6 +9,8 @@ import pytest
 
 import distal
 from distal.lang import slider
+from distal.runtime.standard_executor import StandardExecutor
+from distal.scene.objects import extents
 
 QUARTER = math.pi / 4.0
 # The rim of a ball cut off at a height of 1/2, turned about x by 1/2.
@@ -36,6 +38,14 @@ def test_extents_are_closed_forms(shape, high):
     box = shape.bounds()
     assert all(a >= b - 1e-9 for a, b in zip(low, box[0], strict=True))
     assert all(a <= b + 1e-9 for a, b in zip(found, box[1], strict=True))
+
+
+def test_shapes_that_are_exact_outside_are_measured_without_numpy(monkeypatch):
+    monkeypatch.setattr(extents, "executor", StandardExecutor)
+    monkeypatch.setattr(extents, "imported", lambda name: pytest.fail(f"{name} was asked for"))
+    low, high = distal.Box(1, 2, 3).rotate(z=QUARTER).extents()
+    assert high == pytest.approx((1.5 * math.sqrt(0.5), 1.5 * math.sqrt(0.5), 1.5), abs=2e-6)
+    assert low == pytest.approx([-h for h in high])
 
 
 def test_a_shape_stands_on_each_side():
