@@ -2392,7 +2392,7 @@ class KnurledCylinder(Shape):
         radius: Number = 0.5,
         height: Number = 1.0,
         depth: Number = 0.04,
-        twist: Number = 0.5235987755982988,
+        slant: Number = 0.5235987755982988,
         chamfer: Number = 0.04,
         count: int = 30,
         crossed: bool = True,

@@ -12,47 +12,47 @@ from distal.lang import abs, atan2, cos, func, length, max, sin, sqrt, vec2, vec
 
 
 def _grooves_fit(
-    radius: float, height: float, depth: float, twist: float, chamfer: float, count: int
+    radius: float, height: float, depth: float, slant: float, chamfer: float, count: int
 ) -> str | None:
     if count < 3:
         return "count must be 3 or more"
     if depth > 0.25 * radius:
         return "depth may be at most a quarter of radius"
-    if not -1.2 <= twist <= 1.2:
-        return "twist must lie between -1.2 and 1.2"
+    if not -1.2 <= slant <= 1.2:
+        return "slant must lie between -1.2 and 1.2"
     if 2.0 * chamfer >= height or chamfer >= radius:
         return "chamfer must be below half of height and below radius"
     return None
 
 
 @func
-def groove_lean(radius: float, depth: float, twist: float, count: int) -> float:
+def groove_lean(radius: float, depth: float, slant: float, count: int) -> float:
     """Return the largest share of the outline's gradient along the grooves' row, 0 to 1."""
-    half_width = PI * radius * cos(twist) / float(count)
+    half_width = PI * radius * cos(slant) / float(count)
     return depth / length(vec2(half_width, depth))
 
 
 @func
-def knurl_steepest(radius: float, depth: float, twist: float, count: int) -> float:
+def knurl_steepest(radius: float, depth: float, slant: float, count: int) -> float:
     """Return the bound on the gradient of the outline's distance.
 
     The outline is a row of grooves on the unrolled cylinder. At half of the radius, where values
     are limited, a step around the axis counts twice; along the axis it counts once.
     """
-    lean = groove_lean(radius, depth, twist, count)
-    stretch = length(vec2(2.0 * cos(twist), sin(twist)))
+    lean = groove_lean(radius, depth, slant, count)
+    stretch = length(vec2(2.0 * cos(slant), sin(slant)))
     return sqrt(max(1.0 + lean * lean * (stretch * stretch - 1.0), 1.0))
 
 
 @func
-def one_knurl(p: vec3, radius: float, depth: float, twist: float, count: int) -> float:
+def one_knurl(p: vec3, radius: float, depth: float, slant: float, count: int) -> float:
     """Return the distance to grooves that run at an angle to the axis, on the unrolled cylinder.
 
     The row is ``count`` grooves long, so that it closes around the cylinder at every angle.
     """
     around = radius * atan2(p.x, p.z)
-    across = around * cos(twist) + p.y * sin(twist)
-    pitch = TAU * radius * cos(twist) / float(count)
+    across = around * cos(slant) + p.y * sin(slant)
+    pitch = TAU * radius * cos(slant) / float(count)
     outline = below_teeth(vec2(across, length(p.xz) - radius), 0.0, 0.0, pitch, depth)
     return max(outline, -0.5 * radius)
 
@@ -65,15 +65,15 @@ def knurled_bounds(radius: float, height: float) -> Bounds:
 
 
 @func
-def knurled_side_growth(radius: float, depth: float, twist: float, count: int) -> float:
+def knurled_side_growth(radius: float, depth: float, slant: float, count: int) -> float:
     """Return the growth of the sides: the factor by which the distance is divided."""
-    return knurl_steepest(radius, depth, twist, count)
+    return knurl_steepest(radius, depth, slant, count)
 
 
 @func
-def knurled_growth(radius: float, depth: float, twist: float, count: int) -> float:
+def knurled_growth(radius: float, depth: float, slant: float, count: int) -> float:
     """Return the growth: that of a side, and that past an end at the same time."""
-    return length(vec2(knurl_steepest(radius, depth, twist, count), 1.0))
+    return length(vec2(knurl_steepest(radius, depth, slant, count), 1.0))
 
 
 @primitive(
@@ -91,7 +91,7 @@ def knurled_cylinder(
     radius: float = 0.5,
     height: float = 1.0,
     depth: float = 0.04,
-    twist: float = 0.5235987755982988,
+    slant: float = 0.5235987755982988,
     chamfer: float = 0.04,
     count: int = 30,
     crossed: bool = True,
@@ -103,7 +103,7 @@ def knurled_cylinder(
         radius: Radius over the ridges.
         height: Full height.
         depth: Depth of the grooves.
-        twist: Angle between the grooves and the axis in radians; 0 for straight ones.
+        slant: Angle between the grooves and the axis in radians; 0 for straight ones.
         chamfer: Size of the chamfers at 45 degrees at both ends.
         count: Number of grooves around the cylinder, in one direction.
         crossed: Whether there are grooves in both directions, which leave diamonds.
@@ -118,7 +118,7 @@ def knurled_cylinder(
     """
     past = abs(p.y) - 0.5 * height
     bevel = HALF_ROOT * (length(p.xz) - radius + past + chamfer)
-    ridges = one_knurl(p, radius, depth, twist, count)
+    ridges = one_knurl(p, radius, depth, slant, count)
     if crossed:
-        ridges = max(ridges, one_knurl(p, radius, depth, -twist, count))
-    return max(ridges / knurl_steepest(radius, depth, twist, count), max(past, bevel))
+        ridges = max(ridges, one_knurl(p, radius, depth, -slant, count))
+    return max(ridges / knurl_steepest(radius, depth, slant, count), max(past, bevel))

@@ -126,10 +126,6 @@ class Bolt(Shape):
 class Nut(Shape):
     """Hexagon nut around the y axis, centred at the origin.
 
-    Attributes:
-        pitch: Pitch of the thread in millimetres.
-        left: Whether the thread is left-handed.
-
     Args:
         size: "M2" to "M20"; the sizes are those of ISO 4032.
         clearance: Gap to the thread of the bolt in millimetres; about .1 to .2 for printed parts.

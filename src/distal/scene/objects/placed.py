@@ -246,8 +246,13 @@ class Placed(BaseShape):
     def align(self, other: BaseShape, *, x: Any = None, y: Any = None, z: Any = None) -> Self:
         """Move along the given axes so that a side, or the middle, is flush with another shape's.
 
-        Each of ``x``, ``y`` and ``z`` is "low", "center" or "high"; None does not move along it.
         The extents of both shapes are measured, as by ``on``.
+
+        Args:
+            other: The shape that stays.
+            x: "low", "center" or "high": which ends, or the middle; None does not move along x.
+            y: The same along y.
+            z: The same along z; only for solids.
 
         Raises:
             SceneValueError: A word is none of these, or the extents follow a parameter or time.
