@@ -109,8 +109,9 @@ def test_lengths_have_units():
         (lambda: distal.Bolt(6), "Bolt takes a size from M2 to M20, not 6"),
         (
             lambda: distal.Bolt("M6", 10.0, thread=12.0),
-            "thread of Bolt must be above 0 and at most",
+            "thread of Bolt must be from its pitch, 1, to its length",
         ),
+        (lambda: distal.Bolt("M6", 0.0), "length of Bolt must be above its pitch, 1"),
         (lambda: distal.Bolt("M6", "long"), "length of Bolt is a number, not 'long'"),
         (
             lambda: distal.MetricThread("M6", 9.0, pitch=4.0),

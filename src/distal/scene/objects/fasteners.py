@@ -110,6 +110,8 @@ class Bolt(Shape):
         row = metric_size(size, "Bolt", place)
         if not is_scalar(length):
             refuse(f"length of Bolt is a number, not {length!r:.40}", 'Bolt("M6", 20)', place)
+        if isinstance(length, float | int) and length <= row.pitch:
+            refuse(f"length of Bolt must be above its pitch, {row.pitch:g}", None, place)
         thread = _threaded_length(row, length, thread, place)
         # The thread goes on a little into the head or the shank, where it is not seen.
         chamfer = _CHAMFER * row.pitch
@@ -166,8 +168,9 @@ def _threaded_length(row: MetricSize, length: Any, thread: Any, place: Any) -> A
         usual = 2.0 * row.diameter + 6.0
         return min(usual, length) if isinstance(length, float | int) else length
     plain = isinstance(thread, float | int) and isinstance(length, float | int)
-    if plain and not 0.0 < thread <= length:
-        refuse("thread of Bolt must be above 0 and at most length", None, place)
+    if plain and not row.pitch <= thread <= length:
+        message = f"thread of Bolt must be from its pitch, {row.pitch:g}, to its length"
+        refuse(message, None, place)
     return thread
 
 
