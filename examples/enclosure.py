@@ -1,4 +1,4 @@
-"""A box for electronics, ready to print: rounded shell, posts for screws, vents, and its lid.
+"""A box for electronics, ready to print: shell, posts for screws, vents, and a lid with a label.
 
 Everything follows from a few sizes. Try: the wall, the posts, and how far the lid is open.
 """
@@ -6,8 +6,10 @@ Everything follows from a few sizes. Try: the wall, the posts, and how far the l
 from distal import (
     Box,
     Camera,
+    Circle,
     Cylinder,
     Plane,
+    Ring,
     RoundBox,
     RoundedCylinder,
     RoundedRectangle,
@@ -37,6 +39,11 @@ base = ((body - room) | (posts & body)) & below
 hole = Cylinder(0.07, 1.0) | Cylinder(0.13, 0.1).translate(y=0.46)
 lid = (body - below) - hole.translate(0.93, 0.0, 0.53).symmetry("xz")
 
+# The label stands on the lid: a sender and its waves.
+waves = Circle(0.06) | Ring(0.2, 0.8, 0.06) | Ring(0.34, 0.8, 0.06) | Ring(0.48, 0.8, 0.06)
+label = waves.extrude(0.03).rotate(x=-QUARTER)
+label = label.on(body, gap=-0.005)
+
 screw = (RoundedCylinder(0.11, 0.07, 0.02) | Cylinder(0.05, 0.4).translate(y=-0.2)) - Box(
     0.2, 0.06, 0.03
 ).translate(y=0.04)
@@ -44,7 +51,7 @@ screws = screw.translate(0.93, 0.0, 0.53).symmetry("xz")
 
 case = (
     (base - vents - plug).paint("#31465c")
-    | lid.translate(y=opened).paint("#e8e2d4")
+    | (lid.paint("#e8e2d4") | label.paint("#c8553d")).translate(y=opened)
     | screws.translate(y=0.42 + 1.7 * opened).paint(brass())
 )
 

@@ -205,6 +205,7 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     ),
     "warp": lambda: Box(1.2).apply("warp", 0.12, 3.0),
     "extrude": lambda: _HEART.extrude(0.4),
+    "extrude endless": lambda: _HEART.extrude(None) & Box(3.0, 3.0, 0.8),
     "extrude rounded": lambda: _HEART.extrude(0.4, rounding=0.08),
     "extrude chamfered": lambda: _HEART.extrude(0.4, chamfer=0.08),
     "extrude twisted": lambda: (

@@ -10,12 +10,25 @@ from distal.diagnostics import LoadError as LoadError
 from distal.images.height_map import HeightMap as HeightMap
 from distal.images.picture import Picture as Picture
 from distal.lang.expressions import time as time
+from distal.lang.units import cm as cm
+from distal.lang.units import foot as foot
+from distal.lang.units import inch as inch
+from distal.lang.units import metre as metre
+from distal.lang.units import mm as mm
 from distal.loading import gallery as gallery
 from distal.loading import load as load
 from distal.scene.looks.look import Look as Look
 from distal.scene.objects.backgrounds import Background as Background
 from distal.scene.objects.backgrounds import Environment as Environment
 from distal.scene.objects.copies import copies as copies
+from distal.scene.objects.fasteners import Bolt as Bolt
+from distal.scene.objects.fasteners import MetricHole as MetricHole
+from distal.scene.objects.fasteners import MetricThread as MetricThread
+from distal.scene.objects.fasteners import Nut as Nut
+from distal.scene.objects.gears import Gear as Gear
+from distal.scene.objects.gears import Rack as Rack
+from distal.scene.objects.gears import RingGear as RingGear
+from distal.scene.objects.gears import mesh_gears as mesh_gears
 from distal.scene.objects.joined import intersection as intersection
 from distal.scene.objects.joined import union as union
 from distal.scene.objects.letters import SvgPath as SvgPath
@@ -2176,6 +2189,9 @@ class GearProfile(Shape2D):
         radius: Number = 0.5,
         pressure_angle: Number = 0.3490658503988659,
         count: int = 12,
+        addendum: Number = 1.0,
+        dedendum: Number = 1.25,
+        backlash: Number = 0.0,
     ) -> None: ...
 
 class GradientNoiseSolid(Shape):
@@ -2282,6 +2298,11 @@ class Hexagram(Shape2D):
 
     def __init__(self, radius: Number = 0.5) -> None: ...
 
+class Honeycomb(Shape2D):
+    """Infinite honeycomb: the walls between hexagonal holes, one of which is at the origin."""
+
+    def __init__(self, cell_size: Number = 0.3, wall: Number = 0.05) -> None: ...
+
 class Horseshoe(Shape2D):
     """Arc of a ring, symmetric about the y axis, with a straight leg at each end."""
 
@@ -2362,6 +2383,20 @@ class IsoscelesTriangle(Shape2D):
     """Isosceles triangle with its tip at the top; y = 0 is at half of its height."""
 
     def __init__(self, width: Number = 0.8, height: Number = 1.0) -> None: ...
+
+class KnurledCylinder(Shape):
+    """Upright cylinder with V-shaped grooves: straight, slanted or crossed (diamonds)."""
+
+    def __init__(
+        self,
+        radius: Number = 0.5,
+        height: Number = 1.0,
+        depth: Number = 0.04,
+        slant: Number = 0.5235987755982988,
+        chamfer: Number = 0.04,
+        count: int = 30,
+        crossed: bool = True,
+    ) -> None: ...
 
 class Lidinoid(Shape):
     """Lidinoid: a surface related to the gyroid, with more twisted labyrinths."""
@@ -2645,6 +2680,19 @@ class QuaternionJulia(Shape):
         z: Number = ...,
         w: Number = ...,
         iterations: int = 10,
+    ) -> None: ...
+
+class RackProfile(Shape2D):
+    """Toothed rack along x, teeth upwards, its pitch line at y = 0; gears of equal module mesh."""
+
+    def __init__(
+        self,
+        module: Number = 0.1,
+        pressure_angle: Number = 0.3490658503988659,
+        base: Number = 0.15,
+        backlash: Number = 0.0,
+        clearance: Number = 0.25,
+        count: int = 8,
     ) -> None: ...
 
 class Rectangle(Shape2D):
@@ -3029,10 +3077,36 @@ class TaperedPolylineTube(Shape):
 
     def __init__(self, points: Points = ...) -> None: ...
 
+class TappedHole(Shape):
+    """Internal screw thread around the y axis, to subtract from a part ``length`` thick."""
+
+    def __init__(
+        self,
+        diameter: Number = 0.6,
+        pitch: Number = 0.1,
+        length: Number = 1.0,
+        clearance: Number = 0.01,
+        chamfer: Number = 0.02,
+        left: bool = False,
+        through: bool = True,
+    ) -> None: ...
+
 class Tetrahedron(Shape):
     """Regular tetrahedron on alternate corners of a cube, one of them along (1, 1, 1)."""
 
     def __init__(self, radius: Number = 1.0) -> None: ...
+
+class Thread(Shape):
+    """Rod around the y axis with an external screw thread of the ISO metric outline."""
+
+    def __init__(
+        self,
+        diameter: Number = 0.6,
+        pitch: Number = 0.1,
+        length: Number = 1.0,
+        chamfer: Number = 0.06,
+        left: bool = False,
+    ) -> None: ...
 
 class Torus(Shape):
     """Torus (ring) around the y axis."""
@@ -3216,6 +3290,7 @@ __all__ = [
     "BezierTube",
     "Blob",
     "BlobbyCross",
+    "Bolt",
     "Box",
     "BoxCheap",
     "BoxFrame",
@@ -3260,6 +3335,7 @@ __all__ = [
     "FbmSolid",
     "FccLattice",
     "FisheyeCamera",
+    "Gear",
     "GearProfile",
     "GradientBackground",
     "GradientNoiseSolid",
@@ -3274,6 +3350,7 @@ __all__ = [
     "HexPrism",
     "Hexagon",
     "Hexagram",
+    "Honeycomb",
     "Horseshoe",
     "Hyperbola",
     "Icosahedron",
@@ -3282,6 +3359,7 @@ __all__ = [
     "InfiniteCylinder",
     "IsoscelesTrapezoid",
     "IsoscelesTriangle",
+    "KnurledCylinder",
     "Lidinoid",
     "Link",
     "LoadError",
@@ -3292,8 +3370,11 @@ __all__ = [
     "Material",
     "MengerSponge",
     "Metaballs",
+    "MetricHole",
+    "MetricThread",
     "Moon",
     "Neovius",
+    "Nut",
     "Octagon",
     "OctagonPrism",
     "Octahedron",
@@ -3322,12 +3403,15 @@ __all__ = [
     "QuadraticBezier",
     "QuadraticCircle",
     "QuaternionJulia",
+    "Rack",
+    "RackProfile",
     "Rectangle",
     "RegularPolygon",
     "RegularStar",
     "Rhombus",
     "Rhombus2",
     "Ring",
+    "RingGear",
     "RoundBox",
     "RoundCone",
     "RoundConeBetween",
@@ -3363,8 +3447,10 @@ __all__ = [
     "TangentCam",
     "TaperedBezierTube",
     "TaperedPolylineTube",
+    "TappedHole",
     "Tetrahedron",
     "Text",
+    "Thread",
     "Torus",
     "TriPrism",
     "Triangle",
@@ -3399,6 +3485,7 @@ __all__ = [
     "chrome",
     "circle_path",
     "clay",
+    "cm",
     "concrete",
     "copies",
     "copper",
@@ -3407,6 +3494,7 @@ __all__ = [
     "emerald",
     "emissive",
     "facing",
+    "foot",
     "gallery",
     "glass",
     "glossy",
@@ -3417,6 +3505,7 @@ __all__ = [
     "honey",
     "ice",
     "image_pattern",
+    "inch",
     "intersection",
     "iron",
     "jade",
@@ -3424,8 +3513,11 @@ __all__ = [
     "load",
     "marble",
     "matte",
+    "mesh_gears",
     "metal",
+    "metre",
     "mirror",
+    "mm",
     "nickel",
     "night",
     "noise",

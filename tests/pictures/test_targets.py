@@ -24,6 +24,7 @@ ALL = os.environ.get("DISTAL_ALL_PICTURES") == "1"
 # NumPy follows all rays of mirrors and glass through all steps: a minute for some of these.
 LONG_BY_REFERENCE = (
     "beach",
+    "bolt_and_nut",
     "bricks",
     "castle",
     "catalogue",
@@ -31,6 +32,7 @@ LONG_BY_REFERENCE = (
     "cornell_box",
     "enclosure",
     "forest",
+    "gears",
     "gyroid_part",
     "molecule",
     "prism",

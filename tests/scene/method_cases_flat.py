@@ -197,6 +197,13 @@ FLATS = [
         lands=False,
     ),
     Case(
+        "extrude",
+        {"height": None},
+        lambda a, b, p, height: a(p[:, :2]),
+        fixed=("height",),
+        lands=False,
+    ),
+    Case(
         "revolve",
         {"offset": 0.3},
         lambda a, b, p, offset: a(joined(np.hypot(p[:, 0], p[:, 2]) - offset, p[:, 1])),

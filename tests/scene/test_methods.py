@@ -38,6 +38,8 @@ NO_OPERATOR = {
     "from_vm": "tape/test_vm_files",
     "fill": "tape/test_filled_shapes",
     "heights": "tape/test_shape_heights",
+    **dict.fromkeys(("on", "align", "extents"), "scene/test_anchors"),
+    **dict.fromkeys(("fillet", "chamfer", "infill", "wrap_around"), "scene/test_shaped_edges"),
     "parameters": "asks",
     "text": "shows",
     "show": "shows",

@@ -18,7 +18,7 @@ from distal.compiler.constant_functions import evaluate
 from distal.compiler.driver import run_passes
 from distal.ir.nodes import FRAME_TIME, Expr, Module, Origin, Return, Uniform
 from distal.ir.types import FLOAT, VEC4, Struct, Type, Vector
-from distal.ir.walk import map_expressions, substitute
+from distal.ir.walk import expressions_in, map_expressions, substitute
 from distal.lang.composed import Composed
 from distal.lang.expressions import Expression
 from distal.lang.functions import Func, Image
@@ -58,6 +58,12 @@ class StandardExecutor:
     def reads_time(self, image: Image | Composed) -> bool:
         """Return whether the picture depends on the time."""
         return any(reads_time(part.module) for part in self.parts(image).parts)
+
+    def follows_time(self, function: Func | Composed) -> bool:
+        """Return whether a function that is no picture depends on the time."""
+        now = Uniform(FRAME_TIME, FLOAT)
+        functions = self.lower(function, None).module.functions
+        return any(now in expressions_in(f.body) for f in functions)
 
     def lowered(self, function: Func | Composed) -> Lowered:
         """Return the IR of a function that has the types of its own parameters."""

@@ -44,15 +44,27 @@ DEDENDUM: Final = 1.25
 IMAGE_SLOPE: Final = 1.4142135623730951
 
 
-def _teeth_are_whole(radius: float, pressure_angle: float, count: int) -> str | None:
+def _teeth_are_whole(
+    radius: float,
+    pressure_angle: float,
+    addendum: float,
+    dedendum: float,
+    backlash: float,
+    count: int,
+) -> str | None:
     if count < 4:
         return "count must be 4 or more"
     if not 0.0 < pressure_angle < 0.25 * math.pi:
         return "pressure_angle must lie between 0 and pi / 4"
-    tip = (1.0 + 2.0 * ADDENDUM / count) / math.cos(pressure_angle)
+    if 2.0 * dedendum >= count:
+        return "the gaps reach the middle: take more teeth or a smaller dedendum"
+    tip = (1.0 + 2.0 * addendum / count) / math.cos(pressure_angle)
     roll = math.sqrt(tip * tip - 1.0)
-    half = 0.5 * math.pi / count + math.tan(pressure_angle) - pressure_angle
-    if half >= math.pi / count:
+    half = 0.5 * math.pi / count - 0.5 * backlash / radius
+    half += math.tan(pressure_angle) - pressure_angle
+    root = (1.0 - 2.0 * dedendum / count) / math.cos(pressure_angle)
+    foot = math.sqrt(root * root - 1.0) if root > 1.0 else 0.0
+    if half - foot + math.atan(foot) >= math.pi / count:
         return "the teeth have no gaps: take fewer teeth or a smaller pressure_angle"
     if half <= roll - math.atan(roll):
         return "the teeth come to points below their tips: take more teeth or less pressure_angle"
@@ -72,21 +84,31 @@ def _arc_nose_stands_out(base: float, nose: float, lift: float, bulge: float) ->
 
 
 @func
-def gear_bounds(radius: float, count: int) -> Bounds2:
+def gear_bounds(radius: float, addendum: float, count: int) -> Bounds2:
     """Return the square around the tips of the teeth."""
-    return disc_bounds(radius * (1.0 + 2.0 * ADDENDUM / float(count)))
+    return disc_bounds(radius * (1.0 + 2.0 * addendum / float(count)))
 
 
 @primitive(
     "GearProfile",
     EXACT,
     bounds=gear_bounds,
-    limits={"pressure_angle": Limit.POSITIVE},
+    limits={
+        "pressure_angle": Limit.POSITIVE,
+        "addendum": Limit.POSITIVE,
+        "dedendum": Limit.POSITIVE,
+    },
     requires=_teeth_are_whole,
 )
 @func
 def gear_profile(
-    p: vec2, radius: float = 0.5, pressure_angle: float = 0.3490658503988659, count: int = 12
+    p: vec2,
+    radius: float = 0.5,
+    pressure_angle: float = 0.3490658503988659,
+    count: int = 12,
+    addendum: float = ADDENDUM,
+    dedendum: float = DEDENDUM,
+    backlash: float = 0.0,
 ) -> float:
     """Gear with involute teeth, one of them at the top; gears with equal teeth mesh.
 
@@ -100,6 +122,10 @@ def gear_profile(
         pressure_angle: Angle between the normal of a flank and the direction of motion on the pitch
             circle, in radians.
         count: Number of teeth.
+        addendum: Height of the teeth above the pitch circle, in modules (diameter by ``count``).
+        dedendum: Depth of the gaps below the pitch circle, in modules.
+        backlash: By how much a tooth is narrower, along the pitch circle, than half of the distance
+            from tooth to tooth; negative for the gaps of a ring with internal teeth.
 
     Source: an involute's normals touch its base circle, so that involutes of one circle are
     parallel curves (Leonhard Euler, 1765); proportions of ISO 53.
@@ -110,11 +136,13 @@ def gear_profile(
         gear_profile((0.13052619222005, 0.99144486137381), 1.0, 0.34906585039887, 12) = 0.0
     """
     module = 2.0 * radius / float(count)
-    tip = radius + ADDENDUM * module
-    root = radius - DEDENDUM * module
+    tip = radius + addendum * module
+    root = radius - dedendum * module
     base = radius * cos(pressure_angle)
     # Angles from the tooth's middle to the start of its involute on the base circle, and its ends.
-    middle = 0.5 * PI / float(count) + tan(pressure_angle) - pressure_angle
+    middle = (
+        0.5 * PI / float(count) - 0.5 * backlash / radius + tan(pressure_angle) - pressure_angle
+    )
     roll_tip = sqrt(max(tip * tip - base * base, 0.0)) / base
     roll_foot = sqrt(max(root * root - base * base, 0.0)) / base
     at_tip = middle - roll_tip + atan(roll_tip)

@@ -17,7 +17,7 @@ from distal.fields.extents import (
     unless_endless,
 )
 from distal.fields.flats.edges import inside_both
-from distal.fields.guarantees import EXACT, Bounds, Bounds2, Growth, Limit, operator
+from distal.fields.guarantees import EXACT, UNBOUNDED, Bounds, Bounds2, Growth, Limit, operator
 from distal.lang import abs, clamp, cos, func, length, max, min, mix, sin, sqrt, vec2, vec3
 
 ENDED = "a flat shape with an end: without a box its slope grows without end"
@@ -43,6 +43,12 @@ def extruded_bounds(bounds: Bounds2, height: float) -> Bounds:
     """Return the box from end to end."""
     half = 0.5 * height
     return Bounds(vec3(bounds.low, -half), vec3(bounds.high, half))
+
+
+@func
+def endless_bounds(bounds: Bounds2) -> Bounds:
+    """Return the box of an outline extruded without end."""
+    return Bounds(vec3(bounds.low, -UNBOUNDED), vec3(bounds.high, UNBOUNDED))
 
 
 @func
@@ -250,6 +256,13 @@ EXTRUDE = operator(
     slope=at_least_one,
     bounds=extruded_bounds,
     limits={"height": Limit.POSITIVE},
+    growth=Growth.KEPT,
+)
+EXTRUDE_ENDLESS = operator(
+    "extrude endless",
+    point=flat_point,
+    keeps=EXACT,
+    bounds=endless_bounds,
     growth=Growth.KEPT,
 )
 EXTRUDE_ROUNDED = operator(

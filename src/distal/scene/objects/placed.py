@@ -1,4 +1,4 @@
-"""Methods that solid and flat shapes share: placement, repetition, thickness.
+"""Methods that solid and flat shapes share: placement, anchors, repetition, thickness, edges.
 
 Input: the author's numbers. Output: new shapes; shapes never change. Every method applies an
 operator of the field library; on a flat shape, it applies the operator's counterpart in the plane.
@@ -6,18 +6,22 @@ operator of the field library; on a flat shape, it applies the operator's counte
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Final, Self
 
 from distal.fields.deform import offsets
 from distal.fields.guarantees import Operator
 from distal.fields.library import OPERATORS
+from distal.fields.lift import extrude
 from distal.fields.place import mirrors
 from distal.fields.place import solid as placing
 from distal.fields.repeat import grid, polar
 from distal.frontend.problems import did_you_mean
+from distal.scene.objects.anchors import measured_extents, offset_aligned, offset_on
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.in_plane import IN_PLANE
+from distal.scene.objects.shaped_edges import shaped_edge
 from distal.scene.tree.conversion import is_scalar
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.source_places import author_place
@@ -170,3 +174,88 @@ class Placed(BaseShape):
         if where not in _SHELLS:
             refuse(f"a shell lies inner, centre or outer, not {where!r}", None, author_place())
         return self._with(_SHELLS[where], thickness)
+
+    def infill(self, lattice: BaseShape, wall: Any) -> Any:
+        """Make a skin of this shape and fill it with a lattice, as for printing.
+
+        Args:
+            lattice: What fills the skin: ``Gyroid(0.4)``, ``OctetLattice(0.5, 0.04)``. In a solid,
+                a flat one such as ``Honeycomb(0.3, 0.04)`` stands upright: its walls run along y.
+            wall: Thickness of the skin, inside the surface.
+        """
+        place = author_place()
+        if isinstance(lattice, BaseShape) and lattice.flat and not self.flat:
+            upright = lattice._under(extrude.EXTRUDE_ENDLESS, (), {}, place)
+            lattice = upright._under(placing.ROTATE_X, (0.5 * math.pi,), {}, place)
+        if not isinstance(lattice, BaseShape) or lattice.flat != self.flat:
+            hint = "Gyroid(0.4), OctetLattice(0.5, 0.04) or Honeycomb(0.3, 0.04)"
+            refuse(f"an infill is a lattice, not {lattice!r:.60}", hint, place)
+        skin = self.shell(wall, "inner")
+        return skin.union(lattice.intersection(self))
+
+    def fillet(self, radius: Any) -> Self:
+        """Round the edge where the shapes of the last operator meet, by a quarter of a circle.
+
+        After ``|`` it fills the corner, after ``-`` and ``&`` it rounds the edge off; after
+        ``extrude`` it rounds the ends. The radius is exact where the surfaces meet at a right angle
+        and the distances are true.
+
+        Raises:
+            SceneValueError: The last operator makes no edge that can be rounded.
+        """
+        place = author_place()
+        made: Self = self._of(shaped_edge(self.node, "fillet", radius, place))
+        return made
+
+    def chamfer(self, size: Any) -> Self:
+        """Bevel the edge where the shapes of the last operator meet; as ``fillet``.
+
+        ``size`` is how far the flat face extends along both surfaces.
+        """
+        place = author_place()
+        made: Self = self._of(shaped_edge(self.node, "chamfer", size, place))
+        return made
+
+    def extents(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Return the measured box (low, high): where the surface really ends along each axis.
+
+        ``bounds()`` may be larger. Measured for the defaults of parameters and time 0: to about a
+        millionth of the size for shapes that are exact outside; for others, by a search that may
+        miss parts thinner than a hundredth of the size.
+
+        Raises:
+            SceneValueError: The shape is infinite, or nothing of it was found.
+        """
+        return measured_extents(self, author_place())
+
+    def on(self, other: BaseShape, side: str = "top", *, gap: Any = 0.0) -> Self:
+        """Move onto a side of another shape, over its middle, so that the two touch.
+
+        The extents of both are measured, once, as by ``extents``.
+
+        Args:
+            other: The shape that is touched.
+            side: "top" (+y), "bottom", "right" (+x), "left", and for solids "front" (+z), "back".
+            gap: Distance to keep; negative to overlap. May be a parameter.
+
+        Raises:
+            SceneValueError: There is no such side, or the extents change with a parameter or time.
+        """
+        return self._with(placing.TRANSLATE, offset_on(self, other, side, gap, author_place()))
+
+    def align(self, other: BaseShape, *, x: Any = None, y: Any = None, z: Any = None) -> Self:
+        """Move along the given axes so that a side, or the middle, is flush with another shape's.
+
+        The extents of both shapes are measured, as by ``on``.
+
+        Args:
+            other: The shape that stays.
+            x: "low", "center" or "high": which ends, or the middle; None does not move along x.
+            y: The same along y.
+            z: The same along z; only for solids.
+
+        Raises:
+            SceneValueError: A word is none of these, or the extents follow a parameter or time.
+        """
+        words = {"x": x, "y": y, "z": z}
+        return self._with(placing.TRANSLATE, offset_aligned(self, other, words, author_place()))

@@ -479,10 +479,15 @@ class Shape2D(Placed):
         """Extrude along z to a solid whose middle is at z = 0.
 
         Args:
-            height: Full length along z.
+            height: Full length along z; None extrudes without end.
             rounding: Radius of the rounded edges; None for sharp edges.
             chamfer: Size of the chamfered edges; None for sharp edges. Ignored with ``rounding``.
         """
+        if height is None:
+            if rounding is not None or chamfer is not None:
+                hint = "extrude(height, rounding=…), or leave out rounding and chamfer"
+                refuse("what is extruded without end has no edges to shape", hint, author_place())
+            return self._solid(extrude.EXTRUDE_ENDLESS)
         if rounding is not None:
             return self._solid(extrude.EXTRUDE_ROUNDED, height, rounding)
         if chamfer is not None:
@@ -542,6 +547,22 @@ class Shape2D(Placed):
     def wrap_cylinder(self, radius: Any, height: Any) -> Shape:
         """Wrap around a cylinder about the y axis, as a relief of thickness ``height``."""
         return self._solid(lift.WRAP_CYLINDER, radius, height)
+
+    def wrap_around(self, radius: Any, height: Any, *, depth: Any = None) -> Shape:
+        """Put the outline on a cylinder about the y axis, raised: text on a bottle, for instance.
+
+        It is ``wrap_cylinder`` with the sizes of what is seen. Its front faces +z. Unite it with
+        the cylinder, or subtract it for an engraving.
+
+        Args:
+            radius: Radius of the cylinder.
+            height: How far it stands out of the cylinder's surface.
+            depth: How far it extends below the surface; None for as far as ``height``.
+        """
+        if depth is None:
+            return self._solid(lift.WRAP_CYLINDER, radius, 2.0 * height)
+        middle = radius + 0.5 * (height - depth)
+        return self._solid(lift.WRAP_CYLINDER, middle, height + depth)
 
     def relief(self, *numbers: Any) -> Shape:
         """Return terrain whose height at (x, z) is the value of this flat field."""

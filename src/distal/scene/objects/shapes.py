@@ -41,6 +41,12 @@ def _make(primitive: Primitive) -> type[BaseShape]:
     return type(primitive.name, (base,), body)
 
 
+def made_of(name: str, *args: Any, **kwargs: Any) -> Any:
+    """Return a shape of the library by the name of its class, at the author's line."""
+    kind: Any = CLASSES[name]
+    return kind(*args, **kwargs)
+
+
 CLASSES = {name: _make(primitive) for name, primitive in PRIMITIVES.items()}
 globals().update(CLASSES)
 __all__ = [*CLASSES]
