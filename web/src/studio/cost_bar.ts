@@ -67,7 +67,6 @@ export class CostBar {
     });
     const row = make("div", { className: "cost-choices" }, ...choices, this.#measure, this.#progress);
     this.element.append(row, this.#about);
-    this.#say();
   }
 
   get isOpen(): boolean {
