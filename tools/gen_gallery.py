@@ -35,7 +35,16 @@ SECONDS: Final = {"melting": 1.0, "sdfray_glass": 0.6, "course_5_animation": 0.7
 # Groups of the page: the examples in them by how their names begin, in this order.
 GROUPS: Final = {
     "Showpieces": (
-        *("planet", "city", "castle", "still_life", "room_door", "gyroid_part", "enclosure", "catalogue"),
+        *(
+            "planet",
+            "city",
+            "castle",
+            "still_life",
+            "room_door",
+            "gyroid_part",
+            "enclosure",
+            "catalogue",
+        ),
         *("bolt_and_nut", "gears", "bunny", "sea", "beach", "forest", "bricks", "molecule"),
     ),
     "True optics": ("wine", "caustics", "prism", "cornell_box", "depth_of_field"),

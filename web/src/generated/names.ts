@@ -84,7 +84,7 @@ export const DISTAL: Names = {
   "InfiniteCylinder": ["(radius=0.5)", "Infinite cylinder around the y axis."],
   "IsoscelesTrapezoid": ["(bottom=1.0, top=0.6, height=0.7)", "Isosceles trapezoid; y = 0 is at half of its height."],
   "IsoscelesTriangle": ["(width=0.8, height=1.0)", "Isosceles triangle with its tip at the top; y = 0 is at half of its height."],
-  "KnurledCylinder": ["(radius=0.5, height=1.0, depth=0.04, twist=0.5235987755982988, chamfer=0.04, count=30, crossed=True)", "Upright cylinder with V-shaped grooves: straight, slanted or crossed (diamonds)."],
+  "KnurledCylinder": ["(radius=0.5, height=1.0, depth=0.04, slant=0.5235987755982988, chamfer=0.04, count=30, crossed=True)", "Upright cylinder with V-shaped grooves: straight, slanted or crossed (diamonds)."],
   "Lidinoid": ["(cell_size=1.0, thickness=0.1, offset=0.0, solid=False)", "Lidinoid: a surface related to the gyroid, with more twisted labyrinths."],
   "Link": ["(height=0.5, major=0.4, minor=0.15)", "Upright link of a chain; its hole faces the z axis."],
   "LoadError": ["(message, span=None, reason=None)", "A scene file that cannot be found, read or run, or that defines no scene code."],
