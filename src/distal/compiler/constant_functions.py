@@ -47,16 +47,25 @@ from distal.passes.fold.fold import fold_expression
 _LAST_PASS: Final = "decompose"
 _LONGEST_LOOP: Final = 4096
 _EXPRESSIONS_KEPT: Final = 16384
+_MODULES_KEPT: Final = 64
 _VALUES: Final = frozenset({Const, Splat, Compose, Construct})
 
 
 def evaluate(module: Module) -> Any | None:
     """Return the entry's value: a number, or nested tuples of numbers."""
+    # Whoever has data is not kept: declarations are equal whatever the data is.
+    return _evaluated(module) if module.resources else _kept(module)
+
+
+def _evaluated(module: Module) -> Any | None:
     module = run_passes(module, get_target("llvm"), 64, after=_LAST_PASS)
     try:
         return _python_value(_Evaluator(module).call(module.entry, ()))
     except _NotConstantError:
         return None
+
+
+_kept = lru_cache(maxsize=_MODULES_KEPT)(_evaluated)
 
 
 class _NotConstantError(Exception):

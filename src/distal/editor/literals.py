@@ -13,7 +13,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, Final, Literal, TypeAlias, cast
 
 import distal
@@ -97,6 +97,8 @@ def piece(text: str, start: int, end: int) -> str:
     return units[2 * start : 2 * end].decode("utf-16-le", "surrogatepass")
 
 
+# A drag sends one text many times.
+@lru_cache(maxsize=4)
 def find_literals(file: str, text: str) -> tuple[SourceLiteral, ...]:
     """Return the literals of a file in the order of the text; none if it is not Python."""
     try:
