@@ -35,7 +35,7 @@ class WorkerProcess:
         self._is_killed = False
         self._report = ""
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "distal.editor.worker", str(beside)],
+            [sys.executable, "-m", "distal.editor", str(beside)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
