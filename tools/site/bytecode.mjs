@@ -7,6 +7,12 @@
 import { readFileSync, writeFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 
+process.on("uncaughtException", (error) => {
+  // Without the line of Pyodide's own text, which has a megabyte.
+  console.error(String(error?.message ?? error));
+  process.exit(1);
+});
+
 const [folder, program] = process.argv.slice(2);
 const { loadPyodide } = await import(pathToFileURL(`${folder}/pyodide.mjs`).href);
 const python = await loadPyodide({ indexURL: `${folder}/`, stdout: () => {}, stderr: () => {} });

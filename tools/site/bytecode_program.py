@@ -22,16 +22,15 @@ from types import CodeType
 DISTAL = "/lib/distal/"
 STDLIB = f"/lib/python{sys.version_info.major}{sys.version_info.minor}.zip/"
 # What a terminal, a network, a debugger or a test uses, and rare encodings.
-LEFT_OUT = tuple(
-    """
-    _pyrepl/ antigravity bdb cProfile cmd. code. concurrent/ curses/ dbm/ doctest email/ ensurepip/
-    ftplib getpass http/ idlelib/ imaplib mailbox modulefinder multiprocessing/ netrc pdb
-    pickletools poplib profile pstats pty pyclbr pydoc rlcompleter smtplib socketserver sqlite3/
-    tabnanny trace. tty turtle unittest/ venv/ webbrowser wsgiref/ xml/ xmlrpc/ zipapp
-    encodings/big5 encodings/cp encodings/euc encodings/gb encodings/hz encodings/iso
-    encodings/johab encodings/koi8 encodings/mac encodings/shift
-    """.split()
-)
+_UNUSED = """
+_pyrepl/ antigravity bdb cProfile cmd. code. concurrent/ curses/ dbm/ doctest email/ ensurepip/
+ftplib getpass http/ idlelib/ imaplib mailbox modulefinder multiprocessing/ netrc pdb
+pickletools poplib profile pstats pty pyclbr pydoc rlcompleter smtplib socketserver sqlite3/
+tabnanny trace. tty turtle unittest/ venv/ webbrowser wsgiref/ xml/ xmlrpc/ zipapp
+encodings/big5 encodings/cp encodings/euc encodings/gb encodings/hz encodings/iso
+encodings/johab encodings/koi8 encodings/mac encodings/shift
+"""
+LEFT_OUT = tuple(_UNUSED.split())
 
 
 def imported(place: str) -> set[str]:

@@ -12,4 +12,5 @@ gc.disable()
 
 from distal.editor.worker import main  # noqa: E402 (after the line above)
 
-main()
+if __name__ == "__main__":
+    main()
