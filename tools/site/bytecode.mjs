@@ -25,7 +25,6 @@ const made = python.runPython(`
 import sys
 sys.dont_write_bytecode = True
 sys.path[:0] = ["/lib/distal", "/lib"]
-import pathlib, distal.editor.worker
 import bytecode_program
 bytecode_program.compiled([bytes(data) for data in archives])
 `);

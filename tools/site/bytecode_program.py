@@ -14,7 +14,9 @@ import gc
 import importlib.util
 import io
 import marshal
+import pathlib
 import sys
+import tempfile
 import zipfile
 from collections.abc import Iterable, Sequence
 from types import CodeType
@@ -23,14 +25,41 @@ DISTAL = "/lib/distal/"
 STDLIB = f"/lib/python{sys.version_info.major}{sys.version_info.minor}.zip/"
 # What a terminal, a network, a debugger or a test uses, and rare encodings.
 _UNUSED = """
-_pyrepl/ antigravity bdb cProfile cmd. code. concurrent/ curses/ dbm/ doctest email/ ensurepip/
-ftplib getpass http/ idlelib/ imaplib mailbox modulefinder multiprocessing/ netrc pdb
+_pydatetime _pyio _pyrepl/ antigravity bdb cProfile cmd. code. ctypes/ curses/ dbm/ doctest
+ensurepip/ ftplib getpass idlelib/ imaplib mailbox modulefinder multiprocessing/ netrc optparse pdb
 pickletools poplib profile pstats pty pyclbr pydoc rlcompleter smtplib socketserver sqlite3/
-tabnanny trace. tty turtle unittest/ venv/ webbrowser wsgiref/ xml/ xmlrpc/ zipapp
+tabnanny trace. tty turtle unittest/ venv/ webbrowser wsgiref/ xmlrpc/ zipapp
 encodings/big5 encodings/cp encodings/euc encodings/gb encodings/hz encodings/iso
 encodings/johab encodings/koi8 encodings/mac encodings/shift
 """
 LEFT_OUT = tuple(_UNUSED.split())
+
+
+# So that what the first answer needs is bytecode, too.
+_SCENE = """
+from distal import Box, Scene, Sphere, time
+from distal.lang import slider
+
+ball = Sphere(slider("Radius", 0.5, low=0.1, high=1.0)).paint("#d97757")
+scene = Scene(ball.union(Box(0.5).translate(time, 0.0, 0.0), smooth=0.1))
+"""
+
+
+def answer() -> None:
+    """Let the worker answer as it will first in the playground.
+
+    Raises:
+        RuntimeError: It has no picture.
+    """
+    from distal.editor.messages import LookRequest  # noqa: PLC0415 (in the archive)
+    from distal.editor.worker import StudioWorker  # noqa: PLC0415
+
+    with tempfile.TemporaryDirectory() as folder:
+        files = {"scene.py": _SCENE}
+        request = LookRequest(id=1, revision=1, files=files, main="scene.py", guided=False)
+        found = StudioWorker(pathlib.Path(folder)).answers(request)[-1]
+    if found.kind != "scene":
+        raise RuntimeError(str(found.mistakes[0].message))
 
 
 def imported(place: str) -> set[str]:
@@ -52,7 +81,8 @@ def with_scene_code(names: Iterable[str]) -> set[str]:
 
 
 def compiled(archives: Sequence[bytes]) -> tuple[bytes, bytes]:
-    """Return the standard library and distal with bytecode of what is imported so far."""
+    """Return the standard library and distal with bytecode of what the first answer imports."""
+    answer()
     stdlib, distal = map(_read, archives)
     used, own = imported(STDLIB), imported(DISTAL)
     read = with_scene_code(name for name, _ in distal if name.endswith(".py"))
