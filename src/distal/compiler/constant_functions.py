@@ -40,7 +40,7 @@ from distal.ir.nodes import (
     Var,
 )
 from distal.ir.types import Matrix, Struct, Vector, component_count
-from distal.ir.walk import children, rewrite, substitute
+from distal.ir.walk import children, rebuild
 from distal.passes.fold.fold import fold_expression
 
 # The passes that remove function values and gradients; the rest makes texts short, or fast.
@@ -165,10 +165,20 @@ class _Evaluator:
 
     def _value(self, e: Expr, env: dict[Expr, Expr]) -> Expr:
         """Return an expression's value: constants, and structs of them."""
-        folded = rewrite(substitute(e, env, {}), self._folded, {})
+        folded = self._replaced(e, env, {})
         if not contents(folded).kinds <= _VALUES:
             raise _NotConstantError
         return folded
+
+    def _replaced(self, e: Expr, env: dict[Expr, Expr], memo: dict[Expr, Expr]) -> Expr:
+        """Return an expression with the values of its locals, folded; each node once."""
+        done = env.get(e) or memo.get(e)
+        if done is None:
+            operands = children(e)
+            if operands:
+                e = rebuild(e, tuple([self._replaced(c, env, memo) for c in operands]))
+            done = memo[e] = self._folded(e)
+        return done
 
     def _folded(self, e: Expr) -> Expr:
         if isinstance(e, Call):
