@@ -8,6 +8,7 @@ import os
 import re
 import socket
 import threading
+import zipfile
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -138,6 +139,21 @@ def test_texts_are_those_of_this_python(address, tmp_path):
                 different.add(name)
     assert refused == WITH_NUMPY.intersection(COMPARED)
     assert different == WITH_TABLES.intersection(COMPARED)
+
+
+def test_archives_have_bytecode_and_the_sources_of_scene_code(folder):
+    def names(archive: str) -> set[str]:
+        with zipfile.ZipFile(folder / "python" / archive) as found:
+            return set(found.namelist())
+
+    stdlib, own = names("python_stdlib.zip"), names("distal.zip")
+    assert "dataclasses.pyc" in stdlib and "dataclasses.py" not in stdlib
+    for module in ("random", "colorsys", "statistics", "json/__init__"):
+        assert stdlib & {f"{module}.py", f"{module}.pyc"}, module
+    assert not [name for name in stdlib if name.startswith(("unittest/", "pdb"))]
+    assert "distal/frontend/source.pyc" in own and "distal/frontend/source.py" not in own
+    assert "distal/render/trace.py" in own
+    assert any(name.startswith("distal/render/__pycache__/trace.") for name in own)
 
 
 def test_typing_mistakes_and_a_dial(address):

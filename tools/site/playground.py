@@ -10,6 +10,7 @@ import base64
 import hashlib
 import json
 import shutil
+import subprocess
 import tempfile
 import zipfile
 from collections.abc import Sequence
@@ -31,7 +32,7 @@ PYTHON = (
 )
 START = "planet"
 # Of distal, what the compile path needs: not what only devices, windows and videos use.
-_LEFT_OUT = ("cli", "gallery", "notebook", "video", "window", "editor/local")
+_LEFT_OUT = ("cli", "gallery", "lessons", "notebook", "video", "window", "editor/local")
 # The cell is a part of the page's own text, so the page's policy holds in it, beside its own: the
 # cell's script, known by its digest, starts Python from what the page hands it.
 _POLICY = (
@@ -55,6 +56,7 @@ def build(folder: Path, names: Sequence[str]) -> None:
     for name in PYTHON:
         shutil.copyfile(PYODIDE / name, folder / "python" / name)
     write_package(folder / "python" / "distal.zip")
+    _compile_sources(folder / "python")
     for name, opened in opened_examples([START, *names]).items():
         (folder / "gallery" / f"{name}.json").write_text(json.dumps(opened), encoding="utf-8")
         shutil.copyfile(posters()[name], folder / "gallery" / f"{name}.webp")
@@ -72,6 +74,16 @@ def write_package(path: Path) -> None:
                 _add(archive, f"distal/{inner}", file.read_bytes())
         for name in ("player.js", "path_player.js"):
             _add(archive, f"distal/export/{name}", (source / "export" / name).read_bytes())
+
+
+def _compile_sources(folder: Path) -> None:
+    """Replace sources by bytecode in the archives of Python and distal, by Pyodide itself."""
+    here = Path(__file__).parent
+    script, program = here / "bytecode.mjs", here / "bytecode_program.py"
+    command = ["node", str(script), str(folder.resolve()), str(program)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise RuntimeError(f"no bytecode of the playground could be made: {done.stderr[-2000:]}")
 
 
 def _add(archive: zipfile.ZipFile, name: str, data: bytes) -> None:

@@ -14,6 +14,7 @@ from typing import Any, Final
 from distal.backends import get_target
 from distal.compiler.driver import run_passes
 from distal.ir.build import add, components, multiply, swizzle
+from distal.ir.contents import contents
 from distal.ir.nodes import (
     Assign,
     Break,
@@ -39,22 +40,32 @@ from distal.ir.nodes import (
     Var,
 )
 from distal.ir.types import Matrix, Struct, Vector, component_count
-from distal.ir.walk import children, nodes_in, rewrite, substitute
+from distal.ir.walk import children, rebuild
 from distal.passes.fold.fold import fold_expression
 
 # The passes that remove function values and gradients; the rest makes texts short, or fast.
 _LAST_PASS: Final = "decompose"
 _LONGEST_LOOP: Final = 4096
 _EXPRESSIONS_KEPT: Final = 16384
+_MODULES_KEPT: Final = 64
+_VALUES: Final = frozenset({Const, Splat, Compose, Construct})
 
 
 def evaluate(module: Module) -> Any | None:
     """Return the entry's value: a number, or nested tuples of numbers."""
+    # Whoever has data is not kept: declarations are equal whatever the data is.
+    return _evaluated(module) if module.resources else _kept(module)
+
+
+def _evaluated(module: Module) -> Any | None:
     module = run_passes(module, get_target("llvm"), 64, after=_LAST_PASS)
     try:
         return _python_value(_Evaluator(module).call(module.entry, ()))
     except _NotConstantError:
         return None
+
+
+_kept = lru_cache(maxsize=_MODULES_KEPT)(_evaluated)
 
 
 class _NotConstantError(Exception):
@@ -154,10 +165,20 @@ class _Evaluator:
 
     def _value(self, e: Expr, env: dict[Expr, Expr]) -> Expr:
         """Return an expression's value: constants, and structs of them."""
-        folded = rewrite(substitute(e, env, {}), self._folded, {})
-        if not all(isinstance(n, Const | Splat | Compose | Construct) for n in nodes_in(folded)):
+        folded = self._replaced(e, env, {})
+        if not contents(folded).kinds <= _VALUES:
             raise _NotConstantError
         return folded
+
+    def _replaced(self, e: Expr, env: dict[Expr, Expr], memo: dict[Expr, Expr]) -> Expr:
+        """Return an expression with the values of its locals, folded; each node once."""
+        done = env.get(e) or memo.get(e)
+        if done is None:
+            operands = children(e)
+            if operands:
+                e = rebuild(e, tuple([self._replaced(c, env, memo) for c in operands]))
+            done = memo[e] = self._folded(e)
+        return done
 
     def _folded(self, e: Expr) -> Expr:
         if isinstance(e, Call):

@@ -13,7 +13,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, Final, Literal, TypeAlias, cast
 
 import distal
@@ -97,6 +97,8 @@ def piece(text: str, start: int, end: int) -> str:
     return units[2 * start : 2 * end].decode("utf-16-le", "surrogatepass")
 
 
+# A drag sends one text many times.
+@lru_cache(maxsize=4)
 def find_literals(file: str, text: str) -> tuple[SourceLiteral, ...]:
     """Return the literals of a file in the order of the text; none if it is not Python."""
     try:
@@ -296,9 +298,16 @@ def _is_number(value: object) -> bool:
 
 
 @cache
+def _public(name: str) -> Any:
+    """Return a public name of the library or of scene code; None if there is none."""
+    # Asking ``distal`` for another name makes it search for similar ones.
+    return getattr(distal, name) if name in distal.__all__ else getattr(lang, name, None)
+
+
+@cache
 def _slots(name: str) -> tuple[str, ...]:
     """Return the names of the arguments of a public function, class or method of shapes."""
-    found = getattr(distal, name, None) if name in distal.__all__ else None
+    found = getattr(distal, name) if name in distal.__all__ else None
     if found is None:
         found = getattr(distal.Shape, name, None) or getattr(distal.Shape2D, name, None)
     try:
@@ -311,7 +320,7 @@ def _slots(name: str) -> tuple[str, ...]:
 
 def _options(node: ast.expr, around: _Around) -> tuple[str, ...]:
     """Return the words that an argument takes: those of the library, or of a declared choice."""
-    called = getattr(distal, around.call, None) or getattr(lang, around.call, None)
+    called = _public(around.call)
     if called is Scene or around.call == "in_look":
         return WORDS.get(around.slot, ())
     if around.slot == "wrap" and isinstance(called, type) and issubclass(called, TextureValue):

@@ -30,7 +30,7 @@ from distal.editor.places import column, shapes_of
 from distal.editor.programs import KeptPrograms, key_of, numbers_of
 from distal.editor.scene_folder import check_name
 from distal.export.page_options import PageOptions
-from distal.export.payload import Facts, lowered, parameter_entry, payload
+from distal.export.payload import Facts, framed, lowered, parameter_entry, payload
 from distal.ir.nodes import Module, Origin
 from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed
@@ -122,7 +122,7 @@ class Looks:
         """
         loaded, seen = self.load(request, files)
         loaded_at = time.perf_counter()
-        module = lowered(_image(seen, request.view))
+        module = _lowered(seen, request.view)
         key = key_of(module)
         common: dict[str, Any] = {
             **{"id": request.id, "revision": request.revision},
@@ -164,7 +164,7 @@ class Looks:
             given = {HELD: slider(HELD, value, low=value - reach, high=value + reach)}
         try:
             loaded, seen = self.load(request, files, given)
-            module = lowered(_image(seen, request.view))
+            module = _lowered(seen, request.view)
             key = key_of(module)
             content = self._content(seen, request, module, key)
         except (CompileError, LoadError):
@@ -173,7 +173,7 @@ class Looks:
             # It steers what is compiled, such as the bound of a loop.
             held = None
             loaded, seen = self.load(request, request.files)
-            module = lowered(_image(seen, request.view))
+            module = _lowered(seen, request.view)
             key = key_of(module)
             content = self._content(seen, request, module, key)
         return SceneFound(
@@ -245,6 +245,13 @@ def known_values(parameters: Any, values: Mapping[str, Any]) -> dict[str, Any]:
 def _image(seen: Viewable, view: str) -> Any:
     # As ``PagePrograms.add`` asks for it; the scene keeps its views.
     return seen.image(view, steered=seen.steers, encoded=True, sampled=seen.is_sampled(view))
+
+
+def _lowered(seen: Viewable, view: str) -> Module:
+    """Return the IR of a view; that of an ``@image`` also tells which locals can be shown."""
+    if seen.scene is None and view == COLOR:
+        return framed(seen.lowered)
+    return lowered(_image(seen, view))
 
 
 def _parameters_of(module: Module) -> list[Parameter]:

@@ -416,7 +416,11 @@ def compiled(image: Func | Composed) -> tuple[Artifact, Module]:
 
 def lowered(image: Func | Composed) -> Module:
     """Return the IR of a picture for a page, before the passes."""
-    module = lower(image.text() if isinstance(image, Composed) else image)
+    return framed(lower(image.text() if isinstance(image, Composed) else image))
+
+
+def framed(module: Module) -> Module:
+    """Return the IR of a picture with the input that a page adds."""
     # The picture fills the page, the author's frame the part of it that nothing covers.
     return replace(module, uniforms=(*module.uniforms, FRAME_OFFSET))
 

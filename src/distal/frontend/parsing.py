@@ -9,7 +9,10 @@ from __future__ import annotations
 
 import ast
 import threading
+from functools import lru_cache
 from typing import Any, Final
+
+TREES_KEPT: Final = 512
 
 _PARSING: Final = threading.Lock()
 
@@ -18,3 +21,10 @@ def parse(text: str, **options: Any) -> Any:
     """Call ``ast.parse`` while no other thread parses."""
     with _PARSING:
         return ast.parse(text, **options)
+
+
+@lru_cache(maxsize=TREES_KEPT)
+def parse_definitions(text: str) -> ast.Module:
+    """Return the tree of the text of a definition; equal texts have one, which nobody changes."""
+    tree: ast.Module = parse(text)
+    return tree

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import TypeAlias
 
 from distal.diagnostics import CompileError, Span
-from distal.frontend.parsing import parse
+from distal.frontend.parsing import parse, parse_definitions
 from distal.lang.source import Source
 
 Node: TypeAlias = ast.expr | ast.stmt
@@ -89,7 +89,7 @@ def _find(source: Source, name: str, span: Span) -> tuple[ast.FunctionDef, Sourc
     if span.col:
         segment, offset = ["if 1:\n", *segment], offset - 1
     try:
-        tree = parse("".join(segment))
+        tree = parse_definitions("".join(segment))
     except SyntaxError:
         # The guess by indentation failed, for example at a multi-line string: parse the file.
         tree, offset = parse("".join(source.lines)), 0

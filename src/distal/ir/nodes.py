@@ -564,6 +564,15 @@ class Function:
     native: str | None = field(default=None, kw_only=True)
     apart: bool = field(default=False, kw_only=True)
     span: Span | None = field(default=None, repr=False, kw_only=True)
+    _hash: int | None = field(default=None, init=False, repr=False, compare=False)
+
+    def __hash__(self) -> int:
+        # Computed once: what passes keep is looked up by the function (``distal.ir.kept``).
+        found = self._hash
+        if found is None:
+            found = hash((self.name, self.params, self.result, self.body, self.native, self.span))
+            object.__setattr__(self, "_hash", found)
+        return found
 
 
 class Origin(Enum):

@@ -21,6 +21,7 @@ from typing import Final
 from distal.diagnostics import CompileError, Span
 from distal.ir import nodes
 from distal.ir.build import number, subtract
+from distal.ir.kept import kept
 from distal.ir.nodes import (
     Apply,
     Call,
@@ -69,7 +70,11 @@ def run(module: Module, context: Context) -> Module:
     """Replace ``Frame`` by coord and uniforms, and wrap an image into the entry function."""
     renamed = renamed_parameters(module.uniforms)
     used: set[str] = set()
-    functions = [_FrameReplacer(f, renamed, used).function() for f in module.functions]
+    functions = []
+    for function in module.functions:
+        replaced, read = _without_frames(function, tuple(renamed.items()))
+        functions.append(replaced)
+        used |= read
     entry = module.entry
     if module.kind is EntryKind.IMAGE:
         wrapper = _wrapper(functions, entry, module.uniforms, context.target.targets)
@@ -141,13 +146,26 @@ def _without_frame(type: Type) -> Type:
     return type
 
 
-class _FrameReplacer:
-    """Replaces the frames of one function by their coords and by uniforms."""
+@kept
+def _without_frames(
+    function: Function, renamed: tuple[tuple[str, str], ...]
+) -> tuple[Function, frozenset[str]]:
+    """Return a function without frames, and the names of the frame's uniforms that it reads."""
+    replacer = _FrameReplacer(function, dict(renamed))
+    return replacer.function(), frozenset(replacer.used)
 
-    def __init__(self, function: Function, renamed: dict[str, str], used: set[str]) -> None:
+
+class _FrameReplacer:
+    """Replaces the frames of one function by their coords and by uniforms.
+
+    Attributes:
+        used: The names of the frame's uniforms that are read so far.
+    """
+
+    def __init__(self, function: Function, renamed: dict[str, str]) -> None:
+        self.used: set[str] = set()
         self._function = function
         self._renamed = renamed
-        self._used = used  # the frame's uniforms read so far in the whole module; extended
         self._coords: dict[str, Expr] = {}  # a local of type Frame -> its coord
         self._memo: dict[Expr, Expr] = {}
         self._span: Span | None = function.span
@@ -192,10 +210,10 @@ class _FrameReplacer:
                 coord = self._coord(base)
                 if name == "coord":
                     return coord
-                self._used.add(name)
+                self.used.add(name)
                 return Uniform(name, type, span=e.span)
             case Uniform(nodes.FRAME_TIME, type):
-                self._used.add("time")
+                self.used.add("time")
                 return Uniform("time", type, span=e.span)
             case Uniform(name, type):
                 return Uniform(self._renamed.get(name, name), type, span=e.span)

@@ -138,3 +138,26 @@ def test_a_parameter_called_time_stands_beside_the_time():
     verify(module)
     text = print_module(entry.run(module, CONTEXT))
     assert "return (mul @time_value @time)" in text
+
+
+def test_what_is_kept_of_a_function_declares_the_frames_values_again():
+    time = field(FRAME_READ, "time")
+    picture = function("kept", {"frame": FRAME}, VEC3, Return(splat(time, VEC3)))
+    texts = [print_module(image(picture)) for _ in range(2)]
+    assert texts[0] == texts[1]
+    assert "uniform @time" in texts[1]
+
+
+def test_what_is_kept_of_a_function_declares_the_frames_values_again():
+    picture = function("kept", {"frame": FRAME}, VEC3, Return(splat(field(FRAME_READ, "seed"), VEC3)))
+    texts = [print_module(image(picture)) for _ in range(2)]
+    assert texts[0] == texts[1]
+    assert "uniform @seed" in texts[1]
+
+
+def test_the_same_function_reads_a_parameter_by_the_name_it_has_in_each_program():
+    reading = Uniform("time", FLOAT)
+    picture = function("kept", {"frame": FRAME}, VEC3, Return(splat(reading, VEC3)))
+    declared = UniformDeclaration("time", FLOAT, Origin.PARAMETER, 1.0)
+    assert "@time_value" in print_module(image(picture, uniforms=(declared,)))
+    assert "@time_value" not in print_module(image(picture))

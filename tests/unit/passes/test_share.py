@@ -10,15 +10,19 @@ from distal.ir.nodes import (
     Break,
     Call,
     CompareOp,
+    EntryKind,
     Expr,
     For,
     Function,
     If,
     Let,
+    Module,
+    Origin,
     Param,
     Read,
     Return,
     Stmt,
+    UniformDeclaration,
     Var,
     While,
 )
@@ -250,3 +254,23 @@ def test_doubling_does_not_explode() -> None:
 def test_random_modules_keep_their_value(seed: int) -> None:
     module = Generator(seed).module()
     check(module, run(module, context(None)), "share")
+
+
+def caller_beside(callee: Expr, uniform: str = "other") -> tuple[Stmt, ...]:
+    """The body of a function that calls another one twice, after ``run``."""
+    call = Call("short", (x,), FLOAT)
+    twice = build.add(build.multiply(call, y), call)
+    params = (Param("x", FLOAT), Param("y", FLOAT))
+    short = Function("short", params[:1], FLOAT, (Return(callee),), "short")
+    caller = Function("f", params, FLOAT, (Return(twice),), "f")
+    declared = UniformDeclaration(uniform, FLOAT, Origin.NUMBER, 1.0)
+    module = Module((short, caller), "f", EntryKind.FUNCTION, (declared,))
+    return run(module, context(None)).function("f").body
+
+
+def test_what_is_kept_of_a_function_depends_on_what_it_calls_and_on_taken_names() -> None:
+    assert len(caller_beside(x)) == 1  # a call that costs nothing is as short as a name
+    long = build.builtin("sin", wave)
+    assert [s.name for s in caller_beside(long)[:-1]] == ["shared_0"]
+    assert [s.name for s in caller_beside(long, "shared_0")[:-1]] == ["shared_1"]
+    assert caller_beside(x) == caller_beside(x)

@@ -18,10 +18,7 @@ function start(): void {
   worker?.terminate();
   const source = new Blob([WORKER], { type: "text/javascript" });
   worker = new Worker(URL.createObjectURL(source));
-  worker.onmessage = ({ data }) => {
-    if (typeof data === "object" && "name" in data) files[String(data.name)] ??= data.data;
-    else port.postMessage(data);
-  };
+  worker.onmessage = ({ data }) => port.postMessage(data);
   worker.onerror = (event) => port.postMessage({ failed: event.message || "the worker failed" });
   worker.postMessage({ files });
 }

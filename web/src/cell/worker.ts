@@ -23,14 +23,12 @@ const FOLDER = "/lib/distal";
 const START = `
 import sys
 sys.path.insert(0, "${FOLDER}")
-import gc, os
+sys.dont_write_bytecode = True
+import gc
+# Collections take a fifth of the start, and of each compilation.
+gc.disable()
+import os
 from pathlib import Path
-
-sys.dont_write_bytecode = False
-# Of one age in every worker, so that bytecode of an earlier one is good.
-for _folder, _, _names in os.walk("${FOLDER}"):
-    for _name in _names:
-        os.utime(f"{_folder}/{_name}", (0, 0))
 
 from distal.editor.messages import AppRequest, MessageError, encoded, parsed
 from distal.editor.worker import StudioWorker
@@ -39,7 +37,6 @@ os.makedirs("/scene", exist_ok=True)
 os.chdir("/scene")
 _worker = StudioWorker(Path("/scene"), lambda message: post(encoded(message)))
 post(encoded(_worker.ready()))
-gc.disable()
 
 def answer(text):
     request = parsed(text)
@@ -49,17 +46,7 @@ def answer(text):
 
 def tidy():
     gc.collect()
-
-def bytecode():
-    import io, zipfile
-    found = io.BytesIO()
-    with zipfile.ZipFile(found, "w") as archive:
-        for path in Path("${FOLDER}").rglob("*.pyc"):
-            archive.write(path, path.relative_to("${FOLDER}"))
-    return found.getvalue()
 `;
-/** The name of what a worker has compiled of the library, among the files of the next one. */
-const BYTECODE = "bytecode.zip";
 
 function address(data: ArrayBuffer): string {
   return URL.createObjectURL(new Blob([data], { type: "text/javascript" }));
@@ -85,17 +72,9 @@ async function start(files: Record<string, ArrayBuffer>): Promise<(text: string)
     stdout: () => {},
     stderr: () => {},
   });
-  for (const name of ["distal.zip", BYTECODE]) {
-    if (files[name]) python.unpackArchive(files[name], "zip", { extractDir: FOLDER });
-  }
+  python.unpackArchive(files["distal.zip"]!, "zip", { extractDir: FOLDER });
   python.globals.set("post", (text: string) => postMessage(text));
   python.runPython(START);
-  // Before any code of the author runs.
-  if (!files[BYTECODE]) {
-    const made = python.runPython("bytecode()") as { toJs(): Uint8Array<ArrayBuffer> };
-    const { buffer } = made.toJs();
-    postMessage({ name: BYTECODE, data: buffer }, { transfer: [buffer] });
-  }
   return python.globals.get("answer") as (text: string) => void;
 }
 

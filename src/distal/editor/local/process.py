@@ -109,7 +109,7 @@ class WorkerProcess(ChildProcess):
     def __init__(
         self, beside: Path, received: Callable[[str], None], ended: Callable[[str], None]
     ) -> None:
-        command = [sys.executable, "-m", "distal.editor.worker", str(beside)]
+        command = [sys.executable, "-m", "distal.editor", str(beside)]
         super().__init__(command, received, lambda code, report: ended(reason_of(code, report)))
 
 

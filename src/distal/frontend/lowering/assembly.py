@@ -43,6 +43,7 @@ class Assembly:
     def __init__(self, compilation: Compilation) -> None:
         self._compilation = compilation
         self.made: dict[Any, Any] = {}
+        self._called: dict[Any, tuple[tuple[SignatureParameter, ...], Instance]] = {}
         self._defined: dict[tuple[str, tuple[Param, ...], Type, tuple[Stmt, ...]], str] = {}
 
     @property
@@ -62,11 +63,17 @@ class Assembly:
             FollowupError: The function has errors, which are reported already.
             SceneError: The types of the arguments do not match.
         """
-        parameters = self._parameters_of(func, arguments)
+        key = (func, *((name, e.type) for name, e in arguments.items()))
+        known = self._called.get(key)
+        parameters = self._parameters_of(func, arguments) if known is None else known[0]
         args = tuple(self._argument(func, parameter, arguments) for parameter in parameters)
-        instance = exact_instance(self._compilation, func, tuple(a.type for a in args))
-        if instance.result is None:
-            raise FollowupError
+        if known is None:
+            instance = exact_instance(self._compilation, func, tuple(a.type for a in args))
+            if instance.result is None:
+                raise FollowupError
+            known = self._called[key] = (parameters, instance)
+        instance = known[1]
+        assert instance.result is not None
         return Call(instance.name, args, instance.result)
 
     def parameter_names(self, func: Func) -> tuple[str, ...]:

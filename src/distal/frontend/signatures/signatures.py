@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from types import FunctionType
 from typing import Any, Final
 from weakref import WeakKeyDictionary
 
 from distal.diagnostics import CompileError, Diagnostic, Span
 from distal.frontend.name_lookup import NameLookup, names_of
+from distal.frontend.parsing import TREES_KEPT
 from distal.frontend.problems import SceneError
 from distal.frontend.scopes import ScopeAnalysis, analyse_scopes, plain_parameters
 from distal.frontend.source import SourceMap, parse_definition
@@ -60,7 +61,13 @@ class Definition:
     @cached_property
     def scopes(self) -> ScopeAnalysis:
         """The locals of the function."""
-        return analyse_scopes(self.node.body, {a.arg for a in plain_parameters(self.node.args)})
+        return _scopes_of(self.node)
+
+
+# Equal texts have one tree: it is analysed once, also where the file is loaded again.
+@lru_cache(maxsize=TREES_KEPT)
+def _scopes_of(node: ast.FunctionDef) -> ScopeAnalysis:
+    return analyse_scopes(node.body, {a.arg for a in plain_parameters(node.args)})
 
 
 _definitions: WeakKeyDictionary[Overload, Definition] = WeakKeyDictionary()

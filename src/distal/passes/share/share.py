@@ -17,6 +17,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
+from distal.ir.contents import contents
+from distal.ir.kept import kept
 from distal.ir.nodes import (
     Assign,
     Compose,
@@ -34,7 +36,15 @@ from distal.ir.nodes import (
     Swizzle,
 )
 from distal.ir.types import is_static
-from distal.ir.walk import children, expressions, map_indices, map_statement, nodes_in, rebuild
+from distal.ir.walk import (
+    children,
+    expressions,
+    map_indices,
+    map_statement,
+    nodes_in,
+    rebuild,
+    roots_in,
+)
 from distal.passes.context import Context
 from distal.passes.cost import Costs, function_costs, node_cost
 from distal.passes.naming import FreshNames, local_names, module_names
@@ -48,7 +58,7 @@ from distal.passes.regions import (
     is_certain,
     within,
 )
-from distal.passes.share.split_deep import split_deep
+from distal.passes.share.split_deep import SHARED, split_deep
 from distal.passes.versions import Versions, plain
 
 WORTH_A_NAME: Final = 3  # the least cost; a sum is as short as a name for it
@@ -60,9 +70,23 @@ MOST_ROUNDS: Final = 3  # a Let that left a loop may allow others to leave in th
 def run(module: Module, context: Context) -> Module:
     """Share values within every function."""
     costs = function_costs(module.functions)
-    taken = set(module_names(module))
-    functions = tuple(share_function(f, costs, taken) for f in module.functions)
+    taken = frozenset(name for name in module_names(module) if name.startswith(SHARED))
+    functions = tuple(_shared(f, _callee_costs(f, costs), taken) for f in module.functions)
     return replace(module, functions=functions)
+
+
+def _callee_costs(function: Function, costs: Mapping[str, int]) -> tuple[tuple[str, int], ...]:
+    """Return the costs of the functions that a function calls."""
+    called = dict.fromkeys(n for root in roots_in(function.body) for n in contents(root).called)
+    return tuple((name, costs[name]) for name in called if name in costs)
+
+
+@kept
+def _shared(
+    function: Function, calls: tuple[tuple[str, int], ...], taken: frozenset[str]
+) -> Function:
+    """Return what ``share_function`` makes; the new names are all that could be taken."""
+    return share_function(function, dict(calls), set(taken))
 
 
 def share_function(function: Function, calls: Mapping[str, int], taken: set[str]) -> Function:
@@ -217,7 +241,7 @@ class _Sharing:
             bindings = self._before.get((region, position), [])
             bindings.sort(key=lambda b: self._heights[b.value])
             for binding in bindings:
-                binding.name = binding.let.name if binding.let else names.numbered("shared")
+                binding.name = binding.let.name if binding.let else names.numbered(SHARED)
             for inner in region.inner.get(position, ()):
                 for below in inner.inner[0] if inner.is_head else (inner,):
                     self._name(below, names)

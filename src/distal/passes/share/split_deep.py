@@ -17,6 +17,7 @@ from distal.passes.naming import FreshNames
 
 DEEPEST: Final = 50
 LONGEST: Final = 1000
+SHARED: Final = "shared"  # the names of new Lets are this and a number
 
 
 def split_deep(body: tuple[Stmt, ...], names: FreshNames) -> tuple[Stmt, ...]:
@@ -62,7 +63,7 @@ def split_expression(root: Expr, names: FreshNames, before: list[Stmt], stmt: St
         changed = rebuild(e, tuple([done[c] for c in operands]))
         too_long = depth >= DEEPEST or length >= LONGEST
         if too_long and e is not root and _may_be_bound(e, stmt):
-            name = names.numbered("shared")
+            name = names.numbered(SHARED)
             before.append(Let(name, changed, span=stmt.span))
             changed, depth, length = Read(name, e.type), 1, 1
         done[e], depths[e], lengths[e] = changed, depth, length

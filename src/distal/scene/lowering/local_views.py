@@ -23,6 +23,7 @@ from distal.ir.nodes import (
     Field,
     Function,
     Let,
+    Module,
     Param,
     Read,
     Return,
@@ -120,14 +121,17 @@ def view_of_image(image: Image, view: str) -> Composed:
     return LocalView(image, named[0])
 
 
-def locals_of(image: Image, shown: Container[Type] = SHOWN) -> list[Local]:
+def locals_of(
+    image: Image, shown: Container[Type] = SHOWN, module: Module | None = None
+) -> list[Local]:
     """Return the locals of an image's function that can be shown, in source order.
 
     Args:
         image: An author's image.
         shown: The types that can be shown.
+        module: The lowered image, if it is known.
     """
-    module = lower(image)
+    module = lower(image) if module is None else module
     function = module.function(module.entry)
     written = set(image.python_function.__code__.co_varnames)
     varying = _varying(function)

@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from distal.diagnostics import LoadError
-from distal.frontend import Assembly
+from distal.frontend import Assembly, lower
+from distal.ir.nodes import Module
 from distal.ir.types import FLOAT
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
@@ -89,8 +90,19 @@ class Viewable:
         if self.scene is not None:
             return (COLOR, *VIEWS)
         assert isinstance(self._source, Image)
-        varying = (f"{PREFIX}{x.name}" for x in locals_of(self._source) if x.varies)
+        known = locals_of(self._source, module=self.lowered)
+        varying = (f"{PREFIX}{x.name}" for x in known if x.varies)
         return (COLOR, *IMAGE_VIEWS, *varying)
+
+    @cached_property
+    def lowered(self) -> Module:
+        """The IR of an ``@image``.
+
+        Raises:
+            CompileError: The image has mistakes.
+        """
+        assert isinstance(self._source, Image)
+        return lower(self._source)
 
     @cached_property
     def parameters(self) -> list[Parameter]:
