@@ -19,12 +19,11 @@ from distal.images.atomic_files import SaveError, check_destination, replacement
 from distal.mesh.files.glb import write_glb
 from distal.mesh.files.obj import write_obj
 from distal.mesh.files.outlines import write_dxf, write_svg
-from distal.mesh.files.parts import UNITS, Finish, Part, Solid, part_of, placed
+from distal.mesh.files.parts import Finish, Part, Solid, part_of, placed
 from distal.mesh.files.ply import write_ply
 from distal.mesh.files.stl import write_stl
 from distal.mesh.files.three_mf import write_three_mf
-
-_MILLIMETER: Final = 1e-3
+from distal.polygons.units import MILLIMETER, UNITS
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,11 +59,11 @@ class OutlineFormat:
 
 
 MESH_FORMATS: Final = {
-    ".3mf": MeshFormat("3MF", "unit, colors, names", _MILLIMETER, True, write_three_mf),
-    ".stl": MeshFormat("STL", "nothing", _MILLIMETER, True, write_stl),
+    ".3mf": MeshFormat("3MF", "unit, colors, names", MILLIMETER, True, write_three_mf),
+    ".stl": MeshFormat("STL", "nothing", MILLIMETER, True, write_stl),
     ".glb": MeshFormat("GLB", "unit, colors, normals, materials, names", 1.0, False, write_glb),
-    ".ply": MeshFormat("PLY", "colors, normals", _MILLIMETER, False, write_ply),
-    ".obj": MeshFormat("OBJ", "colors, normals, names", _MILLIMETER, False, None),
+    ".ply": MeshFormat("PLY", "colors, normals", MILLIMETER, False, write_ply),
+    ".obj": MeshFormat("OBJ", "colors, normals, names", MILLIMETER, False, None),
 }
 OUTLINE_FORMATS: Final = {
     ".svg": OutlineFormat("SVG", write_svg),
@@ -131,7 +130,7 @@ def write_outlines(
     """
     target = Path(path)
     chosen = _chosen(target, OUTLINE_FORMATS, "an outline")
-    scale = _meters(unit) / _MILLIMETER
+    scale = _meters(unit) / MILLIMETER
     check_destination(target)
     if not len(polylines):
         raise SaveError("there is no outline to save: the shape has no edge here")

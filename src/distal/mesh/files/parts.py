@@ -17,15 +17,6 @@ from distal.images.atomic_files import SaveError
 from distal.lang.runtime_access import executor
 from distal.lang.srgb import encode_srgb
 
-# Meters in one unit.
-UNITS: Final = {
-    "um": 1e-6,
-    "mm": 1e-3,
-    "cm": 1e-2,
-    "m": 1.0,
-    "inch": 0.0254,
-    "ft": 0.3048,
-}
 _LARGEST: Final = 1e30  # single floats of a file hold it, squared lengths in double ones too
 
 
