@@ -214,9 +214,9 @@ def test_3mf_places_the_components_of_other_models(tmp_path):
 
 def test_equal_corners_are_joined_with_one_zero():
     corners = np.array([[(0.0, 0, 0), (1, 0, 0), (0, 1, 0)], [(-0.0, 0, 0), (0, 1, 0), (0, 0, 1)]])
-    points, triangles = welded(corners.astype(np.float32))
+    points, which = welded(corners.reshape(-1, 3).astype(np.float32))
     assert len(points) == 4
-    assert points[triangles] == pytest.approx(corners)
+    assert points[which] == pytest.approx(corners.reshape(-1, 3))
 
 
 BINARY = struct.pack("<80sI", b"", 3) + bytes(60)

@@ -9,6 +9,7 @@ import re
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
 from distal.polygons.triangles import Triangles, checked, welded
@@ -37,8 +38,7 @@ def read_stl(data: bytes) -> Triangles:
         raise LoadError(f"it announces {count} triangles and contains {there}: it is truncated")
     if count == 0:
         raise LoadError("there is no triangle")
-    corners = np.frombuffer(data, _RECORD, count, _HEADER)["corners"]
-    return checked(*welded(corners))
+    return _mesh(np.frombuffer(data, _RECORD, count, _HEADER)["corners"])
 
 
 def _text(data: bytes) -> Triangles:
@@ -53,4 +53,9 @@ def _text(data: bytes) -> Triangles:
         raise LoadError("a corner is not three numbers") from None
     with np.errstate(over="ignore"):  # ``checked`` finds what is not finite
         corners = np.array(values).astype(np.float32)
-    return checked(*welded(corners.reshape(-1, 3, 3)))
+    return _mesh(corners)
+
+
+def _mesh(corners: NDArray[np.float32]) -> Triangles:
+    points, which = welded(corners.reshape(-1, 3))
+    return checked(points, which.reshape(-1, 3))

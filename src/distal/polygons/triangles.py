@@ -16,7 +16,7 @@ from distal.diagnostics import LoadError
 # The most triangles of a mesh: 240 MB of indices, and minutes of work.
 MOST_TRIANGLES: Final = 10_000_000
 _LARGEST: Final = 1e15  # the squares of lengths stay far from the largest single float
-_HASH: Final = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9)
+_HASH: Final = np.array((0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9), np.uint64)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,16 +63,20 @@ def checked(points: Any, triangles: Any, meters: float | None = None) -> Triangl
     return Triangles(places, corners.astype(np.int64), meters)
 
 
-def welded(corners: NDArray[np.float32]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return points and triangles of corners (m, 3, 3) where exactly equal points are one."""
-    rows = np.ascontiguousarray(corners.reshape(-1, 3)) + np.float32(0.0)  # -0 becomes 0
+def welded(places: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+    """Return points of which no two are equal, and the number of the point at each place.
+
+    Args:
+        places: (n, 3).
+    """
+    rows = np.ascontiguousarray(places) + np.float32(0.0)  # -0 becomes 0
     bits = rows.view(np.uint32).astype(np.uint64)
-    keys = np.bitwise_xor.reduce(bits * np.array(_HASH, np.uint64), axis=1)
+    keys = bits[:, 0] * _HASH[0] ^ bits[:, 1] * _HASH[1] ^ bits[:, 2] * _HASH[2]
     _, first, which = np.unique(keys, return_index=True, return_inverse=True)
     points = rows[first]
     if not np.array_equal(points[which], rows, equal_nan=True):  # two points had one key
         points, which = np.unique(rows, axis=0, return_inverse=True)
-    return points.astype(np.float64), which.reshape(-1, 3).astype(np.int64)
+    return points, which.reshape(-1).astype(np.int64)
 
 
 def fans(counts: NDArray[np.int64], indices: NDArray[np.int64]) -> NDArray[np.int64]:
