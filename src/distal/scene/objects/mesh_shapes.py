@@ -113,8 +113,9 @@ def _imported(source: Any, triangles: Any, wanted: Any, place: Span | None) -> I
 def _measured(found: Imported, place: Span | None) -> Node:
     """Return the node, with a report of how far its surface is from the mesh."""
     node = _node(found, found.report, place)
-    values = executor().call(DistanceOf(node), (found.places,), {})
-    report = importing.measured(found.report, values)
+    rows = found.places.shape[:2]
+    values = executor().call(DistanceOf(node), (found.places.reshape(-1, 3),), {})
+    report = importing.measured(found, values.reshape(rows))
     for message in importing.warnings_of(report):
         if place is None:
             warnings.warn(message, stacklevel=2)
