@@ -36,6 +36,8 @@ NO_OPERATOR = {
     "cut_material": "scene/test_surfaces",
     "from_function": "below: all children here",
     "from_vm": "tape/test_vm_files",
+    "from_mesh": "polygons/test_mesh_shapes",
+    "imported": "asks",
     "fill": "tape/test_filled_shapes",
     "heights": "tape/test_shape_heights",
     "parameters": "asks",

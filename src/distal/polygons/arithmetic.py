@@ -75,7 +75,7 @@ class Foot:
 
 
 @struct
-class Found:
+class NearestTriangle:
     """The nearest triangle so far.
 
     Attributes:
@@ -133,7 +133,7 @@ def squared_distance(p: vec3, triangle: int) -> float:
 
 
 @func
-def nearest_in_cells(p: vec3, cell: int) -> Found:
+def nearest_in_cells(p: vec3, cell: int) -> NearestTriangle:
     """Return the nearest triangle in the eight cells about a node; ``cell`` is the lowest one.
 
     If it is within one cell's width, no triangle is nearer.
@@ -150,11 +150,11 @@ def nearest_in_cells(p: vec3, cell: int) -> Found:
                 if squared < best:
                     best = squared
                     which = triangle + 1
-    return Found(best, which)
+    return NearestTriangle(best, which)
 
 
 @func
-def nearest_of_neighbors(p: vec3, node: int) -> Found:
+def nearest_of_neighbors(p: vec3, node: int) -> NearestTriangle:
     """Return the nearest of the triangles that are nearest to a node and its 26 neighbors."""
     best = FAR
     which = 0
@@ -167,7 +167,7 @@ def nearest_of_neighbors(p: vec3, node: int) -> Found:
                     if squared < best:
                         best = squared
                         which = found
-    return Found(best, which)
+    return NearestTriangle(best, which)
 
 
 @func

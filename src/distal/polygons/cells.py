@@ -18,7 +18,7 @@ _LARGEST_PIECE: Final = 2.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Cells:
+class CellMembers:
     """The triangles of each cell.
 
     Attributes:
@@ -40,7 +40,7 @@ class Cells:
 Corners = tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]
 
 
-def sorted_into_cells(corners: Corners, nodes: tuple[int, int, int]) -> Cells:
+def sorted_into_cells(corners: Corners, nodes: tuple[int, int, int]) -> CellMembers:
     """Return the triangles in the cells between the nodes of a grid.
 
     Cell (i, j, k) lies between the nodes i - 1 and i, and so on: there is one more along each axis.
@@ -69,7 +69,7 @@ def sorted_into_cells(corners: Corners, nodes: tuple[int, int, int]) -> Cells:
     cell, members = np.divmod(keys, len(corners[0]))
     counted = np.bincount(cell, minlength=shape[0] * shape[1] * shape[2])
     starts = np.concatenate([[0], np.cumsum(counted)]).astype(np.int32)
-    return Cells(members.astype(np.int32), starts, shape)
+    return CellMembers(members.astype(np.int32), starts, shape)
 
 
 def _boxes_of_pieces(

@@ -70,7 +70,8 @@ def _chunks(data: bytes) -> _File:
         raise LoadError("it does not begin with the header of GLB")
     if int.from_bytes(data[4:8], "little") != 2:
         raise LoadError("it is not version 2 of GLB")
-    at, chunks = 12, []
+    at = 12
+    chunks: list[tuple[bytes, bytes]] = []
     while at + 8 <= len(data) and len(chunks) < 2:
         size = int.from_bytes(data[at : at + 4], "little")
         if at + 8 + size > len(data):

@@ -46,6 +46,11 @@ def inside_by_normals(
     side = run(arithmetic.side_of_triangle, places, rows, buffers, double=True)
     signs = np.zeros(values.shape, np.int8)
     signs[near] = np.where(side < 0.0, -1, 1)
+    return _filled(signs)
+
+
+def _filled(signs: NDArray[np.int8]) -> NDArray[np.bool_]:
+    """Return which nodes are inside, where those of sign 0 are on the side of a neighbor."""
     known = -1
     while known != (known := int(np.count_nonzero(signs))):
         for axis in range(3):
@@ -81,16 +86,27 @@ def closed_by_winding(
         values: The distance of each node to the triangles.
         inverted: Whether the mesh is inside out.
     """
-    z, y, x = np.indices(values.shape, np.float32)
-    places = np.stack([x, y, z], axis=-1).reshape(-1, 3)
-    winding = np.asarray(run(arithmetic.winding_number, places, None, tree))
-    winding = (-winding if inverted else winding).reshape(values.shape)
+    turn = -1.0 if inverted else 1.0
+    is_near = values <= 1.0 + _ROUNDED
+    signs = np.zeros(values.shape, np.int8)
+    signs[is_near] = np.where(turn * _winding(tree, is_near) > 0.5, -1, 1)
+    inside = _filled(signs)
+    if not is_contradictory(inside, values):  # bodies that overlap; holes smaller than a cell
+        return np.where(inside, -values, values)
+    winding = turn * _winding(tree, np.ones(values.shape, bool)).reshape(values.shape)
     near = values.copy()
     for axis in range(3):
         _close(np.moveaxis(near, axis, 0), np.moveaxis(winding, axis, 0))
     if (near < values).any():
         _shorten(near)
     return np.where(winding > 0.5, -near, near)
+
+
+def _winding(tree: dict[str, NDArray[Any]], asked: NDArray[np.bool_]) -> NDArray[np.float32]:
+    """Return the winding numbers of the nodes that are asked for, in their order."""
+    z, y, x = np.nonzero(asked)
+    found = run(arithmetic.winding_number, np.stack([x, y, z], axis=1), None, tree)
+    return np.asarray(found, np.float32)
 
 
 def _close(near: NDArray[np.float32], winding: NDArray[np.float32]) -> None:

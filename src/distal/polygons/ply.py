@@ -44,7 +44,7 @@ class _Element:
 
 
 @dataclass(slots=True)
-class _Reader:
+class _Rest:
     """The rest of the file after the header."""
 
     data: bytes
@@ -79,7 +79,7 @@ def read_ply(data: bytes) -> Triangles:
     return checked(points, triangles)
 
 
-def _header(data: bytes) -> tuple[list[_Element], _Reader]:
+def _header(data: bytes) -> tuple[list[_Element], _Rest]:
     end = data.find(b"end_header", 0, 65536)
     if not data.startswith(b"ply") or end < 0:
         raise LoadError("it does not begin with the header of PLY")
@@ -105,13 +105,13 @@ def _header(data: bytes) -> tuple[list[_Element], _Reader]:
         raise LoadError("its header names no format")
     newline = data.find(b"\n", end)
     start = len(data) if newline < 0 else newline + 1
-    reader = _Reader(data, order, start)
+    reader = _Rest(data, order, start)
     if not order:
         reader.words, reader.at = data[start:].split(), 0
     return elements, reader
 
 
-def _columns(element: _Element, reader: _Reader) -> dict[str, Any]:
+def _columns(element: _Element, reader: _Rest) -> dict[str, Any]:
     """Return an array for each property; a list is (lengths, values)."""
     if reader.words is not None:
         return _text_columns(element, reader, reader.words)
@@ -151,7 +151,7 @@ def _uniform(rows: NDArray[Any], each: _Property, lengths: dict[str, int]) -> An
     return counts, rows[each.name].astype(np.int64).reshape(-1)
 
 
-def _first_lengths(element: _Element, reader: _Reader) -> dict[str, int] | None:
+def _first_lengths(element: _Element, reader: _Rest) -> dict[str, int] | None:
     """Return the lengths of the lists of the first row; None without rows."""
     if element.rows == 0:
         return None
@@ -168,7 +168,7 @@ def _first_lengths(element: _Element, reader: _Reader) -> dict[str, int] | None:
     return lengths
 
 
-def _row_by_row(element: _Element, reader: _Reader) -> dict[str, Any]:
+def _row_by_row(element: _Element, reader: _Rest) -> dict[str, Any]:
     """Read rows whose lists differ in length; only lists are kept."""
     found: dict[str, tuple[list[int], list[NDArray[Any]]]] = {
         each.name: ([], []) for each in element.properties if each.count
@@ -194,14 +194,14 @@ def _row_by_row(element: _Element, reader: _Reader) -> dict[str, Any]:
     }
 
 
-def _number(reader: _Reader, at: int, type: str) -> Any:
+def _number(reader: _Rest, at: int, type: str) -> Any:
     dtype = np.dtype(reader.order + type)
     if at + dtype.itemsize > len(reader.data):
         raise LoadError("it is truncated")
     return np.frombuffer(reader.data, dtype, 1, at)[0]
 
 
-def _take(reader: _Reader, element: _Element, dtype: np.dtype[Any], count: int) -> NDArray[Any]:
+def _take(reader: _Rest, element: _Element, dtype: np.dtype[Any], count: int) -> NDArray[Any]:
     if reader.at + count * dtype.itemsize > len(reader.data):
         raise LoadError(f"it is truncated: '{element.name:.20}' has {element.rows} rows")
     rows = np.frombuffer(reader.data, dtype, count, reader.at)
@@ -209,7 +209,7 @@ def _take(reader: _Reader, element: _Element, dtype: np.dtype[Any], count: int) 
     return rows
 
 
-def _text_columns(element: _Element, reader: _Reader, words: list[bytes]) -> dict[str, Any]:
+def _text_columns(element: _Element, reader: _Rest, words: list[bytes]) -> dict[str, Any]:
     columns: dict[str, list[float]] = {each.name: [] for each in element.properties}
     lengths: dict[str, list[int]] = {e.name: [] for e in element.properties if e.count}
     at = reader.at

@@ -47,7 +47,7 @@ class _Object:
 
 
 @dataclass(slots=True)
-class _Package:
+class _Archive:
     """The models that were read, and the triangles that were placed so far.
 
     Attributes:
@@ -79,31 +79,31 @@ def read_three_mf(data: bytes) -> Triangles:
     """
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            return _read(_Package(archive))
+            return _read(_Archive(archive))
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
         raise LoadError(f"it is no whole zip archive, as 3MF is: {error}") from None
 
 
-def _read(package: _Package) -> Triangles:
-    path = _start(package)
-    root = _root(package, path)
+def _read(whole: _Archive) -> Triangles:
+    path = _start(whole)
+    root = _root(whole, path)
     unit = root.get("unit", "millimeter")
     if unit not in _METERS:
         raise LoadError(f"it has the unknown unit '{unit:.20}'")
     build = root.find(f"{_CORE}build")
     for item in [] if build is None else build.findall(f"{_CORE}item"):
         key = (_beside(item.get(_PATH), path), item.get("objectid", ""))
-        _place(package, key, _matrix(item.get("transform")), 0)
-    if not package.triangles:
+        _place(whole, key, _matrix(item.get("transform")), 0)
+    if not whole.triangles:
         raise LoadError("there is no triangle in its build")
-    return checked(np.concatenate(package.points), np.concatenate(package.triangles), _METERS[unit])
+    return checked(np.concatenate(whole.points), np.concatenate(whole.triangles), _METERS[unit])
 
 
-def _start(package: _Package) -> str:
-    """Return the name of the model that the package starts with."""
-    names = package.archive.namelist()
+def _start(whole: _Archive) -> str:
+    """Return the name of the model that the whole starts with."""
+    names = whole.archive.namelist()
     if "_rels/.rels" in names:
-        for relation in _parsed(package, "_rels/.rels"):
+        for relation in _parsed(whole, "_rels/.rels"):
             if relation.get("Type") == _MODEL:
                 return relation.get("Target", "").lstrip("/")
     models = [name for name in names if name.lower().endswith(".model")]
@@ -112,22 +112,22 @@ def _start(package: _Package) -> str:
     return models[0]
 
 
-def _root(package: _Package, path: str) -> ElementTree.Element:
-    if path not in package.roots:
-        root = package.roots[path] = _parsed(package, path)
+def _root(whole: _Archive, path: str) -> ElementTree.Element:
+    if path not in whole.roots:
+        root = whole.roots[path] = _parsed(whole, path)
         for element in root.iterfind(f"{_CORE}resources/{_CORE}object"):
-            package.objects[path, element.get("id", "")] = _object(element, path)
-    return package.roots[path]
+            whole.objects[path, element.get("id", "")] = _object(element, path)
+    return whole.roots[path]
 
 
-def _parsed(package: _Package, path: str) -> ElementTree.Element:
+def _parsed(whole: _Archive, path: str) -> ElementTree.Element:
     try:
-        entry = package.archive.getinfo(path)
+        entry = whole.archive.getinfo(path)
     except KeyError:
         raise LoadError(f"it lacks the part '{path:.60}'") from None
     if entry.file_size > _LARGEST:
         raise LoadError(f"its part '{path:.60}' is larger than {_LARGEST >> 20} MiB")
-    text = package.archive.read(entry)
+    text = whole.archive.read(entry)
     if b"<!DOCTYPE" in text[:4096] or b"<!ENTITY" in text:
         raise LoadError(f"its part '{path:.60}' declares a document type, which 3MF forbids")
     try:
@@ -165,29 +165,29 @@ def _rows(
         raise LoadError(f"a {tag} has no numbers {', '.join(names)}") from None
 
 
-def _place(package: _Package, key: tuple[str, str], matrix: NDArray[np.float64], deep: int) -> None:
+def _place(whole: _Archive, key: tuple[str, str], matrix: NDArray[np.float64], deep: int) -> None:
     """Add an object and its components, by a matrix (4, 3) for rows of coordinates."""
-    _root(package, key[0])
-    found = package.objects.get(key)
+    _root(whole, key[0])
+    found = whole.objects.get(key)
     if found is None:
         raise LoadError(f"its build names the object {key[1]!r:.20}, which is not there")
-    package.placed += 1
-    package.count += len(found.triangles)
-    if deep > _DEEPEST or package.placed > 100_000 or package.count > MOST_TRIANGLES:
+    whole.placed += 1
+    whole.count += len(found.triangles)
+    if deep > _DEEPEST or whole.placed > 100_000 or whole.count > MOST_TRIANGLES:
         raise LoadError("its objects contain each other too often")
     if len(found.triangles):
-        _add(package, found, matrix)
+        _add(whole, found, matrix)
     for child, inner in found.components:
-        _place(package, child, _after(inner, matrix), deep + 1)
+        _place(whole, child, _after(inner, matrix), deep + 1)
 
 
-def _add(package: _Package, found: _Object, matrix: NDArray[np.float64]) -> None:
-    start = package.corners
-    package.corners += len(found.points)
+def _add(whole: _Archive, found: _Object, matrix: NDArray[np.float64]) -> None:
+    start = whole.corners
+    whole.corners += len(found.points)
     with np.errstate(all="ignore"):  # ``checked`` finds what is not finite
-        package.points.append(found.points @ matrix[:3] + matrix[3])
+        whole.points.append(found.points @ matrix[:3] + matrix[3])
     mirrored = float(np.linalg.det(matrix[:3])) < 0.0
-    package.triangles.append(start + (found.triangles[:, ::-1] if mirrored else found.triangles))
+    whole.triangles.append(start + (found.triangles[:, ::-1] if mirrored else found.triangles))
 
 
 def _after(inner: NDArray[np.float64], outer: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -19,7 +19,7 @@ from distal.images.atomic_files import SaveError, check_destination, replacement
 from distal.mesh.files.glb import write_glb
 from distal.mesh.files.obj import write_obj
 from distal.mesh.files.outlines import write_dxf, write_svg
-from distal.mesh.files.parts import Finish, Part, Solid, part_of, placed
+from distal.mesh.files.parts import FilePart, Finish, Solid, part_of, placed
 from distal.mesh.files.ply import write_ply
 from distal.mesh.files.stl import write_stl
 from distal.mesh.files.three_mf import write_three_mf
@@ -42,7 +42,7 @@ class MeshFormat:
     keeps: str
     meters: float
     z_up: bool
-    write: Callable[[BinaryIO, Sequence[Part]], None] | None
+    write: Callable[[BinaryIO, Sequence[FilePart]], None] | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +139,7 @@ def write_outlines(
         chosen.write(file, lines)
 
 
-def _write_obj(target: Path, parts: Sequence[Part]) -> None:
+def _write_obj(target: Path, parts: Sequence[FilePart]) -> None:
     """Write an OBJ file and, before it is in place, the MTL file that it names."""
     library = target.with_suffix(".mtl")
     with replacement(target) as file:

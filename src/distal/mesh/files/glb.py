@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.images.atomic_files import SaveError
-from distal.mesh.files.parts import Finish, Part
+from distal.mesh.files.parts import FilePart, Finish
 
 _FLOAT, _UINT, _USHORT = 5126, 5125, 5123
 _VERTICES, _INDICES = 34962, 34963
@@ -53,7 +53,7 @@ class _Document:
         return len(self.accessors) - 1
 
 
-def write_glb(file: BinaryIO, parts: Sequence[Part]) -> None:
+def write_glb(file: BinaryIO, parts: Sequence[FilePart]) -> None:
     """Write each part as a node with a mesh and a material.
 
     Raises:
@@ -88,7 +88,7 @@ def write_glb(file: BinaryIO, parts: Sequence[Part]) -> None:
     file.write(document.data)
 
 
-def _primitive(document: _Document, part: Part) -> dict[str, Any]:
+def _primitive(document: _Document, part: FilePart) -> dict[str, Any]:
     points, normals, colors, triangles = _vertices(part)
     places = points.astype("<f4")
     low, high = places.min(axis=0).tolist(), places.max(axis=0).tolist()
@@ -107,7 +107,7 @@ def _primitive(document: _Document, part: Part) -> dict[str, Any]:
 
 
 def _vertices(
-    part: Part,
+    part: FilePart,
 ) -> tuple[
     NDArray[np.float64],
     NDArray[np.float64] | None,

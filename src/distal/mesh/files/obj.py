@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.images.atomic_files import SaveError
-from distal.mesh.files.parts import Part, display_codes
+from distal.mesh.files.parts import FilePart, display_codes
 
 _MOST_MATERIALS: Final = 1024
 
 
-def write_obj(file: BinaryIO, parts: Sequence[Part], library: str) -> str | None:
+def write_obj(file: BinaryIO, parts: Sequence[FilePart], library: str) -> str | None:
     """Write the parts as groups; numbers of colors are display values from 0 to 1.
 
     Args:
@@ -50,13 +50,13 @@ def write_obj(file: BinaryIO, parts: Sequence[Part], library: str) -> str | None
     return _library(materials) if materials else None
 
 
-def part_name(part: Part, index: int) -> str:
+def part_name(part: FilePart, index: int) -> str:
     """Return the name of a part as one word of printable ASCII, for formats that need that."""
     kept = "".join(c if c.isascii() and c.isalnum() else "_" for c in part.name)
     return kept if kept.strip("_") else f"part_{index + 1}"
 
 
-def _points(part: Part) -> str:
+def _points(part: FilePart) -> str:
     if part.triangle_colors is None and part.colors is not None:
         shown = display_codes(part.colors) / 255.0
         rows = np.concatenate([part.points, shown], axis=1)
@@ -65,7 +65,7 @@ def _points(part: Part) -> str:
 
 
 def _groups(
-    part: Part, materials: dict[tuple[int, ...], str]
+    part: FilePart, materials: dict[tuple[int, ...], str]
 ) -> tuple[NDArray[np.int64], list[tuple[str | None, int, int]]]:
     """Return an order of the triangles, and (material, first, last) for each run of a material."""
     count = len(part.triangles)

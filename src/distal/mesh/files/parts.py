@@ -78,7 +78,7 @@ class Finish:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Part:
+class FilePart:
     """A checked part of a file.
 
     Attributes:
@@ -100,7 +100,7 @@ class Part:
     finish: Finish | None = None
 
 
-def part_of(solid: Solid, finish: Finish | None = None) -> Part:
+def part_of(solid: Solid, finish: Finish | None = None) -> FilePart:
     """Check a mesh.
 
     Raises:
@@ -114,7 +114,7 @@ def part_of(solid: Solid, finish: Finish | None = None) -> Part:
         raise SaveError("the mesh has no triangle, so there is nothing to save")
     if triangles.min() < 0 or triangles.max() >= len(points):
         raise SaveError(f"a triangle names a point that is not among the {len(points)}")
-    return Part(
+    return FilePart(
         name=str(solid.name),
         points=points,
         triangles=triangles.astype(np.int64),
@@ -125,7 +125,7 @@ def part_of(solid: Solid, finish: Finish | None = None) -> Part:
     )
 
 
-def placed(parts: Sequence[Part], scale: float, *, z_up: bool, bed: bool) -> list[Part]:
+def placed(parts: Sequence[FilePart], scale: float, *, z_up: bool, bed: bool) -> list[FilePart]:
     """Return the parts in the unit and the axes of a format.
 
     Args:
@@ -151,7 +151,7 @@ def display_codes(light: NDArray[np.float64]) -> NDArray[np.uint8]:
     return np.asarray(np.rint(255.0 * np.clip(np.asarray(encoded), 0.0, 1.0)), np.uint8)
 
 
-def corner_codes(part: Part) -> NDArray[np.uint8] | None:
+def corner_codes(part: FilePart) -> NDArray[np.uint8] | None:
     """Return the sRGB codes of each corner of each triangle, (m, 3, 3); None without colors."""
     if part.triangle_colors is not None:
         return np.repeat(display_codes(part.triangle_colors)[:, None], 3, axis=1)
@@ -160,11 +160,11 @@ def corner_codes(part: Part) -> NDArray[np.uint8] | None:
     return None
 
 
-def _scaled(part: Part, scale: float) -> Part:
+def _scaled(part: FilePart, scale: float) -> FilePart:
     return replace(part, points=part.points * scale)
 
 
-def _turned(part: Part, scale: float) -> Part:
+def _turned(part: FilePart, scale: float) -> FilePart:
     normals = None if part.normals is None else _z_up(part.normals)
     return replace(part, points=_z_up(part.points) * scale, normals=normals)
 

@@ -11,13 +11,13 @@ from typing import Any, BinaryIO, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.mesh.files.parts import Part, display_codes
+from distal.mesh.files.parts import FilePart, display_codes
 
 _TYPES: Final = {"<f4": "float", "u1": "uchar"}
 _COLORS: Final = ("red", "green", "blue")
 
 
-def write_ply(file: BinaryIO, parts: Sequence[Part]) -> None:
+def write_ply(file: BinaryIO, parts: Sequence[FilePart]) -> None:
     """Write all parts as one mesh; colors are sRGB codes.
 
     The triangles have colors if each part has colors of triangles; else the points, if each part

@@ -11,7 +11,7 @@ from typing import BinaryIO, Final
 import numpy as np
 
 from distal.images.atomic_files import SaveError
-from distal.mesh.files.parts import Part
+from distal.mesh.files.parts import FilePart
 
 # The text must not begin with "solid", by which readers recognize the other kind of STL.
 _HEADER: Final = b"binary STL, millimeters, z up".ljust(80)
@@ -19,7 +19,7 @@ _RECORD: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("e
 _MOST: Final = 2**32 - 1
 
 
-def write_stl(file: BinaryIO, parts: Sequence[Part]) -> None:
+def write_stl(file: BinaryIO, parts: Sequence[FilePart]) -> None:
     """Write the triangles of all parts.
 
     Raises:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.lang.srgb import hex_of
-from distal.mesh.files.parts import Part, corner_codes
+from distal.mesh.files.parts import FilePart, corner_codes
 
 _CORE: Final = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _MATERIALS: Final = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02"
@@ -44,7 +44,7 @@ _DATE: Final = (1980, 1, 1, 0, 0, 0)  # the first that zip can store: the bytes 
 MOST_FILAMENTS: Final = 16
 
 
-def write_three_mf(file: BinaryIO, parts: Sequence[Part]) -> None:
+def write_three_mf(file: BinaryIO, parts: Sequence[FilePart]) -> None:
     """Write the parts as objects of one build."""
     contents = {"[Content_Types].xml": _TYPES, "_rels/.rels": _RELATIONS, _MODEL: _model(parts)}
     with zipfile.ZipFile(file, "w") as archive:
@@ -55,7 +55,7 @@ def write_three_mf(file: BinaryIO, parts: Sequence[Part]) -> None:
             archive.writestr(entry, text.encode())
 
 
-def _model(parts: Sequence[Part]) -> str:
+def _model(parts: Sequence[FilePart]) -> str:
     codes = [corner_codes(part) for part in parts]
     filaments = _filaments(codes)
     resources, items = [], []
@@ -75,7 +75,7 @@ def _model(parts: Sequence[Part]) -> str:
 
 
 def _object(
-    part: Part,
+    part: FilePart,
     colors: NDArray[np.uint8] | None,
     group: int,
     number: int,
