@@ -37,6 +37,7 @@ NO_OPERATOR = {
     "from_function": "below: all children here",
     "from_vm": "tape/test_vm_files",
     "from_mesh": "polygons/test_mesh_shapes",
+    "from_volume": "polygons/test_volumes",
     "imported": "asks",
     "fill": "tape/test_filled_shapes",
     "heights": "tape/test_shape_heights",

@@ -395,6 +395,7 @@ export const METHODS: Names = {
   "from_function": ["(function, slope=None, bounds=None, exact=False, growth=None, normalize=False, region=None, **numbers)", "Make a shape from a @func of a point, and of numbers passed by name."],
   "from_mesh": ["(source, triangles=None, spacing=None, sign='auto', unit=None, up=None)", "Make a solid from a mesh of triangles: STL, OBJ, PLY, GLB, 3MF, or two arrays."],
   "from_vm": ["(source, slope=None, bounds=None)", "Make a shape from a .vm file, a list of operations as Fidget writes it."],
+  "from_volume": ["(source, spacing=None, axes='zyx', level=None)", "Make a solid from a volume of samples: .npy, .nrrd, .nii, .nii.gz, or an array."],
   "functions": ["()", "Yield the scene functions that the shape calls."],
   "glow": ["", ""],
   "gradient": ["(*points, params=None, time=0.0)", "Return the gradient of the distance at points, an array of the shape of points."],

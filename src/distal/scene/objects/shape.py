@@ -30,6 +30,7 @@ from distal.scene.objects.heights import seen_heights
 from distal.scene.objects.mesh_shapes import mesh_node, reports_of
 from distal.scene.objects.placed import Placed
 from distal.scene.objects.turns import warn_of_degrees
+from distal.scene.objects.volume_shapes import volume_node
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.source_places import author_place
 
@@ -99,6 +100,37 @@ class Shape(Placed):
         )
         made: Shape = cls._of(node)
         return made.translate(center)
+
+    @classmethod
+    def from_volume(
+        cls,
+        source: str | PathLike[str] | Any,
+        *,
+        spacing: float | Sequence[float] | None = None,
+        axes: str = "zyx",
+        level: float | None = None,
+    ) -> Shape:
+        """Make a solid from a volume of samples: .npy, .nrrd, .nii, .nii.gz, or an array.
+
+        The middle of the volume is the origin; a solid that goes on beyond the volume is cut off
+        there.
+
+        Args:
+            source: The path of a file, beside the author's file or in the working folder; or an
+                array of three axes.
+            spacing: The distance of two samples in scene units, or three along x, y and z. None:
+                that of the file, else 1.
+            axes: What the axes of an array or a .npy file are, in their order.
+            level: The value at the surface; more is inside. The field is then about the distance
+                only near the surface and where samples change fastest. None: samples are distances,
+                negative inside.
+
+        Raises:
+            SceneValueError: The file cannot be read, is no volume, or nothing is inside.
+        """
+        place = author_place()
+        made: Shape = cls._of(volume_node(source, place, spacing=spacing, axes=axes, level=level))
+        return made
 
     @property
     def imported(self) -> tuple[ImportReport, ...]:
