@@ -160,6 +160,19 @@ def test_a_shell_in_a_shell_is_a_cavity_if_it_is_turned():
     assert found.values == pytest.approx(expected, abs=0.03)
 
 
+def test_sharp_corners_have_the_right_side():
+    """Beside an acute corner the side of the nearest face can be wrong; winding numbers are right."""
+    points, triangles = sphere(2)
+    points = points * RANDOM.uniform(0.25, 1.5, (len(points), 1))
+    found = distances.distances(checked(points, triangles), 0.06)
+    assert found.sign == "normals"
+    at = grid_of(found).reshape(-1, 3)
+    mesh = joined(checked(points, triangles), np.zeros(3), 1.0)
+    winding = run(arithmetic.winding_number, at, None, tree_buffers(mesh.corners))
+    far = np.abs(found.values.reshape(-1)) > 1e-4
+    assert ((found.values.reshape(-1) < 0.0) == (winding > 0.5))[far].all()
+
+
 def test_holes_are_closed_without_a_jump():
     points, triangles = sphere(4)
     is_cap = points[triangles].mean(axis=1)[:, 1] > 0.8
