@@ -161,7 +161,7 @@ def test_a_shell_in_a_shell_is_a_cavity_if_it_is_turned():
 
 
 def test_sharp_corners_have_the_right_side():
-    """Beside an acute corner the side of the nearest face can be wrong; winding numbers are right."""
+    """At an acute corner the side of the nearest face can be wrong; winding numbers are right."""
     points, triangles = sphere(2)
     points = points * RANDOM.uniform(0.25, 1.5, (len(points), 1))
     found = distances.distances(checked(points, triangles), 0.06)

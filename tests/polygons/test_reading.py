@@ -287,6 +287,11 @@ WRONG = [
         "'a.ply' is no PLY that can be read: it has points only, no polygons",
     ),
     (
+        "a.ply",
+        "ply\nformat ascii 1.0\nelement nothing 100000000\nend_header\n",
+        "'a.ply' is no PLY that can be read: 'nothing' has no properties",
+    ),
+    (
         "a.glb",
         glb(TRIANGLE_GLB, STRIP.tobytes()[:-8]),
         "'a.glb' is no GLB that can be read: it is truncated: accessor 0 goes beyond the numbers",

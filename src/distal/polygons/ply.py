@@ -113,6 +113,8 @@ def _header(data: bytes) -> tuple[list[_Element], _Rest]:
 
 def _columns(element: _Element, reader: _Rest) -> dict[str, Any]:
     """Return an array for each property; a list is (lengths, values)."""
+    if not element.properties:
+        raise LoadError(f"'{element.name:.20}' has no properties")
     if reader.words is not None:
         return _text_columns(element, reader, reader.words)
     if not any(each.count for each in element.properties):
