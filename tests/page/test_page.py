@@ -74,6 +74,7 @@ sides = [np.full((4, 4, 3), 0.1 + 0.12 * i, np.float32) for i in range(6)]
 stored = Texture2D("dots.png", wrap="clamp")
 half = Texture2D(light)
 block = Texture3D(volume)
+heights = Texture3D(volume[..., 0])
 around = TextureCube(sides)
 numbers = Buffer([0.1 * i for i in range(1500)])
 pairs = Buffer([(0.1, 0.2), (0.3, 0.4), (0.5, 0.6)])
@@ -84,7 +85,7 @@ whole = Buffer([1, -2, 3])
 def picture(frame: Frame) -> vec3:
     uv = frame.coord / frame.resolution
     shown = 0.4 * sample(stored, uv).rgb + 0.3 * sample(half, uv).rgb
-    shown += 0.2 * sample(block, vec3(uv, 0.5)).rgb
+    shown += 0.1 * sample(block, vec3(uv, 0.5)).rgb + 0.1 * sample(heights, vec3(uv, 0.3)).rgb
     shown += 0.1 * sample(around, normalize(vec3(uv - 0.5, 0.4))).rgb
     row = int(uv.y * 1499.0)
     shown += vec3(0.001 * numbers[row], pairs[2].x * 0.1, 0.01 * float(whole[1] + 3))

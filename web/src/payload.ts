@@ -88,6 +88,8 @@ export interface Resource {
   type: string;
   size: number[];
   components: number;
+  /** One number stands for all components. */
+  grey?: true;
   format: Format;
   data: string;
 }

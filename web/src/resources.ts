@@ -80,8 +80,12 @@ function formats(gl: GL, format: Format, components: number): [number, number, n
   }
 }
 
-function numbersOf({ format, data }: Resource): Numbers {
-  return new ARRAYS[format](bytesOf(data).buffer);
+function numbersOf({ format, data, grey, components }: Resource): Numbers {
+  const stored = new ARRAYS[format](bytesOf(data).buffer);
+  if (!grey) return stored;
+  const numbers = new ARRAYS[format](stored.length * components);
+  for (let i = 0; i < numbers.length; i++) numbers[i] = stored[Math.floor(i / components)]!;
+  return numbers;
 }
 
 function newTexture(gl: GL, target: number, filter: number, wrap: number): WebGLTexture {

@@ -43,13 +43,16 @@ def _buffer(data: NDArray[Any]) -> dict[str, Any]:
 def _texture(texels: NDArray[np.float32], type: Texture) -> dict[str, Any]:
     if bool((texels[..., 3] == 1.0).all()):
         texels = texels[..., :3]  # without an alpha component, the texture's alpha reads as 1
-    name, stored = _narrowest(texels)
-    height, width = texels.shape[-3:-1]
+    height, width, components = texels.shape[-3:]
+    # Heights and distances are grey: one number stands for three equal components.
+    grey = components == 3 and bool((texels[..., :1] == texels).all())
+    name, stored = _narrowest(texels[..., :1] if grey else texels)
     deep = type.shape is TextureShape.VOLUME
     return {
         "type": str(type),
         "size": [width, height, texels.shape[0]] if deep else [width, height],
-        "components": texels.shape[-1],
+        "components": components,
+        **({"grey": True} if grey else {}),
         "format": name,
         "data": _base64(stored),
     }

@@ -25,6 +25,7 @@ from distal.lang.render_options import Cancel, Progress, RenderOptions
 from distal.scene.objects.copies import CopyColumns, copied
 from distal.scene.objects.field import PLAIN, BaseShape
 from distal.scene.objects.filling import filled
+from distal.scene.objects.from_data import FromData
 from distal.scene.objects.heights import seen_heights
 from distal.scene.objects.placed import Placed
 from distal.scene.objects.turns import warn_of_degrees
@@ -42,7 +43,7 @@ _ROTATIONS: Final[Mapping[str, Operator]] = {
 }
 
 
-class Shape(Placed):
+class Shape(FromData):
     """A solid: a signed distance function of a point in space.
 
     Shapes never change; methods return new shapes.

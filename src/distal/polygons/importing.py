@@ -1,0 +1,240 @@
+"""A mesh of others as a grid of distances, and what was measured of it.
+
+Input: a file or arrays, a spacing. Output: the grid with y up, and a report. Files that have not
+changed are computed once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.diagnostics import LoadError
+from distal.polygons.distances import UNSIGNED, WINDING, Distances, described, distances
+from distal.polygons.reading import format_of, read_mesh
+from distal.polygons.triangles import Triangles, checked
+from distal.polygons.units import MILLIMETER, UNITS
+
+# The most triangles at which the surface is measured.
+_MOST_MEASURED: Final = 50_000
+# How far behind a triangle the inside is looked for, in spacings; at the last of them, a value
+# above this says that the other side of a thin part has been passed.
+_BEHIND: Final = (0.1, 0.25, 0.5, 1.0)
+_PASSED: Final = 0.3
+# The share of a mesh's area that may be lost without a warning.
+_MOST_LOST: Final = 0.001
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What an author asks for.
+
+    Attributes:
+        spacing: The distance of two samples in scene units; None for the default.
+        sign: How to find the inside, one of ``distances.SIGNS``.
+        unit: The length of one scene unit, a key of ``UNITS``; None keeps the numbers.
+        up: "y" or "z"; None is the axis that is usual for the format, y for arrays.
+    """
+
+    spacing: float | None
+    sign: str
+    unit: str | None
+    up: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class ImportReport:
+    """What is known of a shape from a mesh.
+
+    Attributes:
+        name: The file, or "arrays".
+        triangles: The number of triangles.
+        samples: The number of samples along x, y and z.
+        spacing: Their distance, in scene units.
+        closing: How the mesh is joined, in words.
+        volume: The volume that its triangles enclose, in cubic scene units.
+        sign: How the inside was found: "normals", "winding" or "unsigned".
+        turned: Whether the mesh was inside out, and was turned around.
+        largest: The largest distance of a measured place of the mesh from the surface that is left,
+            as the field says it.
+        mean: The mean of these distances.
+        measured: The number of places: corners and middles of triangles.
+        lost: The share of the triangles' area behind which there is no inside: that of parts
+            thinner than the spacing.
+    """
+
+    name: str
+    triangles: int
+    samples: tuple[int, int, int]
+    spacing: float
+    closing: str
+    volume: float
+    sign: str
+    turned: bool
+    largest: float = 0.0
+    mean: float = 0.0
+    measured: int = 0
+    lost: float = 0.0
+
+    def __str__(self) -> str:
+        sizes = " x ".join(map(str, self.samples))
+        return (
+            f"{self.name}: {self.triangles:,} triangles, {self.closing}; {sizes} samples, "
+            f"{self.spacing:.4g} apart; inside by {self.sign}; the surface is off by "
+            f"{self.largest:.2g} at most, {self.mean:.2g} on average ({self.measured:,} places)"
+            + (f"; {self.lost:.2%} of it is lost" if self.lost > 0.0 else "")
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Imported:
+    """A mesh on a grid.
+
+    Attributes:
+        values: float32, (nodes along z, y, x), in scene units.
+        center: The middle of the grid.
+        size: The size of the grid's cells together.
+        places: Places at which the field is evaluated, from the center, (rows, n, 3): first
+            corners of triangles, their middles, then what is behind these by ``_BEHIND``.
+        areas: The areas of these triangles, (n,).
+        report: What is known before that.
+    """
+
+    values: NDArray[np.float32]
+    center: tuple[float, float, float]
+    size: tuple[float, float, float]
+    places: NDArray[np.float32]
+    areas: NDArray[np.float64]
+    report: ImportReport
+
+
+def imported_file(path: Path, wanted: Wanted) -> Imported:
+    """Return the grid of a file.
+
+    Raises:
+        LoadError: The file cannot be read, or has no surface or no inside.
+    """
+    format_of(path)
+    try:
+        known = path.stat()
+        version = known.st_mtime_ns, known.st_size
+    except (OSError, ValueError):
+        version = 0, 0  # reading it says why
+    return _of_file(path, version, wanted)
+
+
+@lru_cache(maxsize=4)
+def _of_file(path: Path, version: tuple[int, int], wanted: Wanted) -> Imported:
+    mesh = read_mesh(path)
+    up = wanted.up or ("z" if format_of(path).z_up else "y")
+    return _imported(mesh, path.name, replace(wanted, up=up))
+
+
+def imported_arrays(points: Any, triangles: Any, wanted: Wanted) -> Imported:
+    """Return the grid of arrays.
+
+    Raises:
+        LoadError: The arrays are no mesh, or have no surface or no inside.
+    """
+    return _imported(checked(points, triangles), "arrays", wanted)
+
+
+def _imported(mesh: Triangles, name: str, wanted: Wanted) -> Imported:
+    if wanted.unit is not None:
+        # A format without a unit is in millimeters, as programs for printers read it.
+        meters = MILLIMETER if mesh.meters is None else mesh.meters
+        mesh = replace(mesh, points=mesh.points * (meters / UNITS[wanted.unit]))
+    if wanted.up == "z":
+        x, y, z = mesh.points.T
+        mesh = replace(mesh, points=np.stack([x, z, -y], axis=1))
+    found = distances(mesh, wanted.spacing, wanted.sign)
+    counts = found.values.shape[::-1]
+    size = np.array(counts) * found.spacing
+    center = found.low + 0.5 * (np.array(counts) - 1) * found.spacing
+    report = ImportReport(
+        name=name,
+        triangles=len(mesh.triangles),
+        samples=(counts[0], counts[1], counts[2]),
+        spacing=found.spacing,
+        closing=described(found.topology),
+        volume=found.topology.volume,
+        sign=found.sign,
+        turned=found.turned,
+    )
+    x, y, z = center.tolist()
+    width, height, depth = size.tolist()
+    places, areas = _places(mesh, found)
+    local = (places - center).astype(np.float32)
+    return Imported(found.values, (x, y, z), (width, height, depth), local, areas, report)
+
+
+def _places(mesh: Triangles, found: Distances) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return ``Imported.places``, not from the center, and ``Imported.areas``."""
+    step = -(-len(mesh.triangles) // _MOST_MEASURED)
+    corners = mesh.points[mesh.triangles[::step]]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    areas = np.linalg.norm(normals, axis=1)
+    normals *= (found.spacing / np.where(areas > 0.0, areas, 1.0))[:, None]
+    middles = corners.mean(axis=1)
+    inward = normals if found.turned else -normals
+    behind = [middles + part * inward for part in _BEHIND]
+    return np.stack([corners[:, 0], middles, *behind]), areas
+
+
+def measured(found: Imported, values: NDArray[Any]) -> ImportReport:
+    """Return the report with what the field says at the places.
+
+    Args:
+        found: The mesh on its grid.
+        values: The values of the field at ``found.places``, (rows, n).
+    """
+    rows = np.asarray(values, np.float64)
+    away = np.abs(rows[:2])
+    behind = rows[2:]
+    is_lost = (behind.min(axis=0) > 0.0) & (behind[-1] > _PASSED * found.report.spacing)
+    if found.report.sign == UNSIGNED:
+        is_lost[:] = False
+    total = float(found.areas.sum())
+    return replace(
+        found.report,
+        largest=float(away.max()),
+        mean=float(away.mean()),
+        measured=away.size,
+        lost=float(found.areas[is_lost].sum()) / total if total > 0.0 else 0.0,
+    )
+
+
+def warnings_of(report: ImportReport) -> list[str]:
+    """Return what an author should know of a mesh: what is wrong, and how to fix it."""
+    found = []
+    if report.turned:
+        found.append(
+            f"'{report.name}' is inside out (its volume is {report.volume:.3g}): it was turned "
+            "around; flip its normals in the file"
+        )
+    if report.sign == WINDING and report.closing != "the mesh is closed":
+        found.append(
+            f"'{report.name}': {report.closing}: holes are closed where the winding number is "
+            "0.5; close them in the file, or give sign='unsigned' and .round(thickness) for a sheet"
+        )
+    if report.lost > _MOST_LOST:
+        found.append(
+            f"'{report.name}' has parts thinner than the samples are apart ({report.spacing:.3g}): "
+            f"{report.lost:.1%} of its surface is lost; give spacing={report.spacing / 2:.3g}"
+        )
+    return found
+
+
+def checked_unit(unit: str | None) -> None:
+    """Check the name of a unit.
+
+    Raises:
+        LoadError: There is no such unit.
+    """
+    if unit is not None and unit not in UNITS:
+        raise LoadError(f"a unit is one of {', '.join(UNITS)}, not {unit!r:.40}")

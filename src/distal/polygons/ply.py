@@ -1,0 +1,245 @@
+"""Reads PLY: text and binary, little and big endian; colors and other properties are left out.
+
+Input: bytes. Output: a mesh.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.diagnostics import LoadError
+from distal.polygons.triangles import Triangles, checked, fans
+
+_TYPES: Final = {
+    **dict.fromkeys(("char", "int8"), "i1"),
+    **dict.fromkeys(("uchar", "uint8"), "u1"),
+    **dict.fromkeys(("short", "int16"), "i2"),
+    **dict.fromkeys(("ushort", "uint16"), "u2"),
+    **dict.fromkeys(("int", "int32"), "i4"),
+    **dict.fromkeys(("uint", "uint32"), "u4"),
+    **dict.fromkeys(("float", "float32"), "f4"),
+    **dict.fromkeys(("double", "float64"), "f8"),
+}
+_ORDERS: Final = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
+_MOST_ROWS: Final = 100_000_000
+_INDICES: Final = ("vertex_indices", "vertex_index")
+
+
+@dataclass(slots=True)
+class _Property:
+    name: str
+    type: str
+    count: str = ""  # the type of a list's length; "" if it is no list
+
+
+@dataclass(slots=True)
+class _Element:
+    name: str
+    rows: int
+    properties: list[_Property] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class _Rest:
+    """The rest of the file after the header."""
+
+    data: bytes
+    order: str
+    at: int = 0
+    words: list[bytes] | None = None  # the numbers of a text file
+
+
+def read_ply(data: bytes) -> Triangles:
+    """Return the triangles of a PLY file.
+
+    Raises:
+        LoadError: The file is no PLY, is truncated, or has no points or polygons.
+    """
+    elements, reader = _header(data)
+    points: NDArray[np.float64] | None = None
+    triangles: NDArray[np.int64] | None = None
+    for element in elements:
+        columns = _columns(element, reader)
+        if element.name == "vertex":
+            missing = [axis for axis in "xyz" if axis not in columns]
+            if missing:
+                raise LoadError(f"its points have no {missing[0]}")
+            points = np.stack([columns[axis] for axis in "xyz"], axis=1).astype(np.float64)
+        elif element.name == "face":
+            name = next((name for name in _INDICES if name in columns), None)
+            if name is None:
+                raise LoadError("its polygons have no vertex_indices")
+            triangles = fans(*columns[name])
+    if points is None or triangles is None:
+        raise LoadError("it has points only, no polygons" if points is not None else "no points")
+    return checked(points, triangles)
+
+
+def _header(data: bytes) -> tuple[list[_Element], _Rest]:
+    end = data.find(b"end_header", 0, 65536)
+    if not data.startswith(b"ply") or end < 0:
+        raise LoadError("it does not begin with the header of PLY")
+    order: str | None = None
+    elements: list[_Element] = []
+    for line in data[:end].decode("ascii", "replace").splitlines()[1:]:
+        match line.split():
+            case ["format", name, _] if name in _ORDERS:
+                order = _ORDERS[name]
+            case ["element", name, rows] if rows.isdecimal() and int(rows) <= _MOST_ROWS:
+                elements.append(_Element(name, int(rows)))
+            case ["property", "list", count, type, name] if (
+                elements and type in _TYPES and _TYPES.get(count, "f")[0] != "f"
+            ):
+                elements[-1].properties.append(_Property(name, _TYPES[type], _TYPES[count]))
+            case ["property", type, name] if elements and type in _TYPES:
+                elements[-1].properties.append(_Property(name, _TYPES[type]))
+            case ["comment" | "obj_info", *_] | []:
+                pass
+            case _:
+                raise LoadError(f"its header has the invalid line '{line:.60}'")
+    if order is None:
+        raise LoadError("its header names no format")
+    newline = data.find(b"\n", end)
+    start = len(data) if newline < 0 else newline + 1
+    reader = _Rest(data, order, start)
+    if not order:
+        reader.words, reader.at = data[start:].split(), 0
+    return elements, reader
+
+
+def _columns(element: _Element, reader: _Rest) -> dict[str, Any]:
+    """Return an array for each property; a list is (lengths, values)."""
+    if not element.properties:
+        raise LoadError(f"'{element.name:.20}' has no properties")
+    if reader.words is not None:
+        return _text_columns(element, reader, reader.words)
+    if not any(each.count for each in element.properties):
+        rows = _take(reader, element, np.dtype(_fields(element, reader.order, {})), element.rows)
+        return {each.name: rows[each.name] for each in element.properties}
+    lengths = _first_lengths(element, reader)
+    if lengths is not None:
+        dtype = np.dtype(_fields(element, reader.order, lengths))
+        there = (len(reader.data) - reader.at) // dtype.itemsize
+        if there >= element.rows:
+            rows = np.frombuffer(reader.data, dtype, element.rows, reader.at)
+            if all((rows[f"{n} count"] == length).all() for n, length in lengths.items()):
+                reader.at += rows.nbytes
+                return {p.name: _uniform(rows, p, lengths) for p in element.properties}
+    return _row_by_row(element, reader)
+
+
+def _fields(element: _Element, order: str, lengths: dict[str, int]) -> list[Any]:
+    fields: list[Any] = []
+    for each in element.properties:
+        if each.count:
+            fields.append((f"{each.name} count", order + each.count))
+            fields.append((each.name, order + each.type, (lengths[each.name],)))
+        else:
+            fields.append((each.name, order + each.type))
+    names = [entry[0] for entry in fields]
+    if len(set(names)) != len(names) or not names:
+        raise LoadError(f"the properties of '{element.name:.20}' have no names of their own")
+    return fields
+
+
+def _uniform(rows: NDArray[Any], each: _Property, lengths: dict[str, int]) -> Any:
+    if not each.count:
+        return rows[each.name]
+    counts = np.full(len(rows), lengths[each.name], np.int64)
+    return counts, rows[each.name].astype(np.int64).reshape(-1)
+
+
+def _first_lengths(element: _Element, reader: _Rest) -> dict[str, int] | None:
+    """Return the lengths of the lists of the first row; None without rows."""
+    if element.rows == 0:
+        return None
+    at, lengths = reader.at, {}
+    for each in element.properties:
+        if each.count:
+            length = int(_number(reader, at, each.count))
+            if not 0 <= length < 1024:
+                return None
+            lengths[each.name] = length
+            at += np.dtype(each.count).itemsize + length * np.dtype(each.type).itemsize
+        else:
+            at += np.dtype(each.type).itemsize
+    return lengths
+
+
+def _row_by_row(element: _Element, reader: _Rest) -> dict[str, Any]:
+    """Read rows whose lists differ in length; only lists are kept."""
+    found: dict[str, tuple[list[int], list[NDArray[Any]]]] = {
+        each.name: ([], []) for each in element.properties if each.count
+    }
+    for _ in range(element.rows):
+        for each in element.properties:
+            if not each.count:
+                reader.at += np.dtype(each.type).itemsize
+                continue
+            length = int(_number(reader, reader.at, each.count))
+            reader.at += np.dtype(each.count).itemsize
+            dtype = np.dtype(reader.order + each.type)
+            if length < 0:
+                raise LoadError(f"a list of '{element.name:.20}' has a negative length")
+            found[each.name][0].append(length)
+            found[each.name][1].append(_take(reader, element, dtype, length))
+    return {
+        name: (
+            np.array(lengths, np.int64),
+            np.concatenate([np.zeros(0), *values]).astype(np.int64),
+        )
+        for name, (lengths, values) in found.items()
+    }
+
+
+def _number(reader: _Rest, at: int, type: str) -> Any:
+    dtype = np.dtype(reader.order + type)
+    if at + dtype.itemsize > len(reader.data):
+        raise LoadError("it is truncated")
+    return np.frombuffer(reader.data, dtype, 1, at)[0]
+
+
+def _take(reader: _Rest, element: _Element, dtype: np.dtype[Any], count: int) -> NDArray[Any]:
+    if reader.at + count * dtype.itemsize > len(reader.data):
+        raise LoadError(f"it is truncated: '{element.name:.20}' has {element.rows} rows")
+    rows = np.frombuffer(reader.data, dtype, count, reader.at)
+    reader.at += rows.nbytes
+    return rows
+
+
+def _text_columns(element: _Element, reader: _Rest, words: list[bytes]) -> dict[str, Any]:
+    columns: dict[str, list[float]] = {each.name: [] for each in element.properties}
+    lengths: dict[str, list[int]] = {e.name: [] for e in element.properties if e.count}
+    at = reader.at
+    try:
+        for _ in range(element.rows):
+            for each in element.properties:
+                length = 1
+                if each.count:
+                    length = int(words[at])
+                    lengths[each.name].append(length)
+                    at += 1
+                if length < 0 or at + length > len(words):
+                    raise IndexError
+                columns[each.name] += map(float, words[at : at + length])
+                at += length
+    except IndexError:
+        message = f"it is truncated: '{element.name:.20}' has {element.rows} rows"
+        raise LoadError(message) from None
+    except ValueError:
+        raise LoadError(f"it has {words[at][:20]!r} where a number is expected") from None
+    reader.at = at
+    return {
+        name: (np.array(lengths[name], np.int64), _whole(values)) if name in lengths else values
+        for name, values in ((n, np.array(v, np.float64)) for n, v in columns.items())
+    }
+
+
+def _whole(values: NDArray[np.float64]) -> NDArray[np.int64]:
+    if not (np.abs(values) < 2.0**31).all():
+        raise LoadError("an index of a point is no 32-bit number")
+    return values.astype(np.int64)

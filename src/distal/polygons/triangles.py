@@ -1,0 +1,107 @@
+"""``Triangles``: the points and triangles that a file contains, or an author gives.
+
+Input: arrays. Output: checked arrays; equal points joined. Does not depend on files.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.diagnostics import LoadError
+
+# The most triangles of a mesh: 240 MB of indices, and minutes of work.
+MOST_TRIANGLES: Final = 10_000_000
+_LARGEST: Final = 1e15  # the squares of lengths stay far from the largest single float
+_HASH: Final = np.array((0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9), np.uint64)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Triangles:
+    """A mesh of triangles.
+
+    Attributes:
+        points: (n, 3) float64.
+        triangles: (m, 3) int64, indices of points.
+        meters: The length of the unit of the points in meters; None if nothing says it.
+    """
+
+    points: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+    meters: float | None = None
+
+
+def checked(points: Any, triangles: Any, meters: float | None = None) -> Triangles:
+    """Return a mesh from arrays.
+
+    Args:
+        points: (n, 3) numbers.
+        triangles: (m, 3) indices of points.
+        meters: The length of the unit of the points in meters; None if nothing says it.
+
+    Raises:
+        LoadError: An array has another shape, there is no triangle, or a number is invalid.
+    """
+    places = _array(points, "points", "fiu")
+    corners = _array(triangles, "triangles", "iu")
+    if not len(corners):
+        raise LoadError("there is no triangle")
+    if len(corners) > MOST_TRIANGLES:
+        raise LoadError(f"{len(corners)} triangles are more than {MOST_TRIANGLES}")
+    low, high = int(corners.min()), int(corners.max())
+    if low < 0 or high >= len(places):
+        wrong = low if low < 0 else high
+        raise LoadError(f"a triangle names point {wrong}, and there are {len(places)} points")
+    places = places.astype(np.float64)
+    wrong_rows = np.flatnonzero(~(np.abs(places) <= _LARGEST).all(axis=1))
+    if len(wrong_rows):
+        values = ", ".join(f"{value:g}" for value in places[wrong_rows[0]])
+        raise LoadError(f"point {wrong_rows[0]} is ({values}), which is no place")
+    return Triangles(places, corners.astype(np.int64), meters)
+
+
+def welded(places: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+    """Return points of which no two are equal, and the number of the point at each place.
+
+    Args:
+        places: (n, 3).
+    """
+    rows = np.ascontiguousarray(places) + np.float32(0.0)  # -0 becomes 0
+    bits = rows.view(np.uint32).astype(np.uint64)
+    keys = bits[:, 0] * _HASH[0] ^ bits[:, 1] * _HASH[1] ^ bits[:, 2] * _HASH[2]
+    _, first, which = np.unique(keys, return_index=True, return_inverse=True)
+    points = rows[first]
+    if not np.array_equal(points[which], rows, equal_nan=True):  # two points had one key
+        points, which = np.unique(rows, axis=0, return_inverse=True)
+    return points, which.reshape(-1).astype(np.int64)
+
+
+def fans(counts: NDArray[np.int64], indices: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return triangles that fill polygons, each a fan about its first point.
+
+    Args:
+        counts: The number of corners of each polygon; those with fewer than 3 are left out.
+        indices: The corners of all polygons, one after the other.
+    """
+    starts = np.cumsum(counts) - counts
+    pieces = np.maximum(counts - 2, 0)
+    which = np.repeat(np.arange(len(counts)), pieces)
+    step = np.arange(len(which)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    first = starts[which]
+    places = np.stack([first, first + step + 1, first + step + 2], axis=1)
+    found: NDArray[np.int64] = indices[places].reshape(-1, 3)
+    return found
+
+
+def _array(values: Any, name: str, kinds: str) -> NDArray[Any]:
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise LoadError(f"{name} are an array (n, 3), not rows of different lengths") from None
+    if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in kinds:
+        what = "numbers" if "f" in kinds else "integers"
+        raise LoadError(f"{name} are {what} (n, 3), not {array.dtype} {array.shape}")
+    return array

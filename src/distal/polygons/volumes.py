@@ -1,0 +1,275 @@
+"""Reads volumes: NumPy, NRRD and NIfTI.
+
+Input: a path. Output: samples (z, y, x), and how far apart they are. Orientations and units that a
+file names are left out.
+
+Source: Nearly Raw Raster Data, teem.sourceforge.net/nrrd; NIfTI-1 Data Format, nifti.nimh.nih.gov.
+"""
+
+from __future__ import annotations
+
+import gzip
+import io
+import math
+import struct
+import zlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.diagnostics import LoadError, printable
+from distal.polygons.reading import bytes_of
+
+LARGEST_FILE: Final = 2**31  # bytes
+MOST_SAMPLES: Final = 2**24
+_LARGEST_SAMPLES: Final = MOST_SAMPLES * 8
+_NRRD_TYPES: Final = {
+    **dict.fromkeys(("signed char", "int8", "int8_t"), "i1"),
+    **dict.fromkeys(("uchar", "unsigned char", "uint8", "uint8_t"), "u1"),
+    **dict.fromkeys(("short", "short int", "int16", "int16_t"), "i2"),
+    **dict.fromkeys(("ushort", "unsigned short", "uint16", "uint16_t"), "u2"),
+    **dict.fromkeys(("int", "signed int", "int32", "int32_t"), "i4"),
+    **dict.fromkeys(("uint", "unsigned int", "uint32", "uint32_t"), "u4"),
+    "float": "f4",
+    "double": "f8",
+}
+_NIFTI_TYPES: Final = {
+    2: "u1",
+    4: "i2",
+    8: "i4",
+    16: "f4",
+    64: "f8",
+    256: "i1",
+    512: "u2",
+    768: "u4",
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class VolumeSamples:
+    """The samples of a volume.
+
+    Attributes:
+        values: float32, (z, y, x).
+        spacing: The distance of two samples along x, y and z; None if the file does not say it.
+    """
+
+    values: NDArray[np.float32]
+    spacing: tuple[float, float, float] | None
+
+
+def read_volume(path: Path) -> VolumeSamples:
+    """Return the samples of a file.
+
+    Raises:
+        LoadError: The file cannot be read, or is not what its suffix says.
+    """
+    name = path.name.lower()
+    suffix = ".nii.gz" if name.endswith(".nii.gz") else path.suffix.lower()
+    read = VOLUME_FORMATS.get(suffix)
+    if read is None:
+        known = ", ".join(VOLUME_FORMATS)
+        raise LoadError(f"cannot read '{printable(path)}': a volume's suffix is one of {known}")
+    data = bytes_of(path, LARGEST_FILE)
+    try:
+        return read(data)
+    except LoadError as error:
+        raise LoadError(f"'{printable(path)}' is no volume that can be read: {error}") from None
+
+
+def checked_samples(values: Any) -> NDArray[np.float32]:
+    """Return samples as float32.
+
+    Raises:
+        LoadError: They are no numbers (z, y, x), too many, or not finite.
+    """
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise LoadError("samples are an array (z, y, x), not rows of different lengths") from None
+    if array.ndim != 3 or array.dtype.kind not in "fiu" or min(array.shape, default=0) < 2:
+        raise LoadError(
+            f"samples are numbers (z, y, x), 2 or more along each, not {array.dtype} {array.shape}"
+        )
+    if array.size > MOST_SAMPLES:
+        raise LoadError(f"{array.size:,} samples are more than {MOST_SAMPLES:,}: leave some out")
+    with np.errstate(over="ignore"):
+        samples = array.astype(np.float32)
+    if not np.isfinite(samples).all():
+        raise LoadError("a sample is not finite")
+    return np.ascontiguousarray(samples)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FieldSamples:
+    """Samples as ``VolumeField`` takes them.
+
+    Attributes:
+        values: float32, (z, y, x), negative inside.
+        size: The size of the cells of all samples together.
+        scale: By what the values are multiplied, so that neighbors differ by at most their
+            distance; 1 or less for distances.
+    """
+
+    values: NDArray[np.float32]
+    size: tuple[float, float, float]
+    scale: float
+
+
+def field_of(
+    samples: NDArray[np.float32],
+    axes: str,
+    spacing: tuple[float, float, float],
+    level: float | None,
+) -> FieldSamples:
+    """Return a field from samples.
+
+    Args:
+        samples: The samples.
+        axes: What their axes are, "zyx" or another order.
+        spacing: Their distances along x, y and z.
+        level: The value at the surface, more than which is inside; None for distances, which are
+            negative inside.
+
+    Raises:
+        LoadError: Nothing is inside.
+    """
+    values = samples.transpose([axes.index(axis) for axis in "zyx"])
+    if level is not None:
+        values = np.float32(level) - values
+    if not (values < 0.0).any():
+        low, high = float(samples.min()), float(samples.max())
+        fix = "give level=" if level is None else "give another level"
+        raise LoadError(f"nothing is inside: the samples are {low:g} to {high:g}; {fix}")
+    rises = [
+        float(np.abs(np.diff(values, axis=axis)).max()) / step
+        for axis, step in enumerate(reversed(spacing))
+    ]
+    steepest = max(rises)
+    if steepest == 0.0:
+        raise LoadError("all samples are equal: there is no surface")
+    # Distances that were rounded to 32 bits are left as they are.
+    is_fair = level is None and steepest <= 1.0 + 1e-4
+    z, y, x = values.shape
+    size = x * spacing[0], y * spacing[1], z * spacing[2]
+    return FieldSamples(np.ascontiguousarray(values), size, 1.0 if is_fair else 1.0 / steepest)
+
+
+def read_npy(data: bytes) -> VolumeSamples:
+    """Return the samples of a NumPy file, (z, y, x)."""
+    try:
+        values = np.load(io.BytesIO(data), allow_pickle=False)
+    except Exception as error:  # NumPy evaluates the header: many kinds of exceptions
+        raise LoadError(f"NumPy says: {printable(error):.100}") from None
+    if not isinstance(values, np.ndarray):
+        raise LoadError("it is an archive of arrays: save one array with numpy.save")
+    return VolumeSamples(checked_samples(values), None)
+
+
+def read_nrrd(data: bytes) -> VolumeSamples:
+    """Return the samples of an NRRD file, whose first axis is x."""
+    end = b"\r\n\r\n" if b"\r\n" in data[:80] else b"\n\n"
+    head, blank, body = data.partition(end)
+    if not data.startswith(b"NRRD") or not blank or len(head) > 65536:
+        raise LoadError("it does not begin with the header of NRRD")
+    fields: dict[str, str] = {}
+    for line in head.decode("ascii", "replace").splitlines()[1:]:
+        key, colon, value = line.partition(":")
+        if colon and not line.startswith("#"):
+            fields[key.strip().lower()] = value.lstrip("=").strip()
+    if "data file" in fields or "datafile" in fields:
+        raise LoadError("its samples are in another file: save it as one file")
+    type = _NRRD_TYPES.get(fields.get("type", ""))
+    sizes = _numbers(fields.get("sizes", ""))
+    if type is None or len(sizes) != 3 or not all(s.is_integer() and s >= 1 for s in sizes):
+        raise LoadError("it is no volume of numbers with one component")
+    match fields.get("encoding", ""):
+        case "raw":
+            raw = body
+        case "gzip" | "gz":
+            raw = _unpacked(body)
+        case other:
+            raise LoadError(f"its encoding '{other:.20}' is not read: save it as raw or gzip")
+    order = ">" if fields.get("endian", "little") == "big" else "<"
+    values = _samples(raw, order + type, [int(s) for s in sizes])
+    return VolumeSamples(checked_samples(values), _nrrd_spacing(fields))
+
+
+def _nrrd_spacing(fields: dict[str, str]) -> tuple[float, float, float] | None:
+    spacing = _numbers(fields.get("spacings", ""))
+    if "space directions" in fields:
+        words = fields["space directions"].replace(",", " ").replace("(", " ").replace(")", " ")
+        numbers = _numbers(words)
+        if len(numbers) == 9:
+            spacing = [math.hypot(*numbers[i : i + 3]) for i in (0, 3, 6)]
+    return _positive(spacing)
+
+
+def read_nifti(data: bytes) -> VolumeSamples:
+    """Return the samples of a NIfTI-1 file, whose first axis is x."""
+    if data[:2] == b"\x1f\x8b":
+        data = _unpacked(data)
+    if len(data) < 352 or data[344:348] not in (b"n+1\0",):
+        raise LoadError("it does not begin with the header of NIfTI-1 in one file")
+    order = "<" if struct.unpack_from("<i", data)[0] == 348 else ">"
+    dims = struct.unpack_from(f"{order}8h", data, 40)
+    if not 3 <= dims[0] <= 7 or min(dims[1:4]) < 1 or any(d > 1 for d in dims[4 : dims[0] + 1]):
+        raise LoadError("it is no volume with one sample at each place")
+    type = _NIFTI_TYPES.get(struct.unpack_from(f"{order}h", data, 70)[0])
+    if type is None:
+        raise LoadError("its samples are no real numbers")
+    spacing = struct.unpack_from(f"{order}8f", data, 76)[1:4]
+    begin, slope, shift = struct.unpack_from(f"{order}3f", data, 108)
+    if not 0.0 <= begin <= len(data):
+        raise LoadError("it is truncated")
+    values = _samples(data[int(begin) :], order + type, dims[1:4]).astype(np.float64)
+    if math.isfinite(slope) and slope != 0.0 and math.isfinite(shift):
+        with np.errstate(all="ignore"):
+            values = values * slope + shift
+    return VolumeSamples(checked_samples(values), _positive(spacing))
+
+
+def _samples(raw: bytes, type: str, sizes: Sequence[int]) -> NDArray[Any]:
+    """Return the samples (z, y, x) of bytes whose first axis is x."""
+    dtype, count = np.dtype(type), math.prod(sizes)
+    if count > MOST_SAMPLES:
+        raise LoadError(f"{count:,} samples are more than {MOST_SAMPLES:,}: leave some out")
+    if len(raw) < count * dtype.itemsize:
+        there = len(raw) // dtype.itemsize
+        raise LoadError(f"it announces {count:,} samples and contains {there:,}: it is truncated")
+    return np.frombuffer(raw, dtype, count).reshape(tuple(reversed(sizes)))
+
+
+def _unpacked(data: bytes) -> bytes:
+    try:
+        with gzip.open(io.BytesIO(data)) as file:
+            found = file.read(_LARGEST_SAMPLES + 65536)
+    except (OSError, EOFError, zlib.error):
+        raise LoadError("its compressed part is damaged") from None
+    return found
+
+
+def _numbers(text: str) -> list[float]:
+    try:
+        return [float(word) for word in text.split()]
+    except ValueError:
+        return []
+
+
+def _positive(spacing: Sequence[float]) -> tuple[float, float, float] | None:
+    if len(spacing) != 3 or not all(0.0 < abs(s) < 1e15 for s in spacing):
+        return None
+    x, y, z = (abs(s) for s in spacing)
+    return x, y, z
+
+
+VOLUME_FORMATS: Final[dict[str, Callable[[bytes], VolumeSamples]]] = {
+    ".npy": read_npy,
+    ".nrrd": read_nrrd,
+    ".nii": read_nifti,
+    ".nii.gz": read_nifti,
+}

@@ -1,0 +1,105 @@
+"""Methods of solids that make one from a mesh or a volume.
+
+Input: files or arrays. Output: new shapes, and what is known of the meshes in a shape.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+from distal.scene.objects.mesh_shapes import mesh_node, reports_of
+from distal.scene.objects.placed import Placed
+from distal.scene.objects.volume_shapes import volume_node
+from distal.scene.tree.source_places import author_place
+
+if TYPE_CHECKING:
+    from distal.polygons.importing import ImportReport
+    from distal.scene.objects.shape import Shape
+
+
+class FromData(Placed):
+    """The methods of ``Shape`` that read meshes and volumes."""
+
+    @classmethod
+    def from_mesh(
+        cls,
+        source: str | PathLike[str] | Any,
+        triangles: Any = None,
+        *,
+        spacing: float | None = None,
+        sign: str = "auto",
+        unit: str | None = None,
+        up: str | None = None,
+    ) -> Shape:
+        """Make a solid from a mesh of triangles: STL, OBJ, PLY, GLB, 3MF, or two arrays.
+
+        The distances to the mesh are sampled on a grid and interpolated, so edges are rounded by
+        less than the distance of two samples; ``imported`` says by how much. A closed mesh is
+        needed for an inside; holes are closed with a warning.
+
+        Args:
+            source: The path of a file, beside the author's file or in the working folder; or
+                points, an array (n, 3).
+            triangles: With points, three indices for each triangle, an array (m, 3),
+                counterclockwise seen from outside.
+            spacing: The distance of two samples in scene units. None: a 64th of the longest side.
+            sign: How the inside is found. "normals": by the nearest triangle, if the mesh is
+                closed. "winding": by winding numbers, for holes and for bodies that overlap.
+                "unsigned": there is no inside; ``round`` makes a sheet. "auto": "normals" where
+                they agree, else "winding".
+            unit: The length of one scene unit: "um", "mm", "cm", "m", "inch" or "ft"; GLB and 3MF
+                name their unit, other files are in millimeters. None keeps the numbers.
+            up: The axis that points up in the mesh, "y" or "z"; z becomes y. None: "z" for STL and
+                3MF, which printers use, else "y".
+
+        Raises:
+            SceneValueError: The file cannot be read, is no mesh or encloses nothing, or the spacing
+                needs more than 16 million samples.
+            SceneTypeError: ``source`` is neither a path nor an array.
+
+        Source: the signs are those of Baerentzen and Aanaes 2005, and of Barill et al. 2018.
+        """
+        place = author_place()
+        node, center = mesh_node(
+            source, triangles, place, spacing=spacing, sign=sign, unit=unit, up=up
+        )
+        made: Shape = cls._of(node)
+        return made.translate(center)
+
+    @classmethod
+    def from_volume(
+        cls,
+        source: str | PathLike[str] | Any,
+        *,
+        spacing: float | Sequence[float] | None = None,
+        axes: str = "zyx",
+        level: float | None = None,
+    ) -> Shape:
+        """Make a solid from a volume of samples: .npy, .nrrd, .nii, .nii.gz, or an array.
+
+        The middle of the volume is the origin; a solid that goes on beyond the volume is cut off
+        there.
+
+        Args:
+            source: The path of a file, beside the author's file or in the working folder; or an
+                array of three axes.
+            spacing: The distance of two samples in scene units, or three along x, y and z. None:
+                that of the file, else 1.
+            axes: What the axes of an array or a .npy file are, in their order.
+            level: The value at the surface; more is inside. The field is then about the distance
+                only near the surface and where samples change fastest. None: samples are distances,
+                negative inside.
+
+        Raises:
+            SceneValueError: The file cannot be read, is no volume, or nothing is inside.
+        """
+        place = author_place()
+        made: Shape = cls._of(volume_node(source, place, spacing=spacing, axes=axes, level=level))
+        return made
+
+    @property
+    def imported(self) -> tuple[ImportReport, ...]:
+        """What is known of the meshes that the shape contains: how closed, how far off."""
+        return reports_of(self.node)

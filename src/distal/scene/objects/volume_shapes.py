@@ -1,0 +1,91 @@
+"""Shapes from volumes of samples: the author's file or array, as a node.
+
+Input: a file or an array, the distances of samples, a level. Output: a node that every target
+compiles.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from distal.diagnostics import LoadError, Span
+from distal.fields.guarantees import PRIMITIVES
+from distal.fields.solids import volumes as _declares_the_field  # noqa: F401
+from distal.lang.lazy_module import LazyModule
+from distal.lang.parameter_values import as_float
+from distal.lang.resources import Texture3D
+from distal.scene.objects.binding import bound
+from distal.scene.tree.errors import refuse
+from distal.scene.tree.node import Node
+
+if TYPE_CHECKING:
+    from distal.polygons import volumes
+else:
+    volumes = LazyModule("distal.polygons.volumes")
+
+
+def volume_node(source: Any, place: Span | None, *, spacing: Any, axes: Any, level: Any) -> Node:
+    """Return the node of a volume; see ``Shape.from_volume``.
+
+    Args:
+        source: The path of a file, or an array.
+        place: The author's line.
+        spacing: The distance of two samples, one number or three, or None.
+        axes: The order of the axes of an array.
+        level: The value at the surface, or None for distances.
+
+    Raises:
+        SceneValueError: The file cannot be read, or is no volume with an inside.
+    """
+    if not isinstance(axes, str) or sorted(axes) != ["x", "y", "z"]:
+        refuse(f"axes are 'zyx' or another order of the three, not {axes!r:.40}", None, place)
+    try:
+        given = None if spacing is None else _three(spacing)
+        at = None if level is None else as_float("level", level)
+        if isinstance(source, str | PathLike):
+            path = Path(source)
+            if place is not None and (Path(place.file).parent / path).exists():
+                path = Path(place.file).parent / path
+            found = volumes.read_volume(path)
+            is_ordered = path.suffix.lower() != ".npy"
+        else:
+            found = volumes.VolumeSamples(volumes.checked_samples(source), None)
+            is_ordered = False
+        step = given or found.spacing or (1.0, 1.0, 1.0)
+        field = volumes.field_of(found.values, "zyx" if is_ordered else axes, step, at)
+    except LoadError as error:
+        refuse(error.message, None, place)
+    except (TypeError, ValueError) as error:
+        refuse(str(error), "spacing=0.5, or spacing=(0.5, 0.5, 1.0) along x, y and z", place)
+    if level is None and field.scale < 1.0:
+        _warn(
+            f"neighboring samples differ by up to {1.0 / field.scale:.3g} times their distance, so "
+            "they are no distances: they are divided by that; give spacing= if it is another one, "
+            "or level= if they are no distances",
+            place,
+        )
+    rule = PRIMITIVES["VolumeField"]
+    volume = Texture3D(field.values, wrap="clamp")
+    numbers, constants = bound(rule, (volume, field.size, field.scale), {}, place)
+    return Node(rule, False, (), numbers, constants, place)
+
+
+def _three(spacing: Any) -> tuple[float, float, float]:
+    parts = list(spacing) if isinstance(spacing, Sequence) else [spacing] * 3
+    if len(parts) != 3:
+        raise ValueError(f"a spacing is one number or three, not {len(parts)}")
+    x, y, z = (as_float("spacing", part) for part in parts)
+    if min(x, y, z) <= 0.0:
+        raise ValueError(f"a spacing is above 0, not {min(x, y, z):g}")
+    return x, y, z
+
+
+def _warn(message: str, place: Span | None) -> None:
+    if place is None:
+        warnings.warn(message, stacklevel=2)
+    else:
+        warnings.warn_explicit(message, UserWarning, place.file, place.line)
