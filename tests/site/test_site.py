@@ -27,7 +27,10 @@ def site(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("site") / "site"
     few = ("--examples", "bunny,melting", "--lessons", "1,6", "--no-playground")
     words = [sys.executable, ROOT / "tools" / "build_site.py", folder, *few]
-    subprocess.run(words, check=True, timeout=600)
+    current = tmp_path_factory.mktemp("current")
+    subprocess.run(words, cwd=current, check=True, timeout=600)
+    left = sorted(path.name for path in current.iterdir())
+    assert left == [], f"blocks of the documents were run in the current folder: {left}"
     return folder
 
 

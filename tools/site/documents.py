@@ -71,7 +71,8 @@ class Tried:
         texts = {"scene.py": code}
         request = LookRequest(id=number, revision=number, files=texts, main="scene.py")
         try:
-            with contextlib.redirect_stdout(io.StringIO()):
+            # What a block saves by a relative path is written into the temporary folder.
+            with contextlib.chdir(self._folder.name), contextlib.redirect_stdout(io.StringIO()):
                 self._looks.load(request, texts)
         except Exception:  # whatever it raises, there is no picture to show
             return False
