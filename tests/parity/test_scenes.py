@@ -258,6 +258,7 @@ def drawn(picture, target, **numbers):
         pytest.skip(str(error))
 
 
+@pytest.mark.sample(2, each="name")
 @pytest.mark.parametrize("target", TARGETS)
 @pytest.mark.parametrize("name", SCENES)
 def test_drivers_draw_the_cpu_picture(name, target):
@@ -273,6 +274,7 @@ def test_the_reference_draws_the_cpu_picture(name):
     assert found.is_agreement, found
 
 
+@pytest.mark.sample(2, each="name")
 @pytest.mark.parametrize("target", TARGETS)
 @pytest.mark.parametrize("name", VIEWS)
 def test_drivers_draw_the_cpus_views(name, target):

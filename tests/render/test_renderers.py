@@ -196,6 +196,7 @@ def test_the_reference_draws_the_cpus_picture(name, on_the_cpu):
     assert np.isfinite(drawn).all()
 
 
+@pytest.mark.sample(3, each="name")
 @pytest.mark.parametrize("name", IMAGES)
 @pytest.mark.parametrize("target", ["glsl-es300", "glsl-330", "shadertoy"])
 def test_glsl_draws_the_cpus_picture(name, target, on_the_cpu):
@@ -209,6 +210,7 @@ def test_glsl_draws_the_cpus_picture(name, target, on_the_cpu):
     assert found.is_agreement, found
 
 
+@pytest.mark.sample(2, each="name")
 @pytest.mark.parametrize("name", IMAGES)
 @pytest.mark.parametrize("target", ["wgsl", "wgsl-compute"])
 def test_wgsl_draws_the_cpus_picture(name, target, on_the_cpu):
