@@ -119,6 +119,7 @@ def test_every_row_is_in_some_field() -> None:
     assert [name for name in smooth_rows() if not fields_with(name)] == []
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", sorted(smooth_rows()))
 def test_a_wrong_derivative_is_seen(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each row in turn loses its derivative, or gets one it has not; some field must notice."""

@@ -188,6 +188,7 @@ def on_the_cpu():
     return {name: image.render(size=SIZE).array for name, image in IMAGES.items()}
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("name", IMAGES)
 def test_the_reference_draws_the_cpus_picture(name, on_the_cpu):
     drawn = IMAGES[name].render(size=SIZE, device="reference").array
