@@ -1,5 +1,6 @@
 # make picture   sets up what it needs and renders the raymarcher to picture.png
 # make test      sets up what it needs and runs everything that CI runs
+# make test-all  the same, with each case of the tests of which make test runs a sample
 # make bench     measures; make sweep runs thousands of random programs and draws every example
 #                on every target; make clean undoes set-up
 # make sweep-fields   holds every shape and operator against its claims at many more numbers
@@ -22,7 +23,8 @@ BIN := $(VENV)/bin
 # The first interpreter that is new enough; `make PYTHON=... test` overrides it.
 PYTHON ?= $(shell for p in python3 python3.11 python3.12 python3.13 python3.14 python; do \
 	"$$p" -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && echo "$$p" && break; done)
-WORKERS ?= 2
+# One more than two processors: a worker waits for browsers and other processes half of its time.
+WORKERS ?= 3
 SWEEP ?= 5000
 SAMPLES ?= 40
 SEGMENTS ?= 1e7
@@ -32,7 +34,7 @@ SEED ?=
 SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers glslang-tools \
 	chromium xvfb xdotool imagemagick
 
-.PHONY: picture test lint units system bench site sweep sweep-fields sweep-segments parity mutate versions clean
+.PHONY: picture test test-all lint units system bench site sweep sweep-fields sweep-segments parity mutate versions clean
 .NOTPARALLEL:
 
 picture: $(VENV)/.setup-run
@@ -41,6 +43,10 @@ picture: $(VENV)/.setup-run
 
 test: system $(VENV)/.setup-test lint units
 
+# Which tests are sampled and why: docs/decisions/0060-a-sample-of-cases.md.
+test-all: system $(VENV)/.setup-test lint
+	DISTAL_ALL_CASES=1 $(MAKE) units
+
 lint: $(VENV)/.setup-test
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
@@ -48,7 +54,7 @@ lint: $(VENV)/.setup-test
 	$(BIN)/lint-imports
 
 # Generated files are proved fresh by tests beside the rest, so that one run names every fault.
-# A worker begins with a half of the files, and so compiles few programs that another compiles too.
+# A worker begins with a part of the files, and so compiles few programs that another compiles too.
 units: $(VENV)/.setup-test web/node_modules/.ready
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -rs
 

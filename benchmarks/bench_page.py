@@ -24,7 +24,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import distal
 from distal import Box, Camera, DistantLight, Plane, Scene, Sphere, Torus, union
-from tests.browser import BrowserUnavailableError, offline_page
+from tests.browser import SWIFTSHADER, BrowserUnavailableError, offline_page
 
 RUNS = 7
 SIZE = {"width": 320, "height": 240}
@@ -35,7 +35,7 @@ MARK = "() => performance.getEntriesByName('distal:first-frame')[0]?.startTime"
 
 def first_frame_s(page: Path) -> float:
     """From the start of the navigation to a finished first picture."""
-    with offline_page(page, viewport=SIZE) as watched:
+    with offline_page(page, flags=SWIFTSHADER, viewport=SIZE) as watched:
         found = watched.page.wait_for_function(MARK, timeout=LIMIT_MS)
         return float(found.json_value()) / 1000.0
 

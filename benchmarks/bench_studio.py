@@ -33,7 +33,7 @@ sys.path.insert(0, str(ROOT))
 
 from distal.editor.local.server import APP  # noqa: E402
 from distal.loading import gallery  # noqa: E402
-from tests.browser import browser  # noqa: E402
+from tests.browser import SWIFTSHADER, browser  # noqa: E402
 
 # An installed package has bytecode, wherever the checkout has none.
 COMPILED = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
@@ -121,7 +121,7 @@ def served(folder: Path) -> Iterator[str]:
 
 def page_of(address: str) -> Any:
     """A page; the first one starts the browser, which is not measured."""
-    page = browser().new_context(viewport={"width": 1180, "height": 700}).new_page()
+    page = browser(*SWIFTSHADER).new_context(viewport={"width": 1180, "height": 700}).new_page()
     page.set_default_timeout(120_000)
     page.goto(address)
     return page
@@ -183,7 +183,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Measure the studio.")
     parser.add_argument("--site", type=Path, help="a site, built by `make site`")
     site = parser.parse_args().site
-    browser()
+    browser(*SWIFTSHADER)
     print("| what | median | goal |\n|---|---|---|")
     size = sum(
         len(gzip.compress((APP / name).read_bytes())) for name in ("studio.js", "studio.css")
@@ -222,7 +222,7 @@ def playground(address: str, folder: Path) -> None:
     )
     in_page(page, "playground", {"raymarcher": "250", "bunny": "1200"})
     row("playground: a loop ended to the next answer", loop(page), "s", "5")
-    print(json.dumps({"browser": browser().version}))
+    print(json.dumps({"browser": browser(*SWIFTSHADER).version}))
 
 
 if __name__ == "__main__":

@@ -8,6 +8,14 @@ import tempfile
 
 from hypothesis import settings
 
+from tests.case_samples import (  # noqa: F401 (hooks)
+    pytest_collection_modifyitems,
+    pytest_configure,
+    pytest_sessionfinish,
+    pytest_terminal_summary,
+    pytest_testnodedown,
+)
+
 # Each pass's output is held against the IR's rules; read when distal.compiler.driver is imported.
 os.environ.setdefault("DISTAL_VERIFY", "1")
 

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.backends.base import Artifact
-from tests.browser import MESA, BrowserUnavailableError, browser
+from tests.browser import MESA, SWIFTSHADER, BrowserUnavailableError, browser
 from tests.buffer_data import buffer_data
 from tests.glsl import BUFFER_WIDTH, complete_text, uniform_values
 
@@ -33,7 +33,7 @@ QUAD: Final = {
     "webgl": f"attribute vec2 position;\n{COVERING}",
 }
 SHAPES: Final = {"Texture2D": "flat", "TextureCube": "cube", "Texture3D": "volume"}
-DRIVERS: Final[dict[str, tuple[str, ...]]] = {"swiftshader": (), "mesa": MESA}
+DRIVERS: Final[dict[str, tuple[str, ...]]] = {"swiftshader": SWIFTSHADER, "mesa": MESA}
 LIMIT_S: Final = 60.0
 GRACE_S: Final = 5.0  # for a page that answers late, because its driver holds it up
 POLLING_MS: Final = 10

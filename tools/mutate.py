@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import os
 import random
 import secrets
 import sys
@@ -64,6 +65,7 @@ ACCEPTED: Final = "accepted"
 
 def main() -> int:
     """Draw, run, report; whether all is well."""
+    os.environ["DISTAL_ALL_CASES"] = "1"  # a survivor is one that no case of a sampled test notices
     options = _options()
     root = options.root.resolve()
     project = Project(root, root / "src", tuple(options.tests), tuple(options.preload))

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 
 from distal.cli.studio import STARTER
+from tests.accessibility import needs_axe, violations
 from tests.editor.studio_page import (
     DESK,
     IDLE,
@@ -20,8 +20,6 @@ from tests.editor.studio_page import (
 
 pytest.importorskip("websockets")
 
-AXE = Path(__file__).parents[2] / "web" / "node_modules" / "axe-core" / "axe.min.js"
-RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
 
 FUNC = """from distal.lang import Frame, image, vec3
@@ -308,50 +306,39 @@ def test_by_keys_alone(tmp_path):
         assert app.page.evaluate("() => !!document.activeElement.closest('.left, .show')")
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@needs_axe
 @pytest.mark.parametrize("size", [DESK, PHONE], ids=["desk", "phone"])
-def test_every_screen_is_accessible(tmp_path, scheme, size):
-    if not AXE.exists():
-        pytest.skip("axe-core is not installed: run `npm ci` in web/")
-    with studio(tmp_path, color_scheme=scheme, bypass_csp=True, **size) as app:
-        app.page.add_script_tag(path=str(AXE))
-
-        def violations() -> list[str]:
-            return app.page.evaluate(
-                "(rules) => axe.run(document, { runOnly: rules }).then(({ violations }) =>"
-                " violations.map((v) => v.id + ' ' + v.nodes.map((n) => n.target).join(' ')))",
-                RULES,
-            )
-
-        assert violations() == []
+def test_every_screen_is_accessible_in_light_and_dark(tmp_path, size):
+    with studio(tmp_path, bypass_csp=True, **size) as app:
+        assert violations(app.page) == []
         for name in ("gallery", "export", "help", "commands"):
             app.page.evaluate(
                 "(name) => void studio.commands.all.find(({ id }) => id === name).act()", name
             )
-            assert violations() == [], name
+            assert violations(app.page) == [], name
             app.page.keyboard.press("Escape")
         app.page.evaluate("() => studio.sharing.share()")
         app.page.locator("dialog .code svg").wait_for()
-        assert violations() == []
+        assert violations(app.page) == []
         app.page.keyboard.press("Escape")
         app.page.get_by_role("button", name="Cost").click()
         app.page.locator(".runs").first.wait_for()
         app.page.get_by_label("Time (measured)").check()
         app.page.get_by_role("button", name="Measure").click()
-        assert violations() == []
+        assert violations(app.page) == []
         app.page.get_by_role("button", name="Cost").click()
         app.page.get_by_role("tab", name="Emitted text").click()
-        assert violations() == []
+        assert violations(app.page) == []
         app.page.get_by_role("tab", name="scene.py").click()
         app.page.evaluate("() => studio.editor.goTo(8, 11)")
         app.page.keyboard.press("Control+.")
         app.page.locator(".dial").wait_for()
-        assert violations() == []
+        assert violations(app.page) == []
         app.page.keyboard.press("Escape")
         app.page.evaluate("() => studio.editor.goTo(3)")
         app.page.keyboard.type("x = = 3\n")
         app.wait("() => document.querySelector('.mistakes').childElementCount")
-        assert violations() == []
+        assert violations(app.page) == []
 
 
 def test_a_draft_of_an_earlier_file_is_offered_and_not_lost(tmp_path):

@@ -27,6 +27,7 @@ def other(found: SourceLiteral):
             return value + (1.0 if found.whole else 0.25)
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", distal.gallery())
 def test_each_literal_of_an_example_changes_alone(name: str) -> None:
     text = distal.gallery()[name].read_text(encoding="utf-8")

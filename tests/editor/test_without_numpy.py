@@ -48,7 +48,11 @@ def facts(name):
 
 def page(name):
     seen = viewable(distal.load("example:" + name))
-    return digest(payload(seen, PageOptions(views=["color"], poster=False)))
+    made = dict(payload(seen, PageOptions(views=["color"], poster=False)))
+    if made["steering"]:  # an arc sine of NumPy can differ from that of Python in the last bit
+        elevation = round(made["steering"]["elevation"], 12)
+        made["steering"] = {**made["steering"], "elevation": elevation}
+    return digest(made)
 """
 NEEDS_NUMPY = "import numpy"
 ALONE = [n for n, path in distal.gallery().items() if NEEDS_NUMPY not in path.read_text()]
@@ -80,10 +84,12 @@ def test_the_gallery_needs_numpy_where_it_works_with_arrays_alone() -> None:
     assert others == {"beach", "bricks", "forest", "molecule", "ripples", "sdfray_glass"}
 
 
-def test_texts_and_facts_of_the_gallery_are_those_with_numpy() -> None:
-    code = f"{FACTS}\nprint(json.dumps({{n: facts(n) for n in {ALONE}}}))"
+@pytest.mark.sample(3)
+@pytest.mark.parametrize("names", [ALONE[i::6] for i in range(6)])
+def test_texts_and_facts_of_the_gallery_are_those_with_numpy(names: list[str]) -> None:
+    code = f"{FACTS}\nprint(json.dumps({{n: facts(n) for n in {names}}}))"
     found, facts = blocked(code), here()["facts"]
-    assert found == {name: facts(name) for name in ALONE}
+    assert found == {name: facts(name) for name in names}
 
 
 def test_pages_are_those_with_numpy() -> None:

@@ -12,6 +12,7 @@ import pytest
 import distal
 
 ROOT = Path(__file__).parents[2]
+WELL_TYPED = ROOT / "tests/unit/lang/well_typed_scene.py"  # of functions; compiled beside it
 
 CORRECT = """
 import numpy as np
@@ -88,8 +89,9 @@ def test_a_type_checker_accepts_what_is_correct_and_refuses_what_is_not(tmp_path
     (tmp_path / "wrong.py").write_text("\n".join(lines) + "\n")
     # The cache of the project's own check makes this quick.
     command = [sys.executable, "-m", "mypy", "--strict", "--no-error-summary"]
+    files = [tmp_path / "correct.py", tmp_path / "wrong.py", WELL_TYPED]
     answer = subprocess.run(
-        [*command, str(tmp_path / "correct.py"), str(tmp_path / "wrong.py")],
+        [*command, *map(str, files)],
         cwd=ROOT,
         capture_output=True,
         text=True,

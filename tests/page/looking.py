@@ -25,7 +25,7 @@ from distal.scene.viewing.viewable import Viewable
 from tests.browser import Watched, offline_page
 from tests.pictures.comparison import Difference, difference
 
-# Wide enough for the panel beside the picture; SwiftShader is slow.
+# Wide enough for the panel beside the picture; drivers in software are slow.
 VIEWPORT = {"width": 660, "height": 190}
 
 _SETTLE = """async (number) => {

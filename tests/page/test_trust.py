@@ -17,7 +17,7 @@ import pytest
 from distal.compiler.driver import compile
 from distal.lang import Frame, acos, asin, cos, image, sin, vec4
 from tests import webgl
-from tests.browser import MESA, BrowserUnavailableError, browser, offline_page
+from tests.browser import MESA, SWIFTSHADER, BrowserUnavailableError, browser, offline_page
 from tests.page import player_pages as pages
 from tests.page.player_pages import payload, program
 from tests.parity.trusting import trusting
@@ -25,7 +25,7 @@ from tests.parity.trusting import trusting
 NAMES = ("sin", "cos", "asin", "acos")
 TRUST = {name: f"TRUST_{name.upper()}" for name in NAMES}
 MOST = 1e-5  # what a page accepts
-DRIVERS = {"swiftshader": (), "mesa": MESA}
+DRIVERS = {"swiftshader": SWIFTSHADER, "mesa": MESA}
 SIZE = {"width": 160, "height": 120}
 # Every text that a driver is given.
 SPY = """window.texts = [];

@@ -37,6 +37,7 @@ def assert_agreement(example, way):
     assert found.is_agreement, found
 
 
+@pytest.mark.sample(2)  # make parity draws every example
 @pytest.mark.parametrize("example", ON_SWIFTSHADER)
 def test_the_browser_draws_the_cpu_picture(example):
     assert_agreement(example, "webgl2-swiftshader")

@@ -258,6 +258,7 @@ def drawn(picture, target, **numbers):
         pytest.skip(str(error))
 
 
+@pytest.mark.sample(2, each="name")
 @pytest.mark.parametrize("target", TARGETS)
 @pytest.mark.parametrize("name", SCENES)
 def test_drivers_draw_the_cpu_picture(name, target):
@@ -266,6 +267,7 @@ def test_drivers_draw_the_cpu_picture(name, target):
     assert found.is_agreement, found
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("name", [n for n in SCENES if n != "refracted"])
 def test_the_reference_draws_the_cpu_picture(name):
     reference = scene(name).render(size=SIZE, samples=1, time=SECONDS, device="reference").array
@@ -273,6 +275,7 @@ def test_the_reference_draws_the_cpu_picture(name):
     assert found.is_agreement, found
 
 
+@pytest.mark.sample(2, each="name")
 @pytest.mark.parametrize("target", TARGETS)
 @pytest.mark.parametrize("name", VIEWS)
 def test_drivers_draw_the_cpus_views(name, target):

@@ -284,6 +284,7 @@ ELEMENTARY = (
 )
 
 
+@pytest.mark.sample(2, each="name")
 @pytest.mark.parametrize("name", ELEMENTARY)
 @pytest.mark.parametrize("reach", [(0.9, 0.0), (0.4, -0.3), (0.3, 0.5), (3.0, 2.0)])
 def test_boxes_of_all_times_hold_what_moves_by_any_function(name, reach):

@@ -12,6 +12,8 @@ from distal.scene.lowering.parts.moving_boxes import MovingBoxes
 from distal.scene.viewing.viewable import viewable
 from tests.page.looking import looked_at
 
+SMALL = {"width": 220, "height": 160}  # a driver in software takes seconds for a larger picture
+
 
 def pebbles(count):
     rng = np.random.default_rng(4)
@@ -32,9 +34,9 @@ def scene_of(count):
 def test_a_page_of_many_parts(tmp_path):
     file = tmp_path / "pebbles.html"
     scene = scene_of(500)
-    scene.export(file)
+    scene.export(file, panel=False)
     assert file.stat().st_size < 210_000  # 160 bytes a part, and 110 kB for everything else
-    with looked_at(file) as looked:
+    with looked_at(file, viewport=SMALL) as looked:
         assert looked.beside(viewable(scene)).is_agreement
 
 
@@ -66,6 +68,6 @@ def test_a_page_of_parts_that_move(tmp_path, monkeypatch):
     scene = Scene(union(boats) | Plane(y=-0.6), camera=camera, lights=DistantLight((1.0, 2.0, 1.5)))
     assert "part_boxes" in distal.compile(scene, target="glsl-es300").text
     file = tmp_path / "boats.html"
-    scene.export(file)
-    with looked_at(file) as looked:
+    scene.export(file, panel=False)
+    with looked_at(file, viewport=SMALL) as looked:
         assert looked.beside(viewable(scene)).is_agreement

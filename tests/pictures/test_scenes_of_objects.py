@@ -56,6 +56,7 @@ def test_clear_shapes_show_what_is_behind_them():
     assert clear.mean() > 3.0 * shut.mean()
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("example", SDFRAY)
 def test_pictures_are_whole_and_every_slider_moves_them(example):
     scene = distal.load(f"example:{example}")

@@ -119,6 +119,9 @@ def drawn(example, target, time):
         pytest.skip(str(error))
 
 
+# Each example by some of the languages at some of the times; the texts of all are compiled and run
+# on smaller programs in tests/validity and tests/parity.
+@pytest.mark.sample(3, each="example")
 @pytest.mark.parametrize(("example", "target", "time"), CASES)
 def test_driver_draws_the_cpu_picture(example, target, time):
     found = difference(drawn(example, target, time), cpu_picture(example, time))
@@ -128,6 +131,7 @@ def test_driver_draws_the_cpu_picture(example, target, time):
 BY_REFERENCE = [n for n in sorted(distal.gallery()) if ALL or n not in LONG_BY_REFERENCE]
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("example", BY_REFERENCE)
 def test_reference_draws_the_cpu_picture(example):
     size = SIZE if is_small(example) else (64, 48)

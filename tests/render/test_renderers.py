@@ -188,6 +188,7 @@ def on_the_cpu():
     return {name: image.render(size=SIZE).array for name, image in IMAGES.items()}
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("name", IMAGES)
 def test_the_reference_draws_the_cpus_picture(name, on_the_cpu):
     drawn = IMAGES[name].render(size=SIZE, device="reference").array
@@ -196,6 +197,7 @@ def test_the_reference_draws_the_cpus_picture(name, on_the_cpu):
     assert np.isfinite(drawn).all()
 
 
+@pytest.mark.sample(3, each="name")
 @pytest.mark.parametrize("name", IMAGES)
 @pytest.mark.parametrize("target", ["glsl-es300", "glsl-330", "shadertoy"])
 def test_glsl_draws_the_cpus_picture(name, target, on_the_cpu):
@@ -209,6 +211,7 @@ def test_glsl_draws_the_cpus_picture(name, target, on_the_cpu):
     assert found.is_agreement, found
 
 
+@pytest.mark.sample(2, each="name")
 @pytest.mark.parametrize("name", IMAGES)
 @pytest.mark.parametrize("target", ["wgsl", "wgsl-compute"])
 def test_wgsl_draws_the_cpus_picture(name, target, on_the_cpu):

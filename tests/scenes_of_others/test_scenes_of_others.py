@@ -105,6 +105,7 @@ def test_the_surface_is_closed(name):
 STEEP: Final = ("knurling", "twisted_morph")
 
 
+@pytest.mark.sample(2, each="name")
 @pytest.mark.parametrize(
     ("name", "view"),
     [(name, view) for view in ("normal", "color") for name in (*STEEP, "castle")],

@@ -54,7 +54,7 @@ def folder(tmp_path_factory) -> Path:
     return made
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def address(folder):
     handler = functools.partial(Quiet, directory=str(folder.parent))
     server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
@@ -94,6 +94,21 @@ def shown(made, address: str, *, wakes: bool = True):
     return page
 
 
+@pytest.fixture(scope="module")
+def awake(address):
+    """A page whose cell has started Python, which takes five seconds; for several tests."""
+    with context(address) as made:
+        yield shown(made, address)
+
+
+def show_again(page, name: str = "planet") -> None:
+    """Show an example as a new page does."""
+    text = gallery()[name].read_text(encoding="utf-8")
+    page.evaluate("([file, text]) => studio.editor.replace(file, text)", [f"{name}.py", text])
+    page.wait_for_timeout(200)  # typing ends
+    page.wait_for_function(_IDLE, timeout=SLOW_MS)
+
+
 def ask(page, text: str, kind: str = "look", **more):
     """The answer of the worker in the cell to a request about a text."""
     fields = {"kind": kind, "revision": 1, "files": {"scene.py": text}, "main": "scene.py", **more}
@@ -119,24 +134,22 @@ def test_the_first_picture_needs_no_python(address):
             page.get_by_label("View", exact=True).select_option(index=1)
 
 
-def test_texts_are_those_of_this_python(address, tmp_path):
+def test_texts_are_those_of_this_python(awake, tmp_path):
     worker = StudioWorker(tmp_path)
     refused, different = set(), set()
-    with context(address) as made:
-        page = shown(made, address)
-        for name in COMPARED:
-            opened = SceneFiles(gallery()[name])
-            texts = opened.all().files
-            request = LookRequest(id=1, revision=1, files=texts, main=opened.main)
-            ours = worker.answers(request)[-1].payload["programs"]["data"]
-            answer = ask(page, "", files=texts, main=opened.main)
-            if answer["kind"] == "mistakes":
-                assert NO_NUMPY in answer["mistakes"][0]["message"], name
-                refused.add(name)
-                continue
-            theirs = answer["payload"]["programs"]["data"]
-            if [p["fragment"] for p in theirs] != [p["fragment"] for p in ours]:
-                different.add(name)
+    for name in COMPARED:
+        opened = SceneFiles(gallery()[name])
+        texts = opened.all().files
+        request = LookRequest(id=1, revision=1, files=texts, main=opened.main)
+        ours = worker.answers(request)[-1].payload["programs"]["data"]
+        answer = ask(awake, "", files=texts, main=opened.main)
+        if answer["kind"] == "mistakes":
+            assert NO_NUMPY in answer["mistakes"][0]["message"], name
+            refused.add(name)
+            continue
+        theirs = answer["payload"]["programs"]["data"]
+        if [p["fragment"] for p in theirs] != [p["fragment"] for p in ours]:
+            different.add(name)
     assert refused == WITH_NUMPY.intersection(COMPARED)
     assert different == WITH_TABLES.intersection(COMPARED)
 
@@ -156,30 +169,27 @@ def test_archives_have_bytecode_and_the_sources_of_scene_code(folder):
     assert any(name.startswith("distal/render/__pycache__/trace.") for name in own)
 
 
-def test_typing_mistakes_and_a_dial(address):
-    with context(address) as made:
-        page = shown(made, address)
-        page.locator(".literal", has_text=re.compile(r"^0\.84$")).click()
-        page.locator(".dial").get_by_role("button", name="More").click()
-        changed = "() => studio.editor.view.state.doc.toString().includes('Sphere(0.85)')"
-        page.wait_for_function(changed, timeout=SLOW_MS)
-        page.keyboard.press("Escape")
-        page.evaluate("() => studio.editor.goTo(24)")
-        page.keyboard.press("End")
-        page.keyboard.type(" +")
-        page.wait_for_function("() => document.querySelector('.mistakes').childElementCount")
-        assert "line 24" in page.locator(".mistakes").inner_text()
+def test_typing_mistakes_and_a_dial(awake):
+    page = awake
+    show_again(page)
+    page.locator(".literal", has_text=re.compile(r"^0\.84$")).click()
+    page.locator(".dial").get_by_role("button", name="More").click()
+    changed = "() => studio.editor.view.state.doc.toString().includes('Sphere(0.85)')"
+    page.wait_for_function(changed, timeout=SLOW_MS)
+    page.keyboard.press("Escape")
+    page.evaluate("() => studio.editor.goTo(24)")
+    page.keyboard.press("End")
+    page.keyboard.type(" +")
+    page.wait_for_function("() => document.querySelector('.mistakes').childElementCount")
+    assert "line 24" in page.locator(".mistakes").inner_text()
 
 
-def test_an_endless_loop_is_ended(address):
-    with context(address) as made:
-        page = shown(made, address)
-        page.evaluate("() => studio.editor.replace('planet.py', 'while True: pass\\n')")
-        page.wait_for_function("() => !document.querySelector('.notice').hidden", timeout=SLOW_MS)
-        assert "gave no answer within 5 s" in page.locator(".notice").inner_text()
-        text = gallery()["planet"].read_text(encoding="utf-8")
-        page.evaluate("(text) => studio.editor.replace('planet.py', text)", text)
-        page.wait_for_function(_IDLE, timeout=SLOW_MS)
+def test_an_endless_loop_is_ended(awake):
+    page = awake
+    page.evaluate("() => studio.editor.replace('planet.py', 'while True: pass\\n')")
+    page.wait_for_function("() => !document.querySelector('.notice').hidden", timeout=SLOW_MS)
+    assert "gave no answer within 5 s" in page.locator(".notice").inner_text()
+    show_again(page)
 
 
 def test_a_link_has_the_code_values_and_camera(address):
@@ -305,22 +315,19 @@ scene = Scene(Sphere(0.5))
 """
 
 
-def test_the_cell_is_sealed(address):
-    with context(address) as made:
-        page = shown(made, address)
-        page.evaluate(
-            "() => { window.heard = []; addEventListener('message', (e) => heard.push(e.data)); }"
-        )
-        page.evaluate(
-            "() => { studio.client.events.printed = ({ text }) => { studio.told = text; }; }"
-        )
-        with socket.create_server(("127.0.0.1", 0)) as listening:
-            listening.settimeout(1.0)
-            ask(page, ATTEMPTS.replace("PORT", str(listening.getsockname()[1])))
-            with pytest.raises(TimeoutError):
-                listening.accept()
-        told = page.evaluate("() => studio.told")
-        assert told.count(":") == 6, told
-        assert "DONE" not in told, told
-        assert page.evaluate("() => heard") == []
-        assert page.evaluate("() => localStorage.getItem('a')") is None
+def test_the_cell_is_sealed(awake):
+    page = awake
+    page.evaluate(
+        "() => { window.heard = []; addEventListener('message', (e) => heard.push(e.data)); }"
+    )
+    page.evaluate("() => { studio.client.events.printed = ({ text }) => { studio.told = text; }; }")
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        listening.settimeout(1.0)
+        ask(page, ATTEMPTS.replace("PORT", str(listening.getsockname()[1])))
+        with pytest.raises(TimeoutError):
+            listening.accept()
+    told = page.evaluate("() => studio.told")
+    assert told.count(":") == 6, told
+    assert "DONE" not in told, told
+    assert page.evaluate("() => heard") == []
+    assert page.evaluate("() => localStorage.getItem('a')") is None

@@ -148,13 +148,6 @@ def test_what_is_kept_of_a_function_declares_the_frames_values_again():
     assert "uniform @time" in texts[1]
 
 
-def test_what_is_kept_of_a_function_declares_the_frames_values_again():
-    picture = function("kept", {"frame": FRAME}, VEC3, Return(splat(field(FRAME_READ, "seed"), VEC3)))
-    texts = [print_module(image(picture)) for _ in range(2)]
-    assert texts[0] == texts[1]
-    assert "uniform @seed" in texts[1]
-
-
 def test_the_same_function_reads_a_parameter_by_the_name_it_has_in_each_program():
     reading = Uniform("time", FLOAT)
     picture = function("kept", {"frame": FRAME}, VEC3, Return(splat(reading, VEC3)))
