@@ -32,7 +32,9 @@ from distal.lang import (
 ROOT_STEPS = 12
 # Steps of the iteration that solves a quadric; the part that belongs to an eigenvalue of 1 % of the
 # sum shrinks by a half in each.
-QUADRIC_STEPS = 24
+QUADRIC_STEPS = 16
+# How often the solution of a quadric is clamped to its cell and solved again.
+CLAMPS = 4
 # Below this cosine between a normal and the mean normal of its cell, the cell has a crease.
 CREASE_COSINE = 0.95
 
@@ -73,7 +75,7 @@ def root_on_edge(
     at_b = second
     side = 0
     t = 0.5
-    for step in range(ROOT_STEPS):
+    for _step in range(ROOT_STEPS):
         t = clamp((a * at_b - b * at_a) / (at_b - at_a), a, b)
         value = field(start + way * t)
         if value == 0.0 or b - a < 1e-13:
@@ -111,6 +113,13 @@ def first_order_distance(value: float, slope: vec3) -> float:
 
 
 @func
+def distance_and_normal(field: Field3, p: vec3) -> tuple[float, vec3]:
+    """Return the distance from a point to the surface, to first order, and the normal there."""
+    value, slope = value_and_gradient(field, p)
+    return first_order_distance(value, slope), unit_or_zero(slope)
+
+
+@func
 def step_to_surface(value: float, slope: vec3) -> vec3:
     """Return the Newton step from a point to the surface."""
     return slope * (-value / max(dot(slope, slope), 1e-12))
@@ -127,7 +136,7 @@ def smooth_point(field: Field3, mean: vec3, low: vec3, high: vec3) -> vec3:
         high: The highest.
     """
     p = mean
-    for step in range(2):
+    for _step in range(2):
         value, slope = value_and_gradient(field, p)
         p = clamp(p + step_to_surface(value, slope), low, high)
     return p
@@ -143,15 +152,24 @@ def inverse_of_symmetric(x: vec3, y: vec3, z: vec3) -> array[vec3, 3]:
 
 @func
 def nearest_to_planes(
-    points: array[vec3, 12], normals: array[vec3, 12], weights: array[float, 12], middle: vec3
+    points: array[vec3, 12],
+    normals: array[vec3, 12],
+    weights: array[float, 12],
+    middle: vec3,
+    low: vec3,
+    high: vec3,
 ) -> vec3:
-    """Return the point nearest to planes in the sense of least squares, closest to ``middle``.
+    """Return the point of a box nearest to planes in the sense of least squares.
+
+    Where the planes leave it free, it stays as close to ``middle`` as it can.
 
     Args:
         points: A point of each plane.
         normals: Its normal.
         weights: Its weight, 0 or 1.
-        middle: The point to stay close to, where the planes leave it free.
+        middle: The point to stay close to.
+        low: The lowest corner of the box.
+        high: The highest.
     """
     x = vec3(0.0)
     y = vec3(0.0)
@@ -168,9 +186,12 @@ def nearest_to_planes(
         x + vec3(damping, 0.0, 0.0), y + vec3(0.0, damping, 0.0), z + vec3(0.0, 0.0, damping)
     )
     found = vec3(0.0)
-    for step in range(QUADRIC_STEPS):
-        rest = right - (x * found.x + y * found.y + z * found.z)
-        found += inverse[0] * rest.x + inverse[1] * rest.y + inverse[2] * rest.z
+    # Each step moves to the planes only, so a point that was clamped goes on along a crease.
+    for _turn in range(CLAMPS):
+        for _step in range(QUADRIC_STEPS):
+            rest = right - (x * found.x + y * found.y + z * found.z)
+            found += inverse[0] * rest.x + inverse[1] * rest.y + inverse[2] * rest.z
+        found = clamp(found, low - middle, high - middle)
     return middle + found
 
 
@@ -201,12 +222,12 @@ def crease_point(
     normals = slopes
     for i in range(12):
         normals[i] = unit_or_zero(slopes[i])
-    found = clamp(nearest_to_planes(points, normals, weights, middle), low, high)
+    found = nearest_to_planes(points, normals, weights, middle, low, high)
     near = points
     near_normals = normals
     near_weights = weights
     share = 0.15
-    for step in range(2):
+    for _step in range(2):
         seen = 0.0
         for i in range(12):
             near_weights[i] = 0.0
@@ -220,8 +241,7 @@ def crease_point(
                     near_weights[i] = 1.0
                     seen += 1.0
         if seen >= 2.0:
-            nearer = nearest_to_planes(near, near_normals, near_weights, found)
-            found = clamp(nearer, low, high)
+            found = nearest_to_planes(near, near_normals, near_weights, found, low, high)
         share = share * 0.2
     return found
 
@@ -302,7 +322,7 @@ def face_point(
     normal_b = unit_or_zero(slope_b - normal * dot(slope_b, normal))
     found = meeting_in_face(a, b, normal_a, normal_b, normal, middle, low, high)
     share = 0.15
-    for step in range(2):
+    for _step in range(2):
         value, slope = value_and_gradient(field, found + (a - found) * share)
         side = slope - normal * dot(slope, normal)
         near_a = found + (a - found) * share + step_to_surface(value, side)
@@ -500,7 +520,7 @@ def lost_surface(field: Field3, p: vec3, reach: float) -> tuple[bool, vec3]:
     """
     q = p
     value = 0.0
-    for step in range(6):
+    for _step in range(6):
         value, slope = value_and_gradient(field, q)
         q = clamp(q + step_to_surface(value, slope), p - reach, p + reach)
     value, slope = value_and_gradient(field, q)

@@ -179,9 +179,7 @@ class _Part:
     lost: Floats
 
 
-def _sampled(
-    kernels: FieldKernels, lattice: Lattice, slopes: Slopes, bricks: Integers
-) -> _Part:
+def _sampled(kernels: FieldKernels, lattice: Lattice, slopes: Slopes, bricks: Integers) -> _Part:
     values = _values(kernels, lattice, bricks)
     inside = values < 0.0
     neighbours = _neighbours(bricks, inside)
@@ -297,9 +295,7 @@ def _joined(parts: list[_Part], sampled: int) -> SurfaceBricks:
 
 
 def _empty() -> _Part:
-    none = Edges(
-        np.empty(0, np.int64), np.empty((0, 3), np.int64), np.empty(0), np.empty(0)
-    )
+    none = Edges(np.empty(0, np.int64), np.empty((0, 3), np.int64), np.empty(0), np.empty(0))
     places = np.empty((0, 3), np.int64)
     masks = np.empty((0, BRICK, BRICK, BRICK), np.uint8)
     return _Part(places, masks, (none, none, none), places, np.empty((0, 3)))

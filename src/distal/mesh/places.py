@@ -67,9 +67,7 @@ def roots_of(
     first = np.concatenate([e.first for e in found.edges])
     second = np.concatenate([e.second for e in found.edges])
     types = [("start", VEC3), ("way", VEC3), ("first", FLOAT), ("second", FLOAT)]
-    share, slopes = kernels.call(
-        arithmetic.root_on_edge, start, way, first, second, types=types
-    )
+    share, slopes = kernels.call(arithmetic.root_on_edge, start, way, first, second, types=types)
     margin = margin_of(lattice)
     kept = np.clip(share, margin, 1.0 - margin)
     return Roots(start + way * share[:, None], slopes, start + way * kept[:, None])

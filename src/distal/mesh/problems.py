@@ -11,7 +11,7 @@ from typing import Literal, TypeAlias
 Kind: TypeAlias = Literal["too many", "no number", "leaves its box"]
 
 
-class MeshProblem(Exception):
+class MeshProblem(Exception):  # noqa: N818 (no message: only a kind)
     """A shape cannot be meshed.
 
     Attributes:

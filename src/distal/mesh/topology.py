@@ -47,10 +47,7 @@ _SIDES: Final = np.array(
 )
 # The edge that an edge of the upper face is in the next cell.
 _IN_NEXT: Final = np.array(
-    [
-        [EDGES.index((a, c & ~(1 << n))) if a != n else -1 for a, c in EDGES]
-        for n in range(3)
-    ]
+    [[EDGES.index((a, c & ~(1 << n))) if a != n else -1 for a, c in EDGES] for n in range(3)]
 )
 
 

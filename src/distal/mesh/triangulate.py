@@ -1,7 +1,7 @@
 """Make the triangles of a mesh: two or more around each edge that crosses the surface.
 
-Input: topology, points of cells, roots. Output: all points, and triangles that are counter-clockwise
-seen from outside.
+Input: topology, points of cells, roots. Output: all points, and triangles that are
+counter-clockwise seen from outside.
 
 The four points around an edge make two triangles, if a diagonal meets the triangle of the edge and
 a third point. Otherwise, and where the line between two neighbours leaves their face or misses the
@@ -35,13 +35,15 @@ class Triangles:
 
     Attributes:
         points: Of shape (n, 3): points in cells, then points on faces, then roots.
-        triangles: Of shape (m, 3).
+        triangles: Of shape (m, 3), sorted by the edge of the lattice that they are around.
+        edge: This edge, of shape (m,).
         fans: How many edges have a fan.
         face_points: How many points are on faces.
     """
 
     points: Floats
     triangles: Integers
+    edge: Integers
     fans: int
     face_points: int
 
@@ -79,8 +81,8 @@ def triangulated(
     of_edge = np.full(len(sides), -1, np.int64)
     of_edge[fans] = len(places) + len(extra) + np.arange(len(fans))
     points = np.concatenate([places, extra, roots.kept[fans]])
-    triangles = _assembled(topology.edges.around, sides, of_edge, diagonal, inside_first)
-    return Triangles(points, triangles, len(fans), len(extra))
+    triangles, edge = _assembled(topology.edges.around, sides, of_edge, diagonal, inside_first)
+    return Triangles(points, triangles, edge, len(fans), len(extra))
 
 
 def _open_segments(
@@ -163,8 +165,8 @@ def _assembled(
     of_edge: Integers,
     diagonal: Integers,
     inside_first: Bools,
-) -> Integers:
-    """Return the triangles, turned so that they are counter-clockwise seen from outside.
+) -> tuple[Integers, Integers]:
+    """Return the triangles, counter-clockwise seen from outside, and the edge of each.
 
     Args:
         around: The four points around each edge.
@@ -192,5 +194,4 @@ def _assembled(
     triangles[turned] = triangles[turned][:, ::-1]
     # Triangles of one edge are beside each other, which keeps neighbours close in memory.
     order = np.argsort(edge, kind="stable")
-    found: Integers = triangles[order]
-    return found
+    return triangles[order], edge[order]
