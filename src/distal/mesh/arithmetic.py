@@ -525,3 +525,119 @@ def lost_surface(field: Field3, p: vec3, reach: float) -> tuple[bool, vec3]:
         q = clamp(q + step_to_surface(value, slope), p - reach, p + reach)
     value, slope = value_and_gradient(field, q)
     return first_order_distance(value, slope) < 1e-6 * reach, q
+
+
+@func
+def shown_color(color: vec3) -> vec3:
+    """Return a color that files can hold: each part from 0 to 1."""
+    return clamp(color, 0.0, 1.0)
+
+
+@func
+def middle(a: vec3, b: vec3, c: vec3) -> vec3:
+    """Return the middle of a triangle."""
+    return (a + b + c) / 3.0
+
+
+@func
+def moments(a: vec3, b: vec3, c: vec3) -> tuple[float, float, vec3, vec3, vec3]:
+    """Return the integrals over the tetrahedron of the origin and a triangle.
+
+    They are its volume, negative if the triangle is seen from behind; the triangle's area; and the
+    integrals of p, of (xx, yy, zz) and of (xy, yz, zx).
+    """
+    volume = dot(a, cross(b, c)) / 6.0
+    area = 0.5 * length(cross(b - a, c - a))
+    total = a + b + c
+    squares = (total * total + a * a + b * b + c * c) * (volume / 20.0)
+    products = (total * total.yzx + a * a.yzx + b * b.yzx + c * c.yzx) * (volume / 20.0)
+    return volume, area, total * (volume / 4.0), squares, products
+
+
+@func
+def are_apart(
+    a0: vec3,
+    a1: vec3,
+    a2: vec3,
+    b0: vec3,
+    b1: vec3,
+    b2: vec3,
+    share_first: bool,
+) -> bool:
+    """Return whether two triangles are certainly apart, but for a first corner that they share.
+
+    They are if all corners of one, the shared one left out, are on one side of a plane and those of
+    the other are on the other side. The planes tried are those of the separating axis theorem.
+
+    Args:
+        a0: The first corner of the first triangle.
+        a1: Its second corner.
+        a2: Its third corner.
+        b0: The first corner of the other triangle.
+        b1: Its second corner.
+        b2: Its third corner.
+        share_first: Whether the first corners are the same point.
+    """
+    a = [vec3(0.0), a1 - a0, a2 - a0]
+    b = [b0 - a0, b1 - a0, b2 - a0]
+    sides_a = [a[1], a[2] - a[1], -a[2]]
+    sides_b = [b[1] - b[0], b[2] - b[1], b[0] - b[2]]
+    normal_a = cross(a[1], a[2])
+    normal_b = cross(sides_b[0], b[2] - b[0])
+    size = length(a[1]) + length(a[2]) + length(b[0]) + length(b[1]) + length(b[2])
+    if has_gap(a, b, normal_a, size, share_first) or has_gap(a, b, normal_b, size, share_first):
+        return True
+    for i in range(3):
+        if has_gap(a, b, cross(normal_a, sides_a[i]), size, share_first):
+            return True
+        if has_gap(a, b, cross(normal_b, sides_b[i]), size, share_first):
+            return True
+        for j in range(3):
+            if has_gap(a, b, cross(sides_a[i], sides_b[j]), size, share_first):
+                return True
+    return False
+
+
+@func
+def has_gap(
+    a: array[vec3, 3], b: array[vec3, 3], axis: vec3, size: float, share_first: bool
+) -> bool:
+    """Return whether a plane perpendicular to an axis lies between two triangles.
+
+    Args:
+        a: The corners of the first triangle.
+        b: The corners of the other.
+        axis: The axis.
+        size: The size of the triangles, which limits rounding errors.
+        share_first: Whether the first corners are the same point, 0.
+    """
+    room = 1e-13 * size * length(axis)
+    low_a = min(dot(a[1], axis), dot(a[2], axis))
+    high_a = max(dot(a[1], axis), dot(a[2], axis))
+    low_b = min(dot(b[1], axis), dot(b[2], axis))
+    high_b = max(dot(b[1], axis), dot(b[2], axis))
+    if share_first:
+        return (high_a < -room and low_b > room) or (low_a > room and high_b < -room)
+    low_a = min(low_a, 0.0)
+    high_a = max(high_a, 0.0)
+    low_b = min(low_b, dot(b[0], axis))
+    high_b = max(high_b, dot(b[0], axis))
+    return low_b - high_a > room or low_a - high_b > room
+
+
+@func
+def is_unfolded(a: vec3, b: vec3, c: vec3, d: vec3) -> bool:
+    """Return whether two triangles with a common side are certainly not folded onto each other.
+
+    Args:
+        a: One end of the side.
+        b: The other end.
+        c: The third corner of the first triangle.
+        d: The third corner of the other.
+    """
+    one = cross(b - a, c - a)
+    other = cross(b - a, d - a)
+    size = length(one) * length(other)
+    return dot(one, other) < -1e-10 * size or abs(dot(one, d - a)) > 1e-10 * (
+        length(one) * length(d - a)
+    )

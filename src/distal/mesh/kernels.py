@@ -18,7 +18,6 @@ from distal.ir.types import Type
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.runtime_access import executor
-from distal.mesh.solid import Floats
 from distal.scene.lowering.parts.table import rolled_for
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 
@@ -81,16 +80,16 @@ class FieldKernels:
         if made is None:
             made = self._made[function] = OfField(self.node, function, types)
         self.rows += len(columns[0])
-        args = [np.asarray(column, np.float64) for column in columns]
+        args = [as_rows(column) for column in columns]
         return executor().call(made, args, {}, params=self.params, time=self.time)
 
 
 def rows_of(function: Func, *columns: Any) -> Any:
     """Return the values of a function that needs no field, for many rows."""
-    args = [np.asarray(column, np.float64) for column in columns]
-    return executor().call(function, args, {})
+    return executor().call(function, [as_rows(column) for column in columns], {})
 
 
-def empty_rows() -> Floats:
-    """Return no points."""
-    return np.empty((0, 3))
+def as_rows(column: Any) -> Any:
+    """Return a column as numbers of 64 bits; truth values stay."""
+    array = np.asarray(column)
+    return array if array.dtype == np.bool_ else np.asarray(array, np.float64)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import time as clock
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
@@ -19,6 +19,8 @@ from distal.fields.guarantees import ended
 from distal.lang.render_options import Cancel, Progress, checked_time
 from distal.lang.runtime_access import executor
 from distal.mesh.bricks import Slopes
+from distal.mesh.checks import checked
+from distal.mesh.coloring import colors_of
 from distal.mesh.extract import Extent, Extracted, Nothing
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.parts import leaves_at, named
@@ -51,6 +53,8 @@ class MeshRequest:
         time: Seconds.
         progress: Called with the finished share, from 0 to 1.
         cancel: An event, or a function without arguments, that ends the work early.
+        check: Whether open edges, pinched points and intersections are counted.
+        colors: Whether the mesh has the colors of the shape's materials.
     """
 
     tolerance: float | None = None
@@ -59,6 +63,8 @@ class MeshRequest:
     time: float = 0.0
     progress: Progress | None = None
     cancel: Cancel | None = None
+    check: bool = False
+    colors: bool = True
 
     def __post_init__(self) -> None:
         """Check the numbers.
@@ -94,33 +100,50 @@ def mesh_of(shape: Shape, request: MeshRequest) -> Mesh:
             f"'{node.name}' is flat, and a mesh is of a solid", ".extrude(height)", node.place
         )
     begin = clock.process_time()
-    extent = _extent(node, request)
-    tolerance = request.tolerance or DEFAULT_TOLERANCE * extent.size
-    kernels = FieldKernels(node, request.params, request.time)
-    wanted = Wanted(tolerance, request.feature)
-    try:
-        found = meshed(kernels, extent, wanted, _watch(request))
-    except MeshProblem as problem:
-        _refuse_problem(node, extent, problem, request)
-    if isinstance(found, TooFine):
-        _refuse_too_fine(node, found, wanted)
-    if isinstance(found, Nothing):
-        _refuse_nothing(node, found, request)
+    found, wanted, kernels = found_mesh(node, request)
     report = _report(node, found, wanted, request)
+    points, triangles = found.made.points, found.made.triangles
+    at_points, of_triangles = None, None
+    if request.colors:
+        at_points, of_triangles = colors_of(
+            node, points, triangles, params=request.params, time=request.time
+        )
+    if request.check:
+        report["check"] = checked(points, triangles, watch_of(request))
     report["rows"] = kernels.rows
     report["cpu_s"] = clock.process_time() - begin
     if request.progress is not None:
         request.progress(1.0)
-    return Mesh(
-        points=found.made.points,
-        triangles=found.made.triangles,
-        normals=found.normals,
-        report=report,
-        name=node.name,
-    )
+    return Mesh(points, triangles, found.normals, at_points, of_triangles, report, node.name)
 
 
-def _watch(request: MeshRequest) -> Any:
+def found_mesh(node: Node, request: MeshRequest) -> tuple[Extracted, Wanted, FieldKernels]:
+    """Return the mesh of a tree, what was wanted, and the kernels that it was made with.
+
+    Args:
+        node: The tree.
+        request: What is asked.
+
+    Raises:
+        Cancelled: ``request.cancel`` stopped the work.
+        SceneValueError: The shape cannot be meshed; the message names it and says what to change.
+    """
+    extent = extent_of(node, request)
+    kernels = FieldKernels(node, request.params, request.time)
+    wanted = Wanted(request.tolerance or DEFAULT_TOLERANCE * extent.size, request.feature)
+    try:
+        found = meshed(kernels, extent, wanted, watch_of(request))
+    except MeshProblem as problem:
+        _refuse_problem(node, extent, problem)
+    if isinstance(found, TooFine):
+        _refuse_too_fine(node, found, wanted)
+    if isinstance(found, Nothing):
+        _refuse_nothing(node, found, request)
+    return found, wanted, kernels
+
+
+def watch_of(request: MeshRequest) -> Callable[[float], None]:
+    """Return what is called with the finished share: it reports it, and ends cancelled work."""
     stopped = cancel_test(request.cancel)
     shown = 0.0
 
@@ -135,7 +158,7 @@ def _watch(request: MeshRequest) -> Any:
     return watch
 
 
-def _extent(node: Node, request: MeshRequest) -> Extent:
+def extent_of(node: Node, request: MeshRequest) -> Extent:
     """Return where the shape is.
 
     Raises:
@@ -160,9 +183,7 @@ def _extent(node: Node, request: MeshRequest) -> Extent:
     return Extent(low, high, Slopes(positive, divisor if 0.0 < divisor < _STEEP else positive))
 
 
-def _refuse_problem(
-    node: Node, extent: Extent, problem: MeshProblem, request: MeshRequest
-) -> NoReturn:
+def _refuse_problem(node: Node, extent: Extent, problem: MeshProblem) -> NoReturn:
     where = "" if problem.place is None else f" at {shown_place(problem.place)}"
     match problem.kind:
         case "no number":

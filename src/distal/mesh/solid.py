@@ -1,17 +1,19 @@
 """A mesh: triangles that enclose a solid, with normals, colors and a report on how it was made.
 
-Input: arrays. Output: an immutable value. Does not depend on how the triangles were found, nor on
-file formats.
+Input: arrays. Output: an immutable value. Does not depend on how the triangles were found.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from os import PathLike
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+
+from distal.mesh.files import formats
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -72,6 +74,19 @@ class Mesh:
             (float(low[0]), float(low[1]), float(low[2])),
             (float(high[0]), float(high[1]), float(high[2])),
         )
+
+    def save(self, path: str | PathLike[str], *, unit: str = "mm", bed: bool = False) -> None:
+        """Save the mesh in the format that the suffix names.
+
+        Args:
+            path: The file: ``.3mf``, ``.stl``, ``.glb``, ``.ply`` or ``.obj``.
+            unit: The length of one scene unit: "um", "mm", "cm", "m", "inch" or "ft".
+            bed: Move the part so that it stands on 0 and is centered there.
+
+        Raises:
+            SaveError: The suffix or the unit is unknown, or the file cannot be written.
+        """
+        formats.write(path, self, unit=unit, bed=bed)
 
     def __repr__(self) -> str:
         return f"<Mesh '{self.name}': {len(self.points)} points, {len(self.triangles)} triangles>"

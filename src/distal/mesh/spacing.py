@@ -91,7 +91,7 @@ def meshed(
             return found
         bricks = max(found.sampled, 1) * (found.step / following) ** 2
         if bricks > MOST_BRICKS:
-            return _too_fine(found, following, bricks, by_feature=following == finest)
+            return _too_fine(found, wanted, following, bricks, by_feature=following == finest)
         step = following
     return found
 
@@ -110,9 +110,9 @@ def _next_step(found: Extracted | Nothing, wanted: Wanted, finest: float) -> flo
     if isinstance(found, Nothing):
         searched = wanted.feature is None and (len(found.lost) > 0 or found.sampled > 0)
         return found.step / 2.0 if searched and fewer else None
-    if wanted.feature is None and len(found.lost):
-        # What is thinner than a cell can be missed by far: no spacing gives the tolerance.
-        return found.step / 2.0 if fewer else None
+    if len(found.lost):
+        # What is thinner than a cell is missed by far: the spacing says nothing of the tolerance.
+        return found.step / 2.0 if wanted.feature is None and fewer else None
     error = max(found.accuracy.largest, found.accuracy.from_surface)
     if error <= wanted.tolerance:
         return None
@@ -121,12 +121,18 @@ def _next_step(found: Extracted | Nothing, wanted: Wanted, finest: float) -> flo
 
 
 def _too_fine(
-    found: Extracted | Nothing, step: float, bricks: float, *, by_feature: bool
+    found: Extracted | Nothing,
+    wanted: Wanted,
+    step: float,
+    bricks: float,
+    *,
+    by_feature: bool,
 ) -> TooFine:
     """Return what is possible instead.
 
     Args:
         found: The last mesh.
+        wanted: The tolerance and the feature size.
         step: The spacing that is wanted.
         bricks: About how many bricks it has.
         by_feature: Whether the feature size makes it so fine.
@@ -135,5 +141,6 @@ def _too_fine(
     if isinstance(found, Nothing):
         return TooFine(possible, None, 160.0 * bricks, by_feature)
     error = max(found.accuracy.largest, found.accuracy.from_surface)
-    triangles = len(found.made.triangles) * (found.step / step) ** 2
+    finer = (found.step / step) ** 2 if by_feature else error / wanted.tolerance
+    triangles = len(found.made.triangles) * finer
     return TooFine(possible, error * (possible / found.step) ** 2, triangles, by_feature)

@@ -26,6 +26,7 @@ from distal.scene.objects.copies import CopyColumns, copied
 from distal.scene.objects.field import PLAIN, BaseShape
 from distal.scene.objects.filling import filled
 from distal.scene.objects.heights import seen_heights
+from distal.scene.objects.meshable import Meshable
 from distal.scene.objects.placed import Placed
 from distal.scene.objects.turns import warn_of_degrees
 from distal.scene.tree.errors import refuse
@@ -42,7 +43,7 @@ _ROTATIONS: Final[Mapping[str, Operator]] = {
 }
 
 
-class Shape(Placed):
+class Shape(Meshable):
     """A solid: a signed distance function of a point in space.
 
     Shapes never change; methods return new shapes.
