@@ -120,6 +120,13 @@ def distance_and_normal(field: Field3, p: vec3) -> tuple[float, vec3]:
 
 
 @func
+def distance_to_field(field: Field3, p: vec3) -> float:
+    """Return the distance from a point to the surface, to first order."""
+    value, slope = value_and_gradient(field, p)
+    return first_order_distance(value, slope)
+
+
+@func
 def step_to_surface(value: float, slope: vec3) -> vec3:
     """Return the Newton step from a point to the surface."""
     return slope * (-value / max(dot(slope, slope), 1e-12))
@@ -272,19 +279,20 @@ def kept_in_region(
 
 
 @func
-def passes_face(p: vec3, q: vec3, margin: float) -> bool:
+def passes_face(p: vec3, q: vec3, low: vec3, high: vec3) -> bool:
     """Return whether a line from the cell below a face to the one above passes through the face.
 
     Args:
         p: The point below, in units of the cell, relative to the face's lowest corner; the first
             coordinate is that along the face's normal.
         q: The point above.
-        margin: How far from the face's sides it must pass.
+        low: The lowest place at which it may pass; the first coordinate is not used.
+        high: The highest.
     """
     t = -p.x / max(q.x - p.x, 1e-30)
     y = p.y + (q.y - p.y) * t
     z = p.z + (q.z - p.z) * t
-    return y > margin and y < 1.0 - margin and z > margin and z < 1.0 - margin
+    return y > low.y and y < high.y and z > low.z and z < high.z
 
 
 @func

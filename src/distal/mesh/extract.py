@@ -16,7 +16,8 @@ from distal.mesh.accuracy import Accuracy, lost_places, measured
 from distal.mesh.bricks import Slopes, surface_bricks
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import Lattice
-from distal.mesh.places import cell_points, roots_of
+from distal.mesh.places import cell_points, move_beyond, roots_of
+from distal.mesh.reach import reached
 from distal.mesh.solid import Floats
 from distal.mesh.topology import topology_of
 from distal.mesh.triangulate import Triangles, triangulated
@@ -132,9 +133,12 @@ def extracted(
     roots = roots_of(kernels, lattice, topology, found)
     watch(_ROOTS)
     places, creased = cell_points(kernels, lattice, topology, roots)
+    at_creases = np.flatnonzero(creased)
+    reach = reached(kernels, lattice, topology, roots, places, at_creases)
+    move_beyond(kernels, lattice, topology, roots, places, reach)
     watch(_POINTS)
     inside_first = np.concatenate([edges.first for edges in found.edges]) < 0.0
-    made = triangulated(kernels, lattice, topology, roots, places, inside_first, tolerance)
+    made = triangulated(kernels, lattice, topology, roots, places, reach, inside_first, tolerance)
     watch(_TRIANGLES)
     accuracy, normals = measured(kernels, made, roots, topology)
     lengths = np.sqrt(np.einsum("ij,ij->i", roots.slopes, roots.slopes))

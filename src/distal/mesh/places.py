@@ -86,10 +86,8 @@ def cell_points(
     """
     points = topology.points
     count = len(points.mask)
-    if not count:
-        return np.empty((0, 3)), np.empty(0, np.bool_)
     uses = np.diff(points.first, append=len(points.edges))
-    mean = np.add.reduceat(roots.kept[points.edges], points.first) / uses[:, None]
+    mean = means(topology, roots)
     normals = rows_of(arithmetic.unit_or_zero, roots.slopes)[points.edges]
     owner = np.repeat(np.arange(count), uses)
     average = rows_of(arithmetic.unit_or_zero, np.add.reduceat(normals, points.first))
@@ -107,8 +105,8 @@ def cell_points(
         high[smooth],
         types=[("mean", VEC3), ("low", VEC3), ("high", VEC3)],
     )
-    for rows in pieces(np.flatnonzero(creased)):
-        found[rows] = _creases(kernels, topology, roots, mean, low, high, rows)
+    rows = np.flatnonzero(creased)
+    found[rows] = crease_points(kernels, topology, roots, low[rows], high[rows], rows)
     shared = np.flatnonzero(points.shared)
     if len(shared):
         found[shared] = _in_regions(lattice, topology, mean, found, margin, shared)
@@ -120,45 +118,83 @@ def pieces(rows: Integers) -> list[Integers]:
     return [rows[i : i + _AT_ONCE] for i in range(0, len(rows), _AT_ONCE)]
 
 
-def _creases(
+def means(topology: Topology, roots: Roots) -> Floats:
+    """Return the mean root of each point's edges."""
+    points = topology.points
+    uses = np.diff(points.first, append=len(points.edges))
+    found: Floats = np.add.reduceat(roots.kept[points.edges], points.first) / uses[:, None]
+    return found
+
+
+def crease_points(
     kernels: FieldKernels,
     topology: Topology,
     roots: Roots,
-    mean: Floats,
     low: Floats,
     high: Floats,
     rows: Integers,
 ) -> Floats:
-    """Return the points of cells at creases.
+    """Return points at creases.
 
     Args:
         kernels: The shape.
         topology: Its points.
         roots: The roots on its edges.
-        mean: The mean root of each point's edges.
-        low: The lowest place of each point.
+        low: The lowest place of each of these points.
         high: The highest.
-        rows: The points to compute.
+        rows: The points.
     """
     points = topology.points
-    uses = np.diff(points.first, append=len(points.edges))[rows]
-    slot = np.arange(12)[None]
-    used = slot < uses[:, None]
-    edge = points.edges[np.where(used, points.first[rows][:, None] + slot, 0)]
-    vectors = Array(VEC3, 12)
-    types = [("points", vectors), ("slopes", vectors), ("weights", Array(FLOAT, 12))]
-    types += [("middle", VEC3), ("low", VEC3), ("high", VEC3)]
-    found: Floats = kernels.call(
-        arithmetic.crease_point,
-        roots.places[edge],
-        roots.slopes[edge],
-        used.astype(np.float64),
-        mean[rows],
-        low[rows],
-        high[rows],
-        types=types,
-    )
+    mean = means(topology, roots)
+    found = np.empty((len(rows), 3))
+    for some in pieces(np.arange(len(rows))):
+        chosen = rows[some]
+        uses = np.diff(points.first, append=len(points.edges))[chosen]
+        slot = np.arange(12)[None]
+        used = slot < uses[:, None]
+        edge = points.edges[np.where(used, points.first[chosen][:, None] + slot, 0)]
+        found[some] = kernels.call(
+            arithmetic.crease_point,
+            roots.places[edge],
+            roots.slopes[edge],
+            used.astype(np.float64),
+            mean[chosen],
+            low[some],
+            high[some],
+            types=_CREASE_COLUMNS,
+        )
     return found
+
+
+def move_beyond(
+    kernels: FieldKernels,
+    lattice: Lattice,
+    topology: Topology,
+    roots: Roots,
+    places: Floats,
+    reach: Integers,
+) -> None:
+    """Move points at creases into the empty cells that they may reach, if that is nearer.
+
+    Args:
+        kernels: The shape.
+        lattice: The lattice.
+        topology: Its points.
+        roots: The roots on its edges.
+        places: The places of all points; changed.
+        reach: The directions in which cells may be left.
+    """
+    rows = np.flatnonzero(reach.any(axis=1))
+    if not len(rows):
+        return
+    cells, ways = topology.points.cell[rows], reach[rows]
+    margin = margin_of(lattice)
+    low = lattice.places(cells + margin + np.minimum(ways, 0))
+    high = lattice.places(cells + (1.0 - margin) + np.maximum(ways, 0))
+    moved = crease_points(kernels, topology, roots, low, high, rows)
+    after = kernels.call(arithmetic.distance_to_field, moved, types=[("p", VEC3)])
+    before = kernels.call(arithmetic.distance_to_field, places[rows], types=[("p", VEC3)])
+    places[rows[after < before]] = moved[after < before]
 
 
 def _in_regions(
@@ -193,8 +229,27 @@ def _in_regions(
     return result
 
 
+def common_reach(topology: Topology, reach: Integers, rows: Integers) -> Integers:
+    """Return the direction in which both cells of each segment's face may be left, beside the face.
+
+    Args:
+        topology: Its segments.
+        reach: The directions in which cells may be left.
+        rows: The segments.
+    """
+    segments = topology.segments
+    one, other = reach[segments.lower[rows]], reach[segments.upper[rows]]
+    beside = np.take_along_axis(one, segments.axis[rows][:, None], axis=1)[:, 0] == 0
+    return np.where(((one == other).all(axis=1) & beside)[:, None], one, 0)
+
+
 def face_points(
-    kernels: FieldKernels, lattice: Lattice, topology: Topology, roots: Roots, rows: Integers
+    kernels: FieldKernels,
+    lattice: Lattice,
+    topology: Topology,
+    roots: Roots,
+    reach: Integers,
+    rows: Integers,
 ) -> Floats:
     """Return points on faces, one for each given segment.
 
@@ -203,32 +258,86 @@ def face_points(
         lattice: The lattice.
         topology: Its segments.
         roots: The roots on its edges.
+        reach: The directions in which cells may be left.
         rows: The segments.
     """
     segments, points = topology.segments, topology.points
-    a, b = segments.edge_a[rows], segments.edge_b[rows]
-    found = (roots.kept[a] + roots.kept[b]) / 2.0
+    found = (roots.kept[segments.edge_a[rows]] + roots.kept[segments.edge_b[rows]]) / 2.0
     # Where the face or one of its cells belongs to several components, the point stays on the
     # line between the roots.
     several = points.shared[segments.lower[rows]] | points.shared[segments.upper[rows]]
     free = np.flatnonzero(~(several | segments.paired[rows]))
-    for some in pieces(free):
+    chosen = rows[free]
+    side = 1.0 - np.eye(3)[segments.axis[chosen]]
+    ways = common_reach(topology, reach, chosen)
+    margin = margin_of(lattice) * side
+    corner = segments.face[chosen]
+    low = lattice.places(corner + margin + np.minimum(ways, 0))
+    high = lattice.places(corner + side - margin + np.maximum(ways, 0))
+    found[free] = _in_faces(kernels, topology, roots, low, high, chosen)
+    return found
+
+
+def wide_face_points(
+    kernels: FieldKernels, lattice: Lattice, topology: Topology, roots: Roots, rows: Integers
+) -> Floats:
+    """Return points in the planes of faces, up to one cell beside them; as ``face_points``.
+
+    Args:
+        kernels: The shape.
+        lattice: The lattice.
+        topology: Its segments.
+        roots: The roots on its edges.
+        rows: The segments.
+    """
+    segments = topology.segments
+    side = 1.0 - np.eye(3)[segments.axis[rows]]
+    low = lattice.places(segments.face[rows] - side)
+    high = lattice.places(segments.face[rows] + 2.0 * side)
+    return _in_faces(kernels, topology, roots, low, high, rows)
+
+
+def _in_faces(
+    kernels: FieldKernels,
+    topology: Topology,
+    roots: Roots,
+    low: Floats,
+    high: Floats,
+    rows: Integers,
+) -> Floats:
+    """Return points in the planes of faces.
+
+    Args:
+        kernels: The shape.
+        topology: Its segments.
+        roots: The roots on its edges.
+        low: The lowest place of each of these points.
+        high: The highest.
+        rows: The segments.
+    """
+    segments = topology.segments
+    found = np.empty((len(rows), 3))
+    for some in pieces(np.arange(len(rows))):
         chosen = rows[some]
-        normal = np.eye(3)[segments.axis[chosen]]
-        margin = margin_of(lattice) * (1.0 - normal)
-        corner = segments.face[chosen]
+        a, b = segments.edge_a[chosen], segments.edge_b[chosen]
         found[some] = kernels.call(
             arithmetic.face_point,
-            roots.kept[a[some]],
-            roots.kept[b[some]],
-            roots.slopes[a[some]],
-            roots.slopes[b[some]],
-            normal,
-            lattice.places(corner + margin),
-            lattice.places(corner + (1.0 - normal) - margin),
+            roots.kept[a],
+            roots.kept[b],
+            roots.slopes[a],
+            roots.slopes[b],
+            np.eye(3)[segments.axis[chosen]],
+            low[some],
+            high[some],
             types=[(name, VEC3) for name in _FACE_COLUMNS],
         )
     return found
 
 
 _FACE_COLUMNS: Final = ("a", "b", "slope_a", "slope_b", "normal", "low", "high")
+_CREASE_COLUMNS: Final = [
+    ("points", Array(VEC3, 12)),
+    ("slopes", Array(VEC3, 12)),
+    ("weights", Array(FLOAT, 12)),
+    *((name, VEC3) for name in ("middle", "low", "high")),
+]

@@ -19,7 +19,7 @@ from distal.ir.types import VEC3
 from distal.mesh import arithmetic
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.lattice import Lattice
-from distal.mesh.places import Roots, face_points, margin_of
+from distal.mesh.places import Roots, common_reach, face_points, margin_of
 from distal.mesh.solid import Floats, Integers
 from distal.mesh.topology import Bools, Topology
 
@@ -54,6 +54,7 @@ def triangulated(
     topology: Topology,
     roots: Roots,
     places: Floats,
+    reach: Integers,
     inside_first: Bools,
     tolerance: float,
 ) -> Triangles:
@@ -65,12 +66,13 @@ def triangulated(
         topology: What belongs together.
         roots: The roots on edges.
         places: The points in cells.
+        reach: The directions in which their cells may be left.
         inside_first: Whether the lower end of each edge is inside.
         tolerance: How far lines between points may be from the surface, in scene units.
     """
-    opened = _open_segments(kernels, lattice, topology, places, tolerance)
+    opened = _open_segments(kernels, lattice, topology, places, reach, tolerance)
     on_faces = np.flatnonzero(opened)
-    extra = face_points(kernels, lattice, topology, roots, on_faces)
+    extra = face_points(kernels, lattice, topology, roots, reach, on_faces)
     of_segment = np.full(len(opened), -1, np.int64)
     of_segment[on_faces] = len(places) + np.arange(len(on_faces))
     sides = of_segment[topology.edges.segments]
@@ -90,6 +92,7 @@ def _open_segments(
     lattice: Lattice,
     topology: Topology,
     places: Floats,
+    reach: Integers,
     tolerance: float,
 ) -> Bools:
     """Return which segments need a point on their face."""
@@ -101,9 +104,15 @@ def _open_segments(
     def relative(which: Integers) -> Floats:
         return np.take_along_axis(places[which] - corner, turned, axis=1) / lattice.step
 
-    margin = np.full(len(several), margin_of(lattice))
+    ways = common_reach(topology, reach, np.arange(len(several)))
+    ways = np.take_along_axis(ways, turned, axis=1)
+    margin = margin_of(lattice)
     passes = rows_of(
-        arithmetic.passes_face, relative(segments.lower), relative(segments.upper), margin
+        arithmetic.passes_face,
+        relative(segments.lower),
+        relative(segments.upper),
+        margin + np.minimum(ways, 0),
+        1.0 - margin + np.maximum(ways, 0),
     )
     opened = several | ~passes
     rest = np.flatnonzero(~opened)
