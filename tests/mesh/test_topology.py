@@ -53,7 +53,7 @@ def test_without_the_regions_triangles_intersect(monkeypatch: pytest.MonkeyPatch
 
 
 def test_without_points_on_faces_triangles_intersect(monkeypatch: pytest.MonkeyPatch) -> None:
-    def never(kernels, lattice, topology, places, tolerance):  # type: ignore[no-untyped-def]
+    def never(kernels, lattice, topology, places, reach, tolerance):  # type: ignore[no-untyped-def]
         return np.zeros(len(topology.segments.lower), np.bool_)
 
     monkeypatch.setattr(triangulate, "_open_segments", never)

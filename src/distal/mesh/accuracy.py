@@ -21,10 +21,12 @@ from distal.mesh.triangulate import Triangles
 
 SAMPLES: Final = 7  # points of each triangle, besides its corners
 _AT_ONCE: Final = 1 << 16
+_CUT: Final = 1e-3  # cells
 # The most lattice points that are followed to a surface that the mesh does not have.
 _MOST_FOLLOWED: Final = 1 << 14
 # The most roots that are compared with more triangles than those around their own edge.
-_MOST_SEARCHED: Final = 1 << 13
+_MOST_SEARCHED: Final = 1 << 12
+_RINGS: Final = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +39,8 @@ class Accuracy:
         place: Where the largest one is.
         from_surface: The largest distance from a root on an edge of the lattice to the mesh.
         at_points: The largest distance of a corner of a triangle.
+        cut: How many corners of triangles are off the surface by more than a thousandth of a cell:
+            there, a crease or a corner is cut.
     """
 
     largest: float
@@ -44,10 +48,11 @@ class Accuracy:
     place: tuple[float, float, float]
     from_surface: float
     at_points: float
+    cut: int
 
 
 def measured(
-    kernels: FieldKernels, made: Triangles, roots: Roots, topology: Topology
+    kernels: FieldKernels, made: Triangles, roots: Roots, topology: Topology, step: float
 ) -> tuple[Accuracy, Floats]:
     """Return the accuracy of a mesh, and the normals at its points.
 
@@ -56,6 +61,7 @@ def measured(
         made: The mesh.
         roots: The roots on edges of the lattice.
         topology: What belongs together.
+        step: The length of a cell.
     """
     at_points, normals = kernels.call(
         arithmetic.distance_and_normal, made.points, types=[("p", VEC3)]
@@ -82,7 +88,8 @@ def measured(
         largest, place = worst_point, made.points[int(np.argmax(at_points))]
     x, y, z = (float(number) for number in place)
     mean = total / len(corners)
-    return Accuracy(largest, mean, (x, y, z), from_surface, worst_point), normals
+    cut = int((at_points > _CUT * step).sum())
+    return Accuracy(largest, mean, (x, y, z), from_surface, worst_point, cut), normals
 
 
 def _from_surface(
@@ -91,7 +98,7 @@ def _from_surface(
     """Return the largest distance from a root to the mesh.
 
     A root is compared with the triangles around its edge. Where these are farther away than the
-    error that is known already, those of the neighbouring edges are looked at, too.
+    error that is known already, those of neighbouring edges are looked at, and of their neighbours.
 
     Args:
         made: The mesh.
@@ -100,24 +107,44 @@ def _from_surface(
         own: The distance of each root to the triangles around its edge.
         known: The error that is known.
     """
-    order = np.argsort(-own, kind="stable")
-    far = order[: min(int((own > known).sum()), _MOST_SEARCHED)]
-    if not len(far):
-        return float(own.max())
-    rest = float(own[order[len(far)]]) if len(far) < len(own) else 0.0
-    points = topology.points
-    uses = np.diff(points.first, append=len(points.edges))
-    around = topology.edges.around[far].reshape(-1)
-    root, edge = runs(np.repeat(far, 4), points.first[around], uses[around])
-    edge = points.edges[edge]
+    far = np.argsort(-own, kind="stable")
+    far = far[: int((own > known).sum())]
+    rest = float(own[far[_MOST_SEARCHED]]) if len(far) > _MOST_SEARCHED else known
+    nearest = own.copy()
+    far = far[:_MOST_SEARCHED]
     first = first_of_runs(made)
     count = np.diff(first, append=len(made.edge))
-    root, triangle = runs(root, first[edge], count[edge])
-    a, b, c = (made.points[made.triangles[triangle, i]] for i in range(3))
-    distance = rows_of(arithmetic.distance_to_triangle, roots.places[root], a, b, c)
-    nearest = np.full(len(own), np.inf)
-    np.minimum.at(nearest, root, distance)
-    return max(float(nearest[far].max()), rest)
+    root, edge = far, far
+    for _ in range(_RINGS):
+        if not len(root):
+            break
+        root, edge = _with_neighbours(topology, root, edge)
+        of, triangle = runs(root, first[edge], count[edge])
+        a, b, c = (made.points[made.triangles[triangle, i]] for i in range(3))
+        distance = rows_of(arithmetic.distance_to_triangle, roots.places[of], a, b, c)
+        np.minimum.at(nearest, of, distance)
+        still = nearest[root] > known
+        root, edge = root[still], edge[still]
+    return max(float(nearest[far].max(initial=0.0)), min(rest, float(own.max())))
+
+
+def _with_neighbours(
+    topology: Topology, root: Integers, edge: Integers
+) -> tuple[Integers, Integers]:
+    """Return each root with the edges that share a point with one of its edges, itself included.
+
+    Args:
+        topology: What belongs together.
+        root: The roots; one may be there several times.
+        edge: An edge of each.
+    """
+    points = topology.points
+    uses = np.diff(points.first, append=len(points.edges))
+    around = topology.edges.around[edge].reshape(-1)
+    owner, row = runs(np.repeat(root, 4), points.first[around], uses[around])
+    count = len(topology.edges.around)
+    pairs = np.unique(owner * count + points.edges[row])
+    return pairs // count, pairs % count
 
 
 def runs(owner: Integers, first: Integers, count: Integers) -> tuple[Integers, Integers]:

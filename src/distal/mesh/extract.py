@@ -129,7 +129,7 @@ def extracted(
     lost = lost_places(kernels, found.lost, step)
     if not len(found.bricks):
         return Nothing(step, found.sampled, lost)
-    topology = topology_of(found)
+    topology = topology_of(kernels, lattice, found)
     roots = roots_of(kernels, lattice, topology, found)
     watch(_ROOTS)
     places, creased = cell_points(kernels, lattice, topology, roots)
@@ -140,7 +140,7 @@ def extracted(
     inside_first = np.concatenate([edges.first for edges in found.edges]) < 0.0
     made = triangulated(kernels, lattice, topology, roots, places, reach, inside_first, tolerance)
     watch(_TRIANGLES)
-    accuracy, normals = measured(kernels, made, roots, topology)
+    accuracy, normals = measured(kernels, made, roots, topology, step)
     lengths = np.sqrt(np.einsum("ij,ij->i", roots.slopes, roots.slopes))
     steepest = int(np.argmax(lengths))
     return Extracted(

@@ -290,6 +290,7 @@ def _report(node: Node, found: Extracted, wanted: Wanted, request: MeshRequest) 
             "corners": accuracy.at_points,
         },
         "crease_points": found.creases,
+        "cut_points": accuracy.cut,
         "fans": found.made.fans,
         "lost": lost,
         "warnings": warnings,

@@ -85,7 +85,7 @@ def cell_points(
         roots: The roots on its edges.
     """
     points = topology.points
-    count = len(points.mask)
+    count = len(points.region)
     uses = np.diff(points.first, append=len(points.edges))
     mean = means(topology, roots)
     normals = rows_of(arithmetic.unit_or_zero, roots.slopes)[points.edges]
@@ -216,7 +216,7 @@ def _in_regions(
         rows: The points to compute.
     """
     points = topology.points
-    planes = cell_tables().planes[points.mask[rows], points.component[rows]]
+    planes = cell_tables().planes[points.region[rows]]
     result: Floats = rows_of(
         arithmetic.kept_in_region,
         mean[rows],

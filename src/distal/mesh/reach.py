@@ -1,9 +1,10 @@
 """Creases that leave the cells of the mesh: cells that may reach into an empty one beside them.
 
 Input: topology, points of cells and roots. Output: for each point the direction in which its cell
-may be left. A crease can pass through a cell without a change of sign at its corners, where a lattice
-sees nothing. Such a cell is given to one neighbour at most. Both together are convex, and the mesh
-has nothing else there: points and faces may reach into it without triangles that intersect.
+may be left. A crease can pass through a cell without a change of sign at its corners, where a
+lattice sees nothing. Such a cell is given to one neighbour at most. Both together are convex, and
+the mesh has nothing else there: points and faces may reach into it without triangles that
+intersect.
 """
 
 from __future__ import annotations
@@ -44,8 +45,8 @@ def reached(
         creased: The points at creases.
     """
     points = topology.points
-    found = np.zeros((len(points.mask), 3), np.int64)
-    free = np.zeros(len(points.mask), np.bool_)
+    found = np.zeros((len(points.region), 3), np.int64)
+    free = np.zeros(len(points.region), np.bool_)
     free[creased] = ~points.shared[creased]
     off = kernels.call(arithmetic.distance_to_field, places[creased], types=[("p", VEC3)])
     rows = creased[(off > _OFF * lattice.step) & free[creased]]

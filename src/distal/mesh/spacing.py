@@ -143,4 +143,6 @@ def _too_fine(
     error = max(found.accuracy.largest, found.accuracy.from_surface)
     finer = (found.step / step) ** 2 if by_feature else error / wanted.tolerance
     triangles = len(found.made.triangles) * finer
-    return TooFine(possible, error * (possible / found.step) ** 2, triangles, by_feature)
+    # Coarse bricks say little of how many finer ones there are: twice the tolerance always fits.
+    tolerance = 2.0 * error * (possible / (_AIM * found.step)) ** 2
+    return TooFine(possible, tolerance, triangles, by_feature)

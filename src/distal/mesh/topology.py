@@ -1,7 +1,8 @@
 """Which cells, points and edges of a mesh belong together.
 
-Input: the bricks of a surface. Output: integers: the four points around each edge, the edges around
-each point, and the segments of the surface on faces. Does not depend on where anything is.
+Input: the bricks of a surface, and the shape where a face is ambiguous. Output: integers: the four
+points around each edge, the edges around each point, and the segments of the surface on faces. Does
+not depend on where anything is.
 
 The cells around an edge are numbered 0 to 3 around it, counter-clockwise seen against the edge's
 axis: below in both of the next two axes (u, v), then above in u, then above in both, then above
@@ -16,8 +17,11 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from distal.ir.types import VEC3
+from distal.mesh.arithmetic import distance_value
 from distal.mesh.bricks import SurfaceBricks
-from distal.mesh.lattice import BRICK, keys_of, position
+from distal.mesh.kernels import FieldKernels
+from distal.mesh.lattice import BRICK, Lattice, keys_of, position
 from distal.mesh.solid import Integers
 from distal.mesh.tables import EDGES, cell_tables
 
@@ -74,16 +78,14 @@ class PointRows:
 
     Attributes:
         cell: The lattice point at the lowest corner of its cell, of shape (n, 3).
-        mask: The mask of its cell.
-        component: The number of the component in its cell.
+        region: The corners at the ends of its component's edges, as bits.
         shared: Whether the cell has several components.
         edges: The edges of all points, one point after the other.
         first: Where the edges of each point begin in ``edges``.
     """
 
     cell: Integers
-    mask: Integers
-    component: Integers
+    region: Integers
     shared: Bools
     edges: Integers
     first: Integers
@@ -129,6 +131,7 @@ class _Cells:
         masks = found.masks.reshape(-1)
         active = np.flatnonzero((masks != 0) & (masks != 255))
         self.mask = masks[active].astype(np.int64)
+        self.case = cell_tables().case[self.mask, 0]
         self.brick = active // BRICK**3
         self.local = np.stack(
             [active // BRICK**2 % BRICK, active // BRICK % BRICK, active % BRICK], axis=1
@@ -168,11 +171,18 @@ class _Cells:
         return self._beside[step]
 
 
-def topology_of(found: SurfaceBricks) -> Topology:
-    """Return the topology of the surface in its bricks."""
+def topology_of(kernels: FieldKernels, lattice: Lattice, found: SurfaceBricks) -> Topology:
+    """Return the topology of the surface in its bricks.
+
+    Args:
+        kernels: The shape, which decides how ambiguous faces are.
+        lattice: The lattice.
+        found: The bricks.
+    """
     tables = cell_tables()
     cells = _Cells(found)
-    count = tables.components[cells.mask]
+    cells.case = _cases(kernels, lattice, cells)
+    count = tables.components[cells.case]
     first = np.cumsum(count) - count
     axis = np.concatenate([np.full(len(e.brick), a) for a, e in enumerate(found.edges)])
     brick = np.concatenate([e.brick for e in found.edges])
@@ -187,11 +197,41 @@ def topology_of(found: SurfaceBricks) -> Topology:
         cell = cells.at(brick, place)
         edge = _IN_CELL[axis, number]
         of_cell[cell, edge] = rows
-        around[:, number] = first[cell] + tables.component[cells.mask[cell], edge]
+        around[:, number] = first[cell] + tables.component[cells.case[cell], edge]
     points = _points(cells, count, around)
     segments, sides = _segments(cells, first, of_cell, len(axis))
     start = found.bricks[brick] * BRICK + local
     return Topology(EdgeRows(axis, start, around, sides), points, segments, len(cells.mask))
+
+
+def _cases(kernels: FieldKernels, lattice: Lattice, cells: _Cells) -> Integers:
+    """Return the case of each cell.
+
+    An ambiguous face is joined if its middle is inside. A cell whose components would not be
+    separable has no joined face, which is always possible.
+
+    Args:
+        kernels: The shape.
+        lattice: The lattice.
+        cells: The cells.
+    """
+    tables = cell_tables()
+    cell, axis = np.nonzero(tables.ambiguous[cells.mask])
+    if not len(cell):
+        return cells.case
+    step = np.eye(3, dtype=np.int64)[axis]
+    upper = cells.at(cells.brick[cell], cells.local[cell] + step)
+    middles = lattice.places(cells.place[cell] + 0.5 * (step + 1.0))
+    joined = kernels.call(distance_value, middles, types=[("p", VEC3)]) < 0.0
+    while True:
+        faces = np.zeros(len(cells.mask), np.int64)
+        np.bitwise_or.at(faces, cell[joined], 2 << 2 * axis[joined])
+        np.bitwise_or.at(faces, upper[joined], 1 << 2 * axis[joined])
+        found: Integers = tables.case[cells.mask, faces]
+        wrong = ~tables.separable[found]
+        if not wrong.any():
+            return found
+        joined &= ~(wrong[cell] | wrong[upper])
 
 
 def _points(cells: _Cells, count: Integers, around: Integers) -> PointRows:
@@ -201,8 +241,7 @@ def _points(cells: _Cells, count: Integers, around: Integers) -> PointRows:
     uses = np.bincount(around.reshape(-1), minlength=len(cell))
     return PointRows(
         cell=cells.place[cell],
-        mask=cells.mask[cell],
-        component=component,
+        region=cell_tables().regions[cells.case[cell], component],
         shared=count[cell] > 1,
         edges=order // 4,
         first=np.cumsum(uses) - uses,
@@ -225,7 +264,7 @@ def _segments(
     parts = []
     total = 0
     for axis in range(3):
-        pairs = tables.segments[cells.mask, axis]
+        pairs = tables.segments[cells.case, axis]
         cell, row = np.nonzero(pairs[:, :, 0] >= 0)
         a, b = pairs[cell, row, 0], pairs[cell, row, 1]
         step = np.zeros(3, np.int64)
@@ -241,8 +280,8 @@ def _segments(
             (
                 np.full(len(cell), axis),
                 cells.place[cell] + step,
-                first[cell] + tables.component[cells.mask[cell], a],
-                first[upper] + tables.component[cells.mask[upper], in_next],
+                first[cell] + tables.component[cells.case[cell], a],
+                first[upper] + tables.component[cells.case[upper], in_next],
                 edge_a,
                 edge_b,
                 pairs[cell, 1, 0] >= 0,
