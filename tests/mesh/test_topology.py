@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import distal
-from distal.mesh import arithmetic, places, triangulate
+from distal.mesh import places, triangle_arithmetic, triangulate
 from distal.mesh.checks import checked, intersections, open_edges, pinched_points
 from distal.mesh.exact import intersect
 from distal.mesh.kernels import rows_of
@@ -118,7 +118,7 @@ def test_vector_code_agrees_with_integers() -> None:
     corners[:200, 1, 0] = corners[:200, 0, 0]
     shared = np.arange(400) < 200
     columns = [corners[:, i, j] for i in range(2) for j in range(3)]
-    apart = rows_of(arithmetic.are_apart, *columns, shared)
+    apart = rows_of(triangle_arithmetic.are_apart, *columns, shared)
     assert apart.sum() > 50
     for (a, b), one, is_apart in zip(corners, shared, apart, strict=True):
         if is_apart:

@@ -38,6 +38,8 @@ NO_OPERATOR = {
     "from_vm": "tape/test_vm_files",
     "fill": "tape/test_filled_shapes",
     "heights": "tape/test_shape_heights",
+    "mesh": "mesh/test_mesh",
+    "measure": "mesh/test_mesh",
     "parameters": "asks",
     "text": "shows",
     "show": "shows",

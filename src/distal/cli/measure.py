@@ -16,7 +16,7 @@ from distal.cli.base import SceneArgument, SetOption, TimeOption, answer, applic
 from distal.cli.mesh import ToleranceOption, check_lengths, load_solid
 
 if TYPE_CHECKING:
-    from distal.mesh.measuring import Measured, Measures
+    from distal.mesh.measuring import Quantity, Measures
 
 
 @application.command()
@@ -56,7 +56,7 @@ def report_lines(found: Measures) -> Iterator[str]:
     yield f"errors   {found.how}"
 
 
-def _shown(measured: Measured) -> str:
+def _shown(measured: Quantity) -> str:
     value = measured.value
     text = f"({_numbers(value)})" if isinstance(value, list) else f"{value:.8g}"
     return f"{text} ± {measured.error:.2g}"

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from distal.ir.types import FLOAT, VEC3
-from distal.mesh import arithmetic
+from distal.mesh import arithmetic, triangle_arithmetic
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.places import Roots
 from distal.mesh.solid import Floats, Integers
@@ -80,7 +80,7 @@ def measured(
         if found[worst, 0] > largest:
             largest, place = float(found[worst, 0]), corners[start + worst].mean(axis=0)
         root = roots.places[made.edge[rows]]
-        back[rows] = rows_of(arithmetic.distance_to_triangle, root, a, b, c)
+        back[rows] = rows_of(triangle_arithmetic.distance_to_triangle, root, a, b, c)
     own = np.minimum.reduceat(back, first_of_runs(made))
     from_surface = _from_surface(made, roots, topology, own, max(largest, float(at_points.max())))
     worst_point = float(at_points.max())
@@ -121,7 +121,7 @@ def _from_surface(
         root, edge = _with_neighbours(topology, root, edge)
         of, triangle = runs(root, first[edge], count[edge])
         a, b, c = (made.points[made.triangles[triangle, i]] for i in range(3))
-        distance = rows_of(arithmetic.distance_to_triangle, roots.places[of], a, b, c)
+        distance = rows_of(triangle_arithmetic.distance_to_triangle, roots.places[of], a, b, c)
         np.minimum.at(nearest, of, distance)
         still = nearest[root] > known
         root, edge = root[still], edge[still]

@@ -148,7 +148,7 @@ def surface_bricks(
     """
     waiting = descend(kernels, lattice, slopes, most, watch)
     known = np.sort(keys_of(waiting))
-    parts: list[_Part] = []
+    parts: list[_SampledBricks] = []
     while len(waiting):
         wanted = []
         for start in range(0, len(waiting), BRICKS_AT_ONCE):
@@ -169,7 +169,7 @@ def surface_bricks(
 
 
 @dataclass(frozen=True, slots=True)
-class _Part:
+class _SampledBricks:
     """What was found in some bricks; ``Edges.brick`` counts within this part."""
 
     bricks: Integers
@@ -179,7 +179,9 @@ class _Part:
     lost: Floats
 
 
-def _sampled(kernels: FieldKernels, lattice: Lattice, slopes: Slopes, bricks: Integers) -> _Part:
+def _sampled(
+    kernels: FieldKernels, lattice: Lattice, slopes: Slopes, bricks: Integers
+) -> _SampledBricks:
     values = _values(kernels, lattice, bricks)
     inside = values < 0.0
     neighbours = _neighbours(bricks, inside)
@@ -188,7 +190,7 @@ def _sampled(kernels: FieldKernels, lattice: Lattice, slopes: Slopes, bricks: In
     some = ((masks != 0) & (masks != 255)).any(axis=(1, 2, 3))
     values, inside = values[some], inside[some]
     edges = (_edges(values, inside, 0), _edges(values, inside, 1), _edges(values, inside, 2))
-    return _Part(bricks[some], masks[some], edges, neighbours, lost)
+    return _SampledBricks(bricks[some], masks[some], edges, neighbours, lost)
 
 
 def _values(kernels: FieldKernels, lattice: Lattice, bricks: Integers) -> Floats:
@@ -261,11 +263,11 @@ def _suspicious(
     crossed = (masks != 0) & (masks != 255)
     for x, y, z in CORNERS:
         near &= ~crossed[:, x : x + BRICK - 1, y : y + BRICK - 1, z : z + BRICK - 1]
-    brick, x, y, z = np.nonzero(near)
-    return lattice.places(bricks[brick] * BRICK + np.stack([x, y, z], axis=1) + 1)
+    brick, *local = np.nonzero(near)
+    return lattice.places(bricks[brick] * BRICK + np.stack(local, axis=1) + 1)
 
 
-def _joined(parts: list[_Part], sampled: int) -> SurfaceBricks:
+def _joined(parts: list[_SampledBricks], sampled: int) -> SurfaceBricks:
     """Return all parts as one, with the bricks in the order of their keys."""
     if not parts:
         parts = [_empty()]
@@ -294,8 +296,8 @@ def _joined(parts: list[_Part], sampled: int) -> SurfaceBricks:
     return SurfaceBricks(bricks[order], masks, (edges[0], edges[1], edges[2]), sampled, lost)
 
 
-def _empty() -> _Part:
+def _empty() -> _SampledBricks:
     none = Edges(np.empty(0, np.int64), np.empty((0, 3), np.int64), np.empty(0), np.empty(0))
     places = np.empty((0, 3), np.int64)
     masks = np.empty((0, BRICK, BRICK, BRICK), np.uint8)
-    return _Part(places, masks, (none, none, none), places, np.empty((0, 3)))
+    return _SampledBricks(places, masks, (none, none, none), places, np.empty((0, 3)))

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from distal.mesh import arithmetic
+from distal.mesh import triangle_arithmetic
 from distal.mesh.exact import intersect
 from distal.mesh.kernels import rows_of
 from distal.mesh.solid import Floats, Integers
@@ -98,12 +98,12 @@ def _apart(points: Floats, one: Integers, other: Integers, shared: Integers) -> 
     simple = np.flatnonzero(shared < 2)
     if len(simple):
         corners = [points[each[simple, i]] for each in (one, other) for i in range(3)]
-        apart[simple] = rows_of(arithmetic.are_apart, *corners, shared[simple] == 1)
+        apart[simple] = rows_of(triangle_arithmetic.are_apart, *corners, shared[simple] == 1)
     flat = np.flatnonzero(shared == 2)
     if len(flat):
         # Two triangles with a common side meet only if one is folded onto the other.
         corners = [points[one[flat, i]] for i in range(3)]
-        apart[flat] = rows_of(arithmetic.is_unfolded, *corners, points[other[flat, 2]])
+        apart[flat] = rows_of(triangle_arithmetic.is_unfolded, *corners, points[other[flat, 2]])
     return apart
 
 

@@ -16,7 +16,7 @@ from distal.ir.types import VEC3
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.runtime_access import executor
-from distal.mesh import arithmetic
+from distal.mesh import triangle_arithmetic
 from distal.mesh.kernels import rows_of
 from distal.mesh.solid import Floats, Integers
 from distal.scene.lowering.attributes import AttributePoint, SurfaceAttribute, attribute, paints
@@ -48,7 +48,7 @@ class ColorAt(Composed):
         kind = SurfaceAttribute(composer, as_material(_UNPAINTED))
         point = AttributePoint(Read("p", VEC3), ZERO_CELL, composer.values.all(node))
         surface = body.let("surface", attribute(body, kind, node, point))
-        shown = composer.call(arithmetic.shown_color, {"color": field(surface, "color")})
+        shown = composer.call(triangle_arithmetic.shown_color, {"color": field(surface, "color")})
         body.statements.append(Return(shown))
         return assembly.define("color_at", (Param("p", VEC3),), VEC3, body.statements, node.place)
 
@@ -75,7 +75,7 @@ def colors_of(
     at_points = executor().call(color, (points,), {}, params=params, time=time)
     if not _several(node):
         return at_points, None
-    middles = rows_of(arithmetic.middle, *(points[triangles[:, i]] for i in range(3)))
+    middles = rows_of(triangle_arithmetic.middle, *(points[triangles[:, i]] for i in range(3)))
     return at_points, executor().call(color, (middles,), {}, params=params, time=time)
 
 

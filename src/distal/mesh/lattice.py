@@ -7,11 +7,12 @@ found. Does not depend on a shape.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
+import numpy.typing as npt
 
-from distal.mesh.solid import Floats, Integers
+from distal.mesh.solid import Bools, Floats, Integers
 
 BRICK: Final = 8  # cells along each side of a brick
 # A brick's key has 20 bits for each coordinate, which may be -1 for a neighbour.
@@ -49,15 +50,13 @@ class Lattice:
         cells = (high + BEYOND * step - origin) / step
         return Lattice(origin, step, np.ceil(cells / BRICK).astype(np.int64))
 
-    def places(self, points: Integers | Floats) -> Floats:
+    def places(self, points: npt.NDArray[Any]) -> Floats:
         """Return the places of lattice points; shares of a cell are allowed."""
         return self.origin + np.asarray(points, np.float64) * self.step
 
-    def contains(self, bricks: Integers) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    def contains(self, bricks: Integers) -> Bools:
         """Return which bricks belong to the lattice."""
-        found: np.ndarray[tuple[int], np.dtype[np.bool_]] = (
-            (bricks >= 0) & (bricks < self.extent)
-        ).all(axis=1)
+        found: Bools = np.all((bricks >= 0) & (bricks < self.extent), axis=1)
         return found
 
 

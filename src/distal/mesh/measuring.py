@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from distal.mesh import arithmetic
+from distal.mesh import triangle_arithmetic
 from distal.mesh.extract import Extent, Extracted, Nothing, extracted
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.meshing import MeshRequest, extent_of, found_mesh, watch_of
@@ -24,7 +24,7 @@ from distal.mesh.spacing import MOST_BRICKS
 from distal.scene.tree.errors import refuse, refuse_kind
 
 if TYPE_CHECKING:
-    from distal.scene.objects.shape import Shape
+    from distal.scene.objects.meshable import Meshable
 
 # The coarser mesh has cells this much longer.
 _COARSER: Final = 1.6
@@ -32,7 +32,7 @@ _HOW: Final = "meshes with cells of {:.4g} and {:.4g}: the difference is the err
 
 
 @dataclass(frozen=True, slots=True)
-class Measured:
+class Quantity:
     """A measured number or vector.
 
     Attributes:
@@ -65,13 +65,13 @@ class Measures:
         how: How the numbers and their errors were found.
     """
 
-    volume: Measured
-    area: Measured
-    mass: Measured
-    center: Measured
-    inertia: Measured
-    low: Measured
-    high: Measured
+    volume: Quantity
+    area: Quantity
+    mass: Quantity
+    center: Quantity
+    inertia: Quantity
+    low: Quantity
+    high: Quantity
     bounds: tuple[tuple[float, ...], tuple[float, ...]]
     density: float
     how: str
@@ -96,7 +96,7 @@ class _Integrals:
     high: Floats
 
 
-def measures_of(shape: Shape, density: Any, request: MeshRequest) -> Measures:
+def measures_of(shape: Meshable, density: Any, request: MeshRequest) -> Measures:
     """Return the measures of a solid; see ``Shape.measure``.
 
     Args:
@@ -152,7 +152,7 @@ def _integrals(found: Extracted, extent: Extent) -> _Integrals:
     origin = (extent.low + extent.high) / 2.0
     points = found.made.points - origin
     corners = [points[found.made.triangles[:, i]] for i in range(3)]
-    volumes, areas, first, squares, products = rows_of(arithmetic.moments, *corners)
+    volumes, areas, first, squares, products = rows_of(triangle_arithmetic.moments, *corners)
     volume = float(volumes.sum())
     moment, square, product = first.sum(axis=0), squares.sum(axis=0), products.sum(axis=0)
     center = moment / volume
@@ -186,12 +186,12 @@ def _measures(
     between = found.accuracy.mean * fine.area
     distance = max(found.accuracy.largest, found.accuracy.from_surface)
 
-    def number(name: str, factor: float = 1.0, least: float = 0.0) -> Measured:
+    def number(name: str, factor: float = 1.0, least: float = 0.0) -> Quantity:
         value, other = np.asarray(getattr(fine, name)), np.asarray(getattr(coarse, name))
         # Two meshes may agree by chance; sums of 64 bits are no better than this.
         least = max(least, 1e-12 * float(np.abs(value).max()))
         error = max(float(np.abs(value - other).max()), least)
-        return Measured((value * factor).tolist(), error * factor)
+        return Quantity((value * factor).tolist(), error * factor)
 
     return Measures(
         volume=number("volume", least=between),
@@ -199,8 +199,8 @@ def _measures(
         mass=number("volume", density, between),
         center=number("center"),
         inertia=number("inertia", density),
-        low=Measured(fine.low.tolist(), distance),
-        high=Measured(fine.high.tolist(), distance),
+        low=Quantity(fine.low.tolist(), distance),
+        high=Quantity(fine.high.tolist(), distance),
         bounds=(tuple(extent.low.tolist()), tuple(extent.high.tolist())),
         density=density,
         how=_HOW.format(found.step, rough.step),

@@ -32,7 +32,7 @@ from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
 
 if TYPE_CHECKING:
-    from distal.scene.objects.shape import Shape
+    from distal.scene.objects.meshable import Meshable
 
 # Without a tolerance it is this share of the largest side of the box.
 DEFAULT_TOLERANCE: Final = 1e-3
@@ -82,7 +82,7 @@ class MeshRequest:
         object.__setattr__(self, "time", checked_time(self.time))
 
 
-def mesh_of(shape: Shape, request: MeshRequest) -> Mesh:
+def mesh_of(shape: Meshable, request: MeshRequest) -> Mesh:
     """Return the mesh of a solid; see ``Shape.mesh``.
 
     Args:

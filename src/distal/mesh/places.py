@@ -11,14 +11,14 @@ from typing import Final
 
 import numpy as np
 
-from distal.ir.types import FLOAT, VEC3, Array
+from distal.ir.types import FLOAT, VEC3, Array, Type
 from distal.mesh import arithmetic
 from distal.mesh.bricks import SurfaceBricks
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.lattice import Lattice
-from distal.mesh.solid import Floats, Integers
+from distal.mesh.solid import Bools, Floats, Integers
 from distal.mesh.tables import cell_tables
-from distal.mesh.topology import Bools, Topology
+from distal.mesh.topology import Topology
 
 _SMALLEST_MARGIN: Final = 1e-4
 # Points are kept this many units in the last place of 32 bits away from sides of cells.
@@ -66,8 +66,8 @@ def roots_of(
     way[np.arange(len(way)), edges.axis] = lattice.step
     first = np.concatenate([e.first for e in found.edges])
     second = np.concatenate([e.second for e in found.edges])
-    types = [("start", VEC3), ("way", VEC3), ("first", FLOAT), ("second", FLOAT)]
-    share, slopes = kernels.call(arithmetic.root_on_edge, start, way, first, second, types=types)
+    columns = (start, way, first, second)
+    share, slopes = kernels.call(arithmetic.root_on_edge, *columns, types=_ROOT_COLUMNS)
     margin = margin_of(lattice)
     kept = np.clip(share, margin, 1.0 - margin)
     return Roots(start + way * share[:, None], slopes, start + way * kept[:, None])
@@ -334,8 +334,14 @@ def _in_faces(
     return found
 
 
+_ROOT_COLUMNS: Final[list[tuple[str, Type]]] = [
+    ("start", VEC3),
+    ("way", VEC3),
+    ("first", FLOAT),
+    ("second", FLOAT),
+]
 _FACE_COLUMNS: Final = ("a", "b", "slope_a", "slope_b", "normal", "low", "high")
-_CREASE_COLUMNS: Final = [
+_CREASE_COLUMNS: Final[list[tuple[str, Type]]] = [
     ("points", Array(VEC3, 12)),
     ("slopes", Array(VEC3, 12)),
     ("weights", Array(FLOAT, 12)),

@@ -18,7 +18,7 @@ from distal.mesh import arithmetic
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import Lattice, keys_of, position
 from distal.mesh.places import Roots, crease_points, wide_face_points
-from distal.mesh.solid import Floats, Integers
+from distal.mesh.solid import Bools, Floats, Integers
 from distal.mesh.topology import Topology
 
 # Points at creases that are farther from the surface than this, in cells, are looked at.
@@ -73,7 +73,7 @@ def _reach_by_faces(
     topology: Topology,
     roots: Roots,
     places: Floats,
-    free: np.ndarray[tuple[int], np.dtype[np.bool_]],
+    free: Bools,
     occupied: Integers,
     given: set[int],
     found: Integers,
@@ -132,8 +132,8 @@ def _may_reach(point: int, key: int, way: Integers, given: set[int], found: Inte
 
 
 def one_way(
-    below: np.ndarray[tuple[int, int], np.dtype[np.bool_]],
-    above: np.ndarray[tuple[int, int], np.dtype[np.bool_]],
+    below: Bools,
+    above: Bools,
 ) -> Integers:
     """Return the direction in which a place is outside; 0 if it is outside in several.
 

@@ -17,6 +17,7 @@ from distal.mesh.files import formats
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
+Bools = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,7 +108,7 @@ def set_array(mesh: Mesh, name: str, value: Any, dtype: type, count: int | None)
     """
     if value is None:
         return
-    array = np.ascontiguousarray(value, dtype)
+    array: npt.NDArray[Any] = np.ascontiguousarray(value, dtype)
     if array is value and array.flags.writeable:
         array = array.view()
     expected = "n" if count is None else str(count)

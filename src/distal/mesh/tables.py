@@ -188,7 +188,8 @@ def are_separable(one: tuple[Corner, ...], other: tuple[Corner, ...]) -> bool:
 
     Corners are whole numbers, so planes with small integer coefficients are enough.
     """
-    for n in product(range(-2, 3), repeat=3):
+    for x, y, z in product(range(-2, 3), repeat=3):
+        n = (x, y, z)
         low = min(along(n, p) for p in one)
         high = max(along(n, p) for p in other)
         if n != (0, 0, 0) and low >= high and max(along(n, p) for p in one) > high:

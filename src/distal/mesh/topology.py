@@ -15,17 +15,15 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
 from distal.ir.types import VEC3
 from distal.mesh.arithmetic import distance_value
 from distal.mesh.bricks import SurfaceBricks
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import BRICK, Lattice, keys_of, position
-from distal.mesh.solid import Integers
+from distal.mesh.solid import Bools, Integers
 from distal.mesh.tables import EDGES, cell_tables
 
-Bools = npt.NDArray[np.bool_]
 # Whether each of the four cells around an edge is below it in u, and in v.
 _BELOW: Final = ((1, 1), (0, 1), (0, 0), (1, 0))
 
@@ -124,7 +122,7 @@ class Topology:
     cells: int
 
 
-class _Cells:
+class _SurfaceCells:
     """The cells with a change of sign, found by brick and place."""
 
     def __init__(self, found: SurfaceBricks) -> None:
@@ -159,7 +157,7 @@ class _Cells:
                 rows = code == value
                 home[rows] = self._neighbour(int(value))[brick[rows]]
         flat = (home * BRICK + inside[:, 0]) * BRICK + inside[:, 1]
-        found = self._number[flat * BRICK + inside[:, 2]].astype(np.int64)
+        found: Integers = self._number[flat * BRICK + inside[:, 2]].astype(np.int64)
         assert (home >= 0).all() and (found >= 0).all(), "a cell beside the surface is missing"
         return found
 
@@ -180,7 +178,7 @@ def topology_of(kernels: FieldKernels, lattice: Lattice, found: SurfaceBricks) -
         found: The bricks.
     """
     tables = cell_tables()
-    cells = _Cells(found)
+    cells = _SurfaceCells(found)
     cells.case = _cases(kernels, lattice, cells)
     count = tables.components[cells.case]
     first = np.cumsum(count) - count
@@ -204,7 +202,7 @@ def topology_of(kernels: FieldKernels, lattice: Lattice, found: SurfaceBricks) -
     return Topology(EdgeRows(axis, start, around, sides), points, segments, len(cells.mask))
 
 
-def _cases(kernels: FieldKernels, lattice: Lattice, cells: _Cells) -> Integers:
+def _cases(kernels: FieldKernels, lattice: Lattice, cells: _SurfaceCells) -> Integers:
     """Return the case of each cell.
 
     An ambiguous face is joined if its middle is inside. A cell whose components would not be
@@ -216,9 +214,10 @@ def _cases(kernels: FieldKernels, lattice: Lattice, cells: _Cells) -> Integers:
         cells: The cells.
     """
     tables = cell_tables()
+    found: Integers = cells.case
     cell, axis = np.nonzero(tables.ambiguous[cells.mask])
     if not len(cell):
-        return cells.case
+        return found
     step = np.eye(3, dtype=np.int64)[axis]
     upper = cells.at(cells.brick[cell], cells.local[cell] + step)
     middles = lattice.places(cells.place[cell] + 0.5 * (step + 1.0))
@@ -227,14 +226,14 @@ def _cases(kernels: FieldKernels, lattice: Lattice, cells: _Cells) -> Integers:
         faces = np.zeros(len(cells.mask), np.int64)
         np.bitwise_or.at(faces, cell[joined], 2 << 2 * axis[joined])
         np.bitwise_or.at(faces, upper[joined], 1 << 2 * axis[joined])
-        found: Integers = tables.case[cells.mask, faces]
+        found = tables.case[cells.mask, faces]
         wrong = ~tables.separable[found]
         if not wrong.any():
             return found
         joined &= ~(wrong[cell] | wrong[upper])
 
 
-def _points(cells: _Cells, count: Integers, around: Integers) -> PointRows:
+def _points(cells: _SurfaceCells, count: Integers, around: Integers) -> PointRows:
     cell = np.repeat(np.arange(len(count)), count)
     component = np.arange(len(cell)) - np.repeat(np.cumsum(count) - count, count)
     order = np.argsort(around.reshape(-1), kind="stable")
@@ -249,7 +248,7 @@ def _points(cells: _Cells, count: Integers, around: Integers) -> PointRows:
 
 
 def _segments(
-    cells: _Cells, first: Integers, of_cell: Integers, edges: int
+    cells: _SurfaceCells, first: Integers, of_cell: Integers, edges: int
 ) -> tuple[SegmentRows, Integers]:
     """Return the segments, and for each edge those on its four sides.
 

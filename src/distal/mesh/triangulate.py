@@ -16,12 +16,12 @@ from typing import Final
 import numpy as np
 
 from distal.ir.types import VEC3
-from distal.mesh import arithmetic
+from distal.mesh import arithmetic, triangle_arithmetic
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.lattice import Lattice
 from distal.mesh.places import Roots, common_reach, face_points, margin_of
-from distal.mesh.solid import Floats, Integers
-from distal.mesh.topology import Bools, Topology
+from distal.mesh.solid import Bools, Floats, Integers
+from distal.mesh.topology import Topology
 
 # Below this difference of two diagonals' errors, in cells, the rounder triangles are preferred.
 _TIE: Final = 1e-3
@@ -158,7 +158,7 @@ def _diagonals(
         ends = corners[fitting, which], corners[fitting, which + 2]
         misses[fitting, which] = kernels.call(arithmetic.middle_distance, *ends, types=_LINE)
     found: Integers = rows_of(
-        arithmetic.chosen_diagonal,
+        triangle_arithmetic.chosen_diagonal,
         corners,
         fits,
         np.minimum(misses, 1e300),
