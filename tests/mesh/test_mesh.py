@@ -173,7 +173,15 @@ def test_lost_parts_are_named() -> None:
     (warning,) = made.report["warnings"]
     assert warning.startswith("'wire' (line ") and "is thinner than 0.2 at (" in warning
     assert warning.endswith("parts of it are missing")
-    assert made.report["lost"][0]["count"] > 5
+    assert made.report["lost"][0]["count"] >= 5
+
+
+def test_cut_corners_are_named() -> None:
+    made = Box(1.0, 0.7, 0.4).rotate(x=0.3, y=0.5, z=0.7).named("block").mesh(tolerance=0.012)
+    report = made.report
+    (warning,) = report["warnings"]
+    assert warning.startswith("a corner of 'Box' (line ") and "is cut by up to 0.0" in warning
+    assert report["error"]["largest"] <= 0.012 < report["error"]["cut_corner"] < report["spacing"]
 
 
 @func

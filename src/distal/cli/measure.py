@@ -16,7 +16,7 @@ from distal.cli.base import SceneArgument, SetOption, TimeOption, answer, applic
 from distal.cli.mesh import ToleranceOption, check_lengths, load_solid
 
 if TYPE_CHECKING:
-    from distal.mesh.measuring import Quantity, Measures
+    from distal.mesh.measuring import Measures, Quantity
 
 
 @application.command()

@@ -34,7 +34,7 @@ ToleranceOption = Annotated[
     typer.Option(
         metavar="LENGTH",
         help="How far the mesh may be from the surface, in scene units.",
-        show_default="a thousandth of the largest side",
+        show_default="0.002 of the largest side",
     ),
 ]
 

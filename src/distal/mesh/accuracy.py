@@ -7,6 +7,7 @@ first order: the value divided by the length of the gradient.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 from typing import Final
 
 import numpy as np
@@ -14,6 +15,7 @@ import numpy as np
 from distal.ir.types import FLOAT, VEC3
 from distal.mesh import arithmetic, triangle_arithmetic
 from distal.mesh.kernels import FieldKernels, rows_of
+from distal.mesh.lattice import Lattice, keys_of, position
 from distal.mesh.places import Roots
 from distal.mesh.solid import Floats, Integers
 from distal.mesh.topology import Topology
@@ -27,6 +29,7 @@ _MOST_FOLLOWED: Final = 1 << 14
 # The most roots that are compared with more triangles than those around their own edge.
 _MOST_SEARCHED: Final = 1 << 12
 _RINGS: Final = 2
+_AROUND: Final = 2  # cells; a lost place that is farther from all cells of the mesh is a lost part
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +52,19 @@ class Accuracy:
     from_surface: float
     at_points: float
     cut: int
+
+
+@dataclass(frozen=True, slots=True)
+class CutCorner:
+    """A corner of the surface that the mesh cuts.
+
+    Attributes:
+        distance: How far it is from the nearest point of the mesh, at most; 0 if none is cut.
+        place: Where it is.
+    """
+
+    distance: float
+    place: tuple[float, float, float]
 
 
 def measured(
@@ -182,3 +198,36 @@ def lost_places(kernels: FieldKernels, suspicious: Floats, step: float) -> Float
     )
     lost: Floats = places[found]
     return lost
+
+
+def split_lost(
+    lattice: Lattice, topology: Topology, places: Floats, lost: Floats
+) -> tuple[Floats, CutCorner]:
+    """Return the lost places that are apart from the mesh, and the worst of the others.
+
+    A corner that ends between lattice points is close to the mesh: it is cut, but no part is lost.
+
+    Args:
+        lattice: The lattice.
+        topology: The points of its cells.
+        places: Where they are.
+        lost: Points of the surface that the mesh does not have.
+    """
+    if not len(lost):
+        return lost, CutCorner(0.0, (0.0, 0.0, 0.0))
+    keys, row = np.unique(keys_of(topology.points.cell), return_index=True)
+    home = np.floor((lost - lattice.origin) / lattice.step).astype(np.int64)
+    nearest = np.full(len(lost), np.inf)
+    around = range(-_AROUND, _AROUND + 1)
+    for step in product(around, repeat=3):
+        at = position(keys_of(home + np.array(step)), keys)
+        found = np.flatnonzero(at >= 0)
+        if len(found):
+            ends = lost[found], places[row[at[found]]]
+            distance = rows_of(triangle_arithmetic.between, *ends)
+            nearest[found] = np.minimum(nearest[found], distance)
+    apart = np.isinf(nearest)
+    nearest[apart] = 0.0
+    worst = int(np.argmax(nearest))
+    x, y, z = lost[worst].tolist()
+    return lost[apart], CutCorner(float(nearest[worst]), (x, y, z))

@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from distal.mesh.accuracy import Accuracy, lost_places, measured
+from distal.mesh.accuracy import Accuracy, CutCorner, lost_places, measured, split_lost
 from distal.mesh.bricks import Slopes, surface_bricks
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import Lattice
@@ -64,6 +64,7 @@ class Extracted:
         creases: How many points are at creases.
         shared: How many points are in cells with several.
         lost: Points of the surface where the mesh has none, of shape (n, 3).
+        corner: The corner that is cut most.
         steepest: The largest gradient at a root, for each unit of the slope that is declared.
         steepest_at: Where it is.
     """
@@ -77,6 +78,7 @@ class Extracted:
     creases: int
     shared: int
     lost: Floats
+    corner: CutCorner
     steepest: float
     steepest_at: Floats
 
@@ -126,9 +128,9 @@ def extracted(
     found = surface_bricks(
         kernels, lattice, extent.slopes, most, lambda share: watch(_SAMPLED * share)
     )
-    lost = lost_places(kernels, found.lost, step)
+    suspected = lost_places(kernels, found.lost, step)
     if not len(found.bricks):
-        return Nothing(step, found.sampled, lost)
+        return Nothing(step, found.sampled, suspected)
     topology = topology_of(kernels, lattice, found)
     roots = roots_of(kernels, lattice, topology, found)
     watch(_ROOTS)
@@ -141,6 +143,7 @@ def extracted(
     made = triangulated(kernels, lattice, topology, roots, places, reach, inside_first, tolerance)
     watch(_TRIANGLES)
     accuracy, normals = measured(kernels, made, roots, topology, step)
+    lost, corner = split_lost(lattice, topology, places, suspected)
     lengths = np.sqrt(np.einsum("ij,ij->i", roots.slopes, roots.slopes))
     steepest = int(np.argmax(lengths))
     return Extracted(
@@ -153,6 +156,7 @@ def extracted(
         creases=int(creased.sum()),
         shared=int(topology.points.shared.sum()),
         lost=lost,
+        corner=corner,
         steepest=float(lengths[steepest]) / extent.slopes.slope,
         steepest_at=roots.places[steepest],
     )

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from distal.scene.objects.meshable import Meshable
 
 # Without a tolerance it is this share of the largest side of the box.
-DEFAULT_TOLERANCE: Final = 1e-3
+DEFAULT_TOLERANCE: Final = 2e-3
 _MOST_NAMED: Final = 8  # lost parts that are named
 _STEEP: Final = 1e6  # a slope above it says nothing
 
@@ -45,7 +45,7 @@ class MeshRequest:
     """What is asked of a mesh.
 
     Attributes:
-        tolerance: How far it may be from the surface, in scene units; None for a thousandth of the
+        tolerance: How far it may be from the surface, in scene units; None for 0.002 of the
             largest side of the shape's box.
         feature: The diameter of the smallest parts and gaps that must be found; None to leave that
             to the tolerance.
@@ -267,6 +267,13 @@ def _report(node: Node, found: Extracted, wanted: Wanted, request: MeshRequest) 
             f"the tolerance {wanted.tolerance:g} is exceeded: {error:.3g} at "
             f"{shown_place(accuracy.place)}"
         )
+    corner = found.corner
+    if corner.distance > wanted.tolerance and not lost:
+        leaf = leaves_at(node, np.array([corner.place]), request.params, request.time)[0]
+        warnings.append(
+            f"a corner of {named(leaf)} is cut by up to {corner.distance:.3g} at "
+            f"{shown_place(corner.place)}: it ends between samples"
+        )
     if found.exceeds_slope:
         leaf = leaves_at(node, found.steepest_at[None], request.params, request.time)[0]
         warnings.append(
@@ -287,7 +294,8 @@ def _report(node: Node, found: Extracted, wanted: Wanted, request: MeshRequest) 
             "place": list(accuracy.place),
             "mesh_to_surface": accuracy.largest,
             "surface_to_mesh": accuracy.from_surface,
-            "corners": accuracy.at_points,
+            "at_points": accuracy.at_points,
+            "cut_corner": corner.distance,
         },
         "crease_points": found.creases,
         "cut_points": accuracy.cut,

@@ -17,11 +17,11 @@ def roundness(a: vec3, b: vec3, c: vec3) -> float:
 
 @func
 def chosen_diagonal(
-    points: array[vec3, 4],
+    points: array[vec3, 4],  # type: ignore[valid-type]
     fits: vec3,
     misses: vec3,
     tolerance: float,
-    tie: float,  # type: ignore[valid-type]
+    tie: float,
 ) -> int:
     """Return the diagonal that splits four points into triangles: 0, 1, or 2 for neither.
 
@@ -196,3 +196,9 @@ def is_unfolded(a: vec3, b: vec3, c: vec3, d: vec3) -> bool:
     return dot(one, other) < -1e-10 * size or abs(dot(one, d - a)) > 1e-10 * (
         length(one) * length(d - a)
     )
+
+
+@func
+def between(a: vec3, b: vec3) -> float:
+    """Return the distance between two points."""
+    return length(b - a)

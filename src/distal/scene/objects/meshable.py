@@ -39,7 +39,7 @@ class Meshable(Placed):
 
         Args:
             tolerance: How far the mesh may be from the surface, in scene units; it is measured.
-                None: a thousandth of the largest side of the shape's box.
+                None: 0.002 of the largest side of the shape's box.
             feature: The diameter of the smallest parts and gaps that must be found, in scene
                 units. None: the mesh becomes finer where it is seen to miss thin parts.
             params: Values of parameters by name; the others have their defaults.
