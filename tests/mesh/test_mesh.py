@@ -106,7 +106,7 @@ def test_tips_are_as_near_as_the_error_says(
 def test_points_of_a_smooth_surface_are_on_it() -> None:
     found = at_spacing(Sphere(1.0), 0.1)
     assert np.abs(np.linalg.norm(found.made.points, axis=1) - 1.0).max() < 1e-9
-    assert np.abs(found.normals - found.made.points).max() < 1e-9
+    assert np.abs(found.normals - found.made.points).max() < 1e-5
     assert found.creases == 0
 
 
@@ -370,3 +370,17 @@ def test_true_measures_of_a_sphere_are_within_their_errors(radius: float) -> Non
 def test_a_cone_has_its_volume() -> None:
     found = Cone(0.5, 1.0).measure()
     assert found.volume.value == pytest.approx(np.pi / 12.0, abs=found.volume.error)
+
+
+def test_fields_without_a_gradient_on_their_surface_have_smooth_sides() -> None:
+    # The library's cone is a square root: on its surface the gradient is 0 divided by 0.
+    step = 0.04
+    found = at_spacing(Cone(0.5, 1.0), step, tolerance=0.01 * step)
+    points = found.made.points
+    radius = np.linalg.norm(points[:, [0, 2]], axis=1)
+    side = (points[:, 1] > -0.5 + step) & (points[:, 1] < 0.5 - 2.0 * step)
+    off = np.abs(radius - 0.5 * (0.5 - points[:, 1]))[side]
+    # Beside the tip and the rim a few points are at creases; with gradients on the surface the
+    # largest was 1.4 cells.
+    assert side.sum() > 1000
+    assert np.quantile(off, 0.95) < 1e-9 and off.max() < 0.01 * step

@@ -80,7 +80,10 @@ def measured(
         step: The length of a cell.
     """
     at_points, normals = kernels.call(
-        arithmetic.distance_and_normal, made.points, types=[("p", VEC3)]
+        arithmetic.distance_and_normal,
+        made.points,
+        np.full(len(made.points), step),
+        types=[("p", VEC3), ("step", FLOAT)],
     )
     corners = made.points[made.triangles]
     largest, total, place = 0.0, 0.0, made.points[int(np.argmax(at_points))]
