@@ -43,6 +43,8 @@ NO_OPERATOR = {
     "heights": "tape/test_shape_heights",
     **dict.fromkeys(("on", "align", "extents"), "scene/test_anchors"),
     **dict.fromkeys(("fillet", "chamfer", "infill", "wrap_around"), "scene/test_shaped_edges"),
+    "mesh": "mesh/test_mesh",
+    "measure": "mesh/test_mesh",
     "parameters": "asks",
     "text": "shows",
     "show": "shows",

@@ -15,8 +15,8 @@ import warnings
 
 # The commands, as --help lists them: first those that new users need.
 COMMANDS = (
-    *("render", "view", "studio", "video", "export", "rerender"),
-    *("check", "probe", "compile", "examples", "doctor"),
+    *("render", "view", "studio", "video", "mesh", "export", "rerender"),
+    *("check", "probe", "measure", "compile", "examples", "doctor"),
 )
 # The others have a module of their name: one of them is imported without the rest.
 SHORT = ("compile", "examples", "doctor")

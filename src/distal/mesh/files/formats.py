@@ -114,6 +114,21 @@ def write(
         chosen.write(file, parts)
 
 
+def check_output(path: str | PathLike[str], unit: str) -> None:
+    """Check that a mesh can be saved, before time is spent on it.
+
+    Args:
+        path: The file.
+        unit: The length of one scene unit.
+
+    Raises:
+        SaveError: The suffix or the unit is unknown, or the folder is not writable.
+    """
+    _chosen(Path(path), MESH_FORMATS, "a mesh")
+    _meters(unit)
+    check_destination(Path(path))
+
+
 def write_outlines(
     path: str | PathLike[str], polylines: Sequence[Any], *, unit: str = "mm"
 ) -> None:

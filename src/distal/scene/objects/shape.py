@@ -27,6 +27,7 @@ from distal.scene.objects.field import PLAIN, BaseShape
 from distal.scene.objects.filling import filled
 from distal.scene.objects.from_data import FromData
 from distal.scene.objects.heights import seen_heights
+from distal.scene.objects.meshable import Meshable
 from distal.scene.objects.placed import Placed
 from distal.scene.objects.turns import warn_of_degrees
 from distal.scene.tree.errors import refuse
@@ -43,7 +44,7 @@ _ROTATIONS: Final[Mapping[str, Operator]] = {
 }
 
 
-class Shape(FromData):
+class Shape(Meshable, FromData):
     """A solid: a signed distance function of a point in space.
 
     Shapes never change; methods return new shapes.

@@ -1,0 +1,151 @@
+"""``distal mesh``: save the surface of a shape as triangles.
+
+Input: parsed arguments. Output: a mesh file, and how exact it is in words or as JSON.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from distal.cli.arguments import UsageError, read_assignments, read_scene, read_time
+from distal.cli.base import (
+    SceneArgument,
+    SetOption,
+    TimeOption,
+    answer,
+    application,
+    check_processor,
+    load,
+    reporting,
+)
+from distal.diagnostics import LoadError
+
+if TYPE_CHECKING:
+    from distal.mesh.solid import Mesh
+    from distal.scene.objects.shape import Shape
+
+ToleranceOption = Annotated[
+    float | None,
+    typer.Option(
+        metavar="LENGTH",
+        help="How far the mesh may be from the surface, in scene units.",
+        show_default="0.002 of the largest side",
+    ),
+]
+
+
+@application.command()
+@reporting
+def mesh(
+    scene: SceneArgument,
+    output: Annotated[
+        Path,
+        typer.Option(
+            "-o", "--output", help="The file: .3mf, .stl, .glb, .ply or .obj.", show_default=False
+        ),
+    ],
+    tolerance: ToleranceOption = None,
+    feature: Annotated[
+        float | None,
+        typer.Option(
+            metavar="LENGTH",
+            help="The diameter of the smallest parts and gaps that must be found.",
+            show_default=False,
+        ),
+    ] = None,
+    unit: Annotated[
+        str, typer.Option(help="The length of one scene unit: um, mm, cm, m, inch or ft.")
+    ] = "mm",
+    bed: Annotated[
+        bool, typer.Option("--bed", help="Stand the part on 0, centered, as printers want it.")
+    ] = False,
+    check: Annotated[
+        bool,
+        typer.Option("--check", help="Count open edges, pinched points and intersections."),
+    ] = False,
+    at: TimeOption = "0",
+    assignments: SetOption = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print the report as JSON, on one line.")
+    ] = False,
+) -> None:
+    """Save a shape's surface as triangles: closed, with sharp edges, in a unit of length."""
+    from distal.cli.messages import say
+    from distal.cli.report import ProgressBar
+    from distal.mesh.files import formats
+
+    if output.resolve() == Path(read_scene(scene)[0]).resolve():
+        raise UsageError(f"'{output}' is the scene itself")
+    check_lengths(tolerance=tolerance, feature=feature)
+    formats.check_output(output, unit)
+    shape, values, seconds = load_solid(scene, assignments, at)
+    with ProgressBar("meshing") as progress:
+        made = shape.mesh(tolerance, feature, values, seconds, progress=progress, check=check)
+    made.save(output, unit=unit, bed=bed)
+    if as_json:
+        answer(json.dumps({**made.report, "name": made.name, "unit": unit}))
+    else:
+        for line in report_lines(output, made, unit):
+            say(line)
+    if check and any(made.report["check"].values()):
+        raise typer.Exit(1)
+
+
+def check_lengths(**lengths: float | None) -> None:
+    """Check that lengths are above 0 and finite.
+
+    Raises:
+        UsageError: One is not.
+    """
+    for name, length in lengths.items():
+        if length is not None and not 0.0 < length < float("inf"):
+            raise UsageError(f"--{name} is a length above 0, not {length:g}")
+
+
+def load_solid(
+    scene: str, assignments: list[str] | None, at: str
+) -> tuple[Shape, dict[str, Any], float]:
+    """Load the solid FILE[:NAME], of a scene its shape; parameter values and time.
+
+    Raises:
+        LoadError: The object is an image, or a flat shape.
+        UsageError: A value is invalid.
+    """
+    from distal.scene.objects.shape import Shape
+    from distal.scene.scene import Scene
+
+    seconds = read_time(at)
+    check_processor()
+    obj: Any = load(scene)
+    shape = obj.subject if isinstance(obj, Scene) else obj
+    if not isinstance(shape, Shape):
+        flat = getattr(shape, "flat", False)
+        what = "a flat shape: .extrude(height) makes a solid" if flat else "no shape and no scene"
+        raise LoadError(f"'{obj.name}' is {what}")
+    return shape, read_assignments(assignments or (), obj.parameters()), seconds
+
+
+def report_lines(output: Path, made: Mesh, unit: str) -> Iterator[str]:
+    """Yield what was saved, how exact it is, and what to watch for."""
+    report = made.report
+    low, high = made.bounds
+    sides = " x ".join(f"{b - a:.4g}" for a, b in zip(low, high, strict=True))
+    yield f"{output}: {report['triangles']:,} triangles, {sides} {unit}"
+    error = report["error"]
+    yield (
+        f"at most {error['largest']:.2g} {unit} from the surface, {error['mean']:.2g} on average; "
+        f"parts and gaps of {report['feature']:.2g} {unit} are found"
+    )
+    if "check" in report:
+        found = report["check"]
+        yield (
+            f"{found['open_edges']} open edges, {found['pinched_points']} pinched points, "
+            f"{found['intersections']} intersections"
+        )
+    for warning in report["warnings"]:
+        yield f"warning: {warning}"

@@ -1,0 +1,75 @@
+"""The lattice of a mesh: cubic cells, in bricks of eight cells a side, over a box.
+
+Input: a box and the length of a cell. Output: places of lattice points; keys by which bricks are
+found. Does not depend on a shape.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from distal.mesh.solid import Bools, Floats, Integers
+
+BRICK: Final = 8  # cells along each side of a brick
+# A brick's key has 20 bits for each coordinate, which may be -1 for a neighbour.
+MOST_BRICKS_A_SIDE: Final = 2**20 - 2
+# The lattice begins and ends this many cells beyond the box. Faces of shapes are often at round
+# numbers; these shares keep them away from planes of the lattice.
+BEFORE: Final = 1.37
+BEYOND: Final = 1.11
+
+
+@dataclass(frozen=True, slots=True)
+class Lattice:
+    """A lattice over a box.
+
+    Attributes:
+        origin: The lowest lattice point.
+        step: The length of a cell, in scene units.
+        extent: How many bricks there are along each axis.
+    """
+
+    origin: Floats
+    step: float
+    extent: Integers
+
+    @staticmethod
+    def over(low: Floats, high: Floats, step: float) -> Lattice:
+        """Return the lattice over a box.
+
+        Args:
+            low: The lowest corner of the box.
+            high: Its highest corner.
+            step: The length of a cell.
+        """
+        origin = low - BEFORE * step
+        cells = (high + BEYOND * step - origin) / step
+        return Lattice(origin, step, np.ceil(cells / BRICK).astype(np.int64))
+
+    def places(self, points: npt.NDArray[Any]) -> Floats:
+        """Return the places of lattice points; shares of a cell are allowed."""
+        return self.origin + np.asarray(points, np.float64) * self.step
+
+    def contains(self, bricks: Integers) -> Bools:
+        """Return which bricks belong to the lattice."""
+        found: Bools = np.all((bricks >= 0) & (bricks < self.extent), axis=1)
+        return found
+
+
+def keys_of(bricks: Integers) -> Integers:
+    """Return a number for each brick, in the order of x, then y, then z."""
+    shifted = bricks + 1
+    keys: Integers = (shifted[:, 0] << 42) | (shifted[:, 1] << 21) | shifted[:, 2]
+    return keys
+
+
+def position(keys: Integers, sorted_keys: Integers) -> Integers:
+    """Return where keys are in a sorted list of keys; -1 for those that it lacks."""
+    if not len(sorted_keys):
+        return np.full(len(keys), -1, np.int64)
+    at = np.minimum(np.searchsorted(sorted_keys, keys), len(sorted_keys) - 1)
+    return np.where(sorted_keys[at] == keys, at, -1)

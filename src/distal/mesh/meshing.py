@@ -1,0 +1,318 @@
+"""Mesh a shape: check what is asked, choose the spacing, report.
+
+Input: a shape and a request. Output: a ``Mesh``, or an error at the author's line that says what to
+write instead. What the report holds is in ``docs/guide/meshes.md``.
+"""
+
+from __future__ import annotations
+
+import math
+import time as clock
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final, NoReturn
+
+import numpy as np
+
+from distal.devices.base import Cancelled, cancel_test
+from distal.fields.guarantees import ended
+from distal.lang.render_options import Cancel, Progress, checked_time
+from distal.lang.runtime_access import executor
+from distal.mesh.bricks import Slopes
+from distal.mesh.checks import checked
+from distal.mesh.coloring import colors_of
+from distal.mesh.extract import Extent, Extracted, Nothing
+from distal.mesh.kernels import FieldKernels
+from distal.mesh.parts import leaves_at, named
+from distal.mesh.problems import MeshProblem
+from distal.mesh.solid import Floats, Mesh
+from distal.mesh.spacing import BALL_CELLS, TooFine, Wanted, meshed
+from distal.scene.lowering.derived import BoundsOf
+from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.node import Node
+
+if TYPE_CHECKING:
+    from distal.scene.objects.meshable import Meshable
+
+# Without a tolerance it is this share of the largest side of the box.
+DEFAULT_TOLERANCE: Final = 2e-3
+_MOST_NAMED: Final = 8  # lost parts that are named
+_STEEP: Final = 1e6  # a slope above it says nothing
+
+
+@dataclass(frozen=True, slots=True)
+class MeshRequest:
+    """What is asked of a mesh.
+
+    Attributes:
+        tolerance: How far it may be from the surface, in scene units; None for 0.002 of the
+            largest side of the shape's box.
+        feature: The diameter of the smallest parts and gaps that must be found; None to leave that
+            to the tolerance.
+        params: Values of parameters by name.
+        time: Seconds.
+        progress: Called with the finished share, from 0 to 1.
+        cancel: An event, or a function without arguments, that ends the work early.
+        check: Whether open edges, pinched points and intersections are counted.
+        colors: Whether the mesh has the colors of the shape's materials.
+    """
+
+    tolerance: float | None = None
+    feature: float | None = None
+    params: Mapping[str, Any] = field(default_factory=dict)
+    time: float = 0.0
+    progress: Progress | None = None
+    cancel: Cancel | None = None
+    check: bool = False
+    colors: bool = True
+
+    def __post_init__(self) -> None:
+        """Check the numbers.
+
+        Raises:
+            SceneValueError: One is not a positive number.
+        """
+        for name in ("tolerance", "feature"):
+            value = getattr(self, name)
+            if value is None:
+                continue
+            valid = isinstance(value, int | float) and not isinstance(value, bool)
+            if not valid or not 0.0 < value < math.inf:
+                refuse(f"{name} is a length above 0, not {value!r:.40}", f"{name}=0.01")
+        object.__setattr__(self, "time", checked_time(self.time))
+
+
+def mesh_of(shape: Meshable, request: MeshRequest) -> Mesh:
+    """Return the mesh of a solid; see ``Shape.mesh``.
+
+    Args:
+        shape: The solid.
+        request: What is asked.
+
+    Raises:
+        Cancelled: ``request.cancel`` stopped the work.
+        SceneTypeError: The shape is flat.
+        SceneValueError: The shape cannot be meshed; the message names it and says what to change.
+    """
+    node = shape.node
+    if node.flat:
+        refuse_kind(
+            f"'{node.name}' is flat, and a mesh is of a solid", ".extrude(height)", node.place
+        )
+    begin = clock.process_time()
+    found, wanted, kernels = found_mesh(node, request)
+    report = _report(node, found, wanted, request)
+    points, triangles = found.made.points, found.made.triangles
+    at_points, of_triangles = None, None
+    if request.colors:
+        at_points, of_triangles = colors_of(
+            node, points, triangles, params=request.params, time=request.time
+        )
+    if request.check:
+        report["check"] = checked(points, triangles, watch_of(request))
+    report["rows"] = kernels.rows
+    report["cpu_s"] = clock.process_time() - begin
+    if request.progress is not None:
+        request.progress(1.0)
+    return Mesh(points, triangles, found.normals, at_points, of_triangles, report, node.name)
+
+
+def found_mesh(node: Node, request: MeshRequest) -> tuple[Extracted, Wanted, FieldKernels]:
+    """Return the mesh of a tree, what was wanted, and the kernels that it was made with.
+
+    Args:
+        node: The tree.
+        request: What is asked.
+
+    Raises:
+        Cancelled: ``request.cancel`` stopped the work.
+        SceneValueError: The shape cannot be meshed; the message names it and says what to change.
+    """
+    extent = extent_of(node, request)
+    kernels = FieldKernels(node, request.params, request.time)
+    wanted = Wanted(request.tolerance or DEFAULT_TOLERANCE * extent.size, request.feature)
+    try:
+        found = meshed(kernels, extent, wanted, watch_of(request))
+    except MeshProblem as problem:
+        _refuse_problem(node, extent, problem)
+    if isinstance(found, TooFine):
+        _refuse_too_fine(node, found, wanted)
+    if isinstance(found, Nothing):
+        _refuse_nothing(node, found, request)
+    return found, wanted, kernels
+
+
+def watch_of(request: MeshRequest) -> Callable[[float], None]:
+    """Return what is called with the finished share: it reports it, and ends cancelled work."""
+    stopped = cancel_test(request.cancel)
+    shown = 0.0
+
+    def watch(share: float) -> None:
+        nonlocal shown
+        if stopped():
+            raise Cancelled
+        shown = max(shown, share)
+        if request.progress is not None:
+            request.progress(shown)
+
+    return watch
+
+
+def extent_of(node: Node, request: MeshRequest) -> Extent:
+    """Return where the shape is.
+
+    Raises:
+        SceneValueError: It has no end, or it is empty.
+    """
+    bounds = executor().call(BoundsOf(node), (), {}, params=request.params, time=request.time)
+    slope, divisor = (float(number) for number in bounds[:2])
+    low, high = (np.array([ended(c) for c in corner]) for corner in bounds[2:4])
+    endless = [
+        axis for axis, a, b in zip("xyz", low, high, strict=True) if not math.isfinite(b - a)
+    ]
+    if endless:
+        refuse(
+            f"'{node.name}' has no end along {' and '.join(endless)}, and a mesh is of a part of "
+            "space with an end",
+            "intersect it with a box: shape & Box(…); an own function takes bounds=(low, high)",
+            node.place,
+        )
+    if (low >= high).any():
+        refuse(f"'{node.name}' is empty: its box has no volume", None, node.place)
+    positive = slope if 0.0 < slope < _STEEP else _STEEP
+    return Extent(low, high, Slopes(positive, divisor if 0.0 < divisor < _STEEP else positive))
+
+
+def _refuse_problem(node: Node, extent: Extent, problem: MeshProblem) -> NoReturn:
+    where = "" if problem.place is None else f" at {shown_place(problem.place)}"
+    match problem.kind:
+        case "no number":
+            refuse(
+                f"the value of '{node.name}'{where} is no finite number",
+                "avoid divisions by 0, and roots and logarithms of negative numbers",
+                node.place,
+            )
+        case "leaves its box":
+            refuse(
+                f"the surface of '{node.name}' leaves its box: it goes on{where}",
+                f"give larger bounds than {shown_place(extent.low)} to {shown_place(extent.high)}",
+                node.place,
+            )
+        case "too many":
+            hint = "give a smaller slope=, smaller bounds=, or a larger feature= and tolerance="
+            refuse(
+                f"the surface of '{node.name}' is in too many places to look at", hint, node.place
+            )
+
+
+def _refuse_too_fine(node: Node, found: TooFine, wanted: Wanted) -> NoReturn:
+    many = f"a mesh of '{node.name}' with this"
+    about = f"needs about {rounded(found.triangles):,.0f} triangles"
+    if found.by_feature:
+        feature = found.step * BALL_CELLS
+        refuse(f"{many} feature {about}", f"feature={above(feature):.2g}", node.place)
+    assert found.tolerance is not None
+    hint = f"tolerance={above(found.tolerance):.2g}"
+    refuse(f"{many} tolerance, {wanted.tolerance:g}, {about}", hint, node.place)
+
+
+def _refuse_nothing(node: Node, found: Nothing, request: MeshRequest) -> NoReturn:
+    if not len(found.lost):
+        refuse(f"'{node.name}' has no inside: its values are positive everywhere", None, node.place)
+    leaf = leaves_at(node, found.lost[:1], request.params, request.time)[0]
+    thin = found.step * BALL_CELLS
+    refuse(
+        f"nothing of '{node.name}' is as thick as {thin:.2g}: {named(leaf)} is thinner at "
+        f"{shown_place(found.lost[0])}",
+        f"a smaller feature=, such as {thin / 4.0:.2g}",
+        node.place,
+    )
+
+
+def shown_place(place: Sequence[float] | Floats) -> str:
+    """Return a place for messages."""
+    return f"({', '.join(f'{number:.4g}' for number in place)})"
+
+
+def rounded(number: float) -> float:
+    """Return a number rounded to one digit."""
+    return float(f"{number:.1g}")
+
+
+def above(number: float) -> float:
+    """Return a number rounded up to two digits."""
+    unit = 10.0 ** (math.floor(math.log10(number)) - 1)
+    return math.ceil(number / unit) * unit
+
+
+def _report(node: Node, found: Extracted, wanted: Wanted, request: MeshRequest) -> dict[str, Any]:
+    """Return the report of a mesh.
+
+    Args:
+        node: The shape.
+        found: The mesh.
+        wanted: The tolerance and the feature size.
+        request: What was asked.
+    """
+    accuracy = found.accuracy
+    error = max(accuracy.largest, accuracy.from_surface)
+    lost = _lost_parts(node, found, request)
+    warnings = [
+        f"{part['name']} is thinner than {found.step * BALL_CELLS:.3g} at "
+        f"{shown_place(part['place'])}: parts of it are missing"
+        for part in lost
+    ]
+    if error > wanted.tolerance:
+        warnings.append(
+            f"the tolerance {wanted.tolerance:g} is exceeded: {error:.3g} at "
+            f"{shown_place(accuracy.place)}"
+        )
+    corner = found.corner
+    if corner.distance > wanted.tolerance and not lost:
+        leaf = leaves_at(node, np.array([corner.place]), request.params, request.time)[0]
+        warnings.append(
+            f"a corner of {named(leaf)} is cut by up to {corner.distance:.3g} at "
+            f"{shown_place(corner.place)}: it ends between samples"
+        )
+    if found.exceeds_slope:
+        leaf = leaves_at(node, found.steepest_at[None], request.params, request.time)[0]
+        warnings.append(
+            f"{named(leaf)} changes {found.steepest:.3g} times as fast as its slope says, at "
+            f"{shown_place(found.steepest_at)}: separate parts may be missing"
+        )
+    return {
+        "tolerance": wanted.tolerance,
+        "feature": found.step * BALL_CELLS,
+        "spacing": found.step,
+        "cells": found.cells,
+        "bricks": found.sampled,
+        "points": len(found.made.points),
+        "triangles": len(found.made.triangles),
+        "error": {
+            "largest": error,
+            "mean": accuracy.mean,
+            "place": list(accuracy.place),
+            "mesh_to_surface": accuracy.largest,
+            "surface_to_mesh": accuracy.from_surface,
+            "at_points": accuracy.at_points,
+            "cut_corner": corner.distance,
+        },
+        "crease_points": found.creases,
+        "cut_points": accuracy.cut,
+        "fans": found.made.fans,
+        "lost": lost,
+        "warnings": warnings,
+    }
+
+
+def _lost_parts(node: Node, found: Extracted, request: MeshRequest) -> list[dict[str, Any]]:
+    """Return the shapes that are too thin in places: name, line, one place and how many."""
+    places = found.lost
+    parts: dict[int, dict[str, Any]] = {}
+    for leaf, place in zip(
+        leaves_at(node, places, request.params, request.time), places, strict=True
+    ):
+        line = None if leaf.place is None else leaf.place.line
+        first = {"name": named(leaf), "line": line, "place": place.tolist(), "count": 0}
+        parts.setdefault(id(leaf), first)["count"] += 1
+    return list(parts.values())[:_MOST_NAMED]

@@ -1,0 +1,349 @@
+"""Where the points of a mesh are: roots on edges, points in cells, points on faces.
+
+Input: topology, a lattice and a shape's kernels. Output: places. Every point stays within a convex
+part of its cell: that keeps the triangles from intersecting.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from distal.ir.types import FLOAT, VEC3, Array, Type
+from distal.mesh import arithmetic
+from distal.mesh.bricks import SurfaceBricks
+from distal.mesh.kernels import FieldKernels, rows_of
+from distal.mesh.lattice import Lattice
+from distal.mesh.solid import Bools, Floats, Integers
+from distal.mesh.tables import cell_tables
+from distal.mesh.topology import Topology
+
+_SMALLEST_MARGIN: Final = 1e-4
+# Points are kept this many units in the last place of 32 bits away from sides of cells.
+_ULPS: Final = 8.0
+_ULP: Final = 2.0**-23
+_AT_ONCE: Final = 1 << 16
+
+
+@dataclass(frozen=True, slots=True)
+class Roots:
+    """The points at which edges cross the surface.
+
+    Attributes:
+        places: Of shape (n, 3).
+        slopes: The gradients there, of shape (n, 3).
+        kept: The places, at least the margin away from the ends of the edges.
+    """
+
+    places: Floats
+    slopes: Floats
+    kept: Floats
+
+
+def margin_of(lattice: Lattice) -> float:
+    """Return how far from its cell's sides a point must be, in cells."""
+    far = lattice.places(lattice.extent * 8)
+    size = float(max(np.abs(lattice.origin).max(), np.abs(far).max()))
+    return max(_SMALLEST_MARGIN, _ULPS * _ULP * size / lattice.step)
+
+
+def roots_of(
+    kernels: FieldKernels, lattice: Lattice, topology: Topology, found: SurfaceBricks
+) -> Roots:
+    """Return the roots on all edges.
+
+    Args:
+        kernels: The shape.
+        lattice: The lattice.
+        topology: Its edges.
+        found: The values at their ends.
+    """
+    edges = topology.edges
+    start = lattice.places(edges.start)
+    way = np.zeros_like(start)
+    way[np.arange(len(way)), edges.axis] = lattice.step
+    first = np.concatenate([e.first for e in found.edges])
+    second = np.concatenate([e.second for e in found.edges])
+    columns = (start, way, first, second)
+    share, slopes = kernels.call(arithmetic.root_on_edge, *columns, types=_ROOT_COLUMNS)
+    margin = margin_of(lattice)
+    kept = np.clip(share, margin, 1.0 - margin)
+    return Roots(start + way * share[:, None], slopes, start + way * kept[:, None])
+
+
+def cell_points(
+    kernels: FieldKernels, lattice: Lattice, topology: Topology, roots: Roots
+) -> tuple[Floats, Bools]:
+    """Return the points of cells, and which of them are at a crease.
+
+    Args:
+        kernels: The shape.
+        lattice: The lattice.
+        topology: Its points.
+        roots: The roots on its edges.
+    """
+    points = topology.points
+    count = len(points.region)
+    uses = np.diff(points.first, append=len(points.edges))
+    mean = means(topology, roots)
+    normals = rows_of(arithmetic.unit_or_zero, roots.slopes)[points.edges]
+    owner = np.repeat(np.arange(count), uses)
+    average = rows_of(arithmetic.unit_or_zero, np.add.reduceat(normals, points.first))
+    cosine = rows_of(arithmetic.cosine, normals, average[owner])
+    creased = np.minimum.reduceat(cosine, points.first) < arithmetic.CREASE_COSINE
+    margin = margin_of(lattice)
+    low = lattice.places(points.cell + margin)
+    high = lattice.places(points.cell + (1.0 - margin))
+    found = np.empty((count, 3))
+    smooth = np.flatnonzero(~creased)
+    found[smooth] = kernels.call(
+        arithmetic.smooth_point,
+        mean[smooth],
+        low[smooth],
+        high[smooth],
+        types=[("mean", VEC3), ("low", VEC3), ("high", VEC3)],
+    )
+    rows = np.flatnonzero(creased)
+    found[rows] = crease_points(kernels, topology, roots, low[rows], high[rows], rows)
+    shared = np.flatnonzero(points.shared)
+    if len(shared):
+        found[shared] = _in_regions(lattice, topology, mean, found, margin, shared)
+    return found, creased
+
+
+def pieces(rows: Integers) -> list[Integers]:
+    """Return rows in pieces that need little memory."""
+    return [rows[i : i + _AT_ONCE] for i in range(0, len(rows), _AT_ONCE)]
+
+
+def means(topology: Topology, roots: Roots) -> Floats:
+    """Return the mean root of each point's edges."""
+    points = topology.points
+    uses = np.diff(points.first, append=len(points.edges))
+    found: Floats = np.add.reduceat(roots.kept[points.edges], points.first) / uses[:, None]
+    return found
+
+
+def crease_points(
+    kernels: FieldKernels,
+    topology: Topology,
+    roots: Roots,
+    low: Floats,
+    high: Floats,
+    rows: Integers,
+) -> Floats:
+    """Return points at creases.
+
+    Args:
+        kernels: The shape.
+        topology: Its points.
+        roots: The roots on its edges.
+        low: The lowest place of each of these points.
+        high: The highest.
+        rows: The points.
+    """
+    points = topology.points
+    mean = means(topology, roots)
+    found = np.empty((len(rows), 3))
+    for some in pieces(np.arange(len(rows))):
+        chosen = rows[some]
+        uses = np.diff(points.first, append=len(points.edges))[chosen]
+        slot = np.arange(12)[None]
+        used = slot < uses[:, None]
+        edge = points.edges[np.where(used, points.first[chosen][:, None] + slot, 0)]
+        found[some] = kernels.call(
+            arithmetic.crease_point,
+            roots.places[edge],
+            roots.slopes[edge],
+            used.astype(np.float64),
+            mean[chosen],
+            low[some],
+            high[some],
+            types=_CREASE_COLUMNS,
+        )
+    return found
+
+
+def move_beyond(
+    kernels: FieldKernels,
+    lattice: Lattice,
+    topology: Topology,
+    roots: Roots,
+    places: Floats,
+    reach: Integers,
+) -> None:
+    """Move points at creases into the empty cells that they may reach, if that is nearer.
+
+    Args:
+        kernels: The shape.
+        lattice: The lattice.
+        topology: Its points.
+        roots: The roots on its edges.
+        places: The places of all points; changed.
+        reach: The directions in which cells may be left.
+    """
+    rows = np.flatnonzero(reach.any(axis=1))
+    if not len(rows):
+        return
+    cells, ways = topology.points.cell[rows], reach[rows]
+    margin = margin_of(lattice)
+    low = lattice.places(cells + margin + np.minimum(ways, 0))
+    high = lattice.places(cells + (1.0 - margin) + np.maximum(ways, 0))
+    moved = crease_points(kernels, topology, roots, low, high, rows)
+    after = kernels.call(arithmetic.distance_to_field, moved, types=[("p", VEC3)])
+    before = kernels.call(arithmetic.distance_to_field, places[rows], types=[("p", VEC3)])
+    places[rows[after < before]] = moved[after < before]
+
+
+def _in_regions(
+    lattice: Lattice,
+    topology: Topology,
+    mean: Floats,
+    found: Floats,
+    margin: float,
+    rows: Integers,
+) -> Floats:
+    """Return points of cells with several components, each within its component's region.
+
+    Args:
+        lattice: The lattice.
+        topology: Its points.
+        mean: The mean root of each point's edges, which is inside of the region.
+        found: The place that each point should have.
+        margin: The share of the way that is kept free.
+        rows: The points to compute.
+    """
+    points = topology.points
+    planes = cell_tables().planes[points.region[rows]]
+    result: Floats = rows_of(
+        arithmetic.kept_in_region,
+        mean[rows],
+        found[rows],
+        lattice.places(points.cell[rows]),
+        np.full(len(rows), lattice.step),
+        planes,
+        np.full(len(rows), max(0.02, margin)),
+    )
+    return result
+
+
+def common_reach(topology: Topology, reach: Integers, rows: Integers) -> Integers:
+    """Return the direction in which both cells of each segment's face may be left, beside the face.
+
+    Args:
+        topology: Its segments.
+        reach: The directions in which cells may be left.
+        rows: The segments.
+    """
+    segments = topology.segments
+    one, other = reach[segments.lower[rows]], reach[segments.upper[rows]]
+    beside = np.take_along_axis(one, segments.axis[rows][:, None], axis=1)[:, 0] == 0
+    return np.where(((one == other).all(axis=1) & beside)[:, None], one, 0)
+
+
+def face_points(
+    kernels: FieldKernels,
+    lattice: Lattice,
+    topology: Topology,
+    roots: Roots,
+    reach: Integers,
+    rows: Integers,
+) -> Floats:
+    """Return points on faces, one for each given segment.
+
+    Args:
+        kernels: The shape.
+        lattice: The lattice.
+        topology: Its segments.
+        roots: The roots on its edges.
+        reach: The directions in which cells may be left.
+        rows: The segments.
+    """
+    segments, points = topology.segments, topology.points
+    found = (roots.kept[segments.edge_a[rows]] + roots.kept[segments.edge_b[rows]]) / 2.0
+    # Where the face or one of its cells belongs to several components, the point stays on the
+    # line between the roots.
+    several = points.shared[segments.lower[rows]] | points.shared[segments.upper[rows]]
+    free = np.flatnonzero(~(several | segments.paired[rows]))
+    chosen = rows[free]
+    side = 1.0 - np.eye(3)[segments.axis[chosen]]
+    ways = common_reach(topology, reach, chosen)
+    margin = margin_of(lattice) * side
+    corner = segments.face[chosen]
+    low = lattice.places(corner + margin + np.minimum(ways, 0))
+    high = lattice.places(corner + side - margin + np.maximum(ways, 0))
+    found[free] = _in_faces(kernels, topology, roots, low, high, chosen)
+    return found
+
+
+def wide_face_points(
+    kernels: FieldKernels, lattice: Lattice, topology: Topology, roots: Roots, rows: Integers
+) -> Floats:
+    """Return points in the planes of faces, up to one cell beside them; as ``face_points``.
+
+    Args:
+        kernels: The shape.
+        lattice: The lattice.
+        topology: Its segments.
+        roots: The roots on its edges.
+        rows: The segments.
+    """
+    segments = topology.segments
+    side = 1.0 - np.eye(3)[segments.axis[rows]]
+    low = lattice.places(segments.face[rows] - side)
+    high = lattice.places(segments.face[rows] + 2.0 * side)
+    return _in_faces(kernels, topology, roots, low, high, rows)
+
+
+def _in_faces(
+    kernels: FieldKernels,
+    topology: Topology,
+    roots: Roots,
+    low: Floats,
+    high: Floats,
+    rows: Integers,
+) -> Floats:
+    """Return points in the planes of faces.
+
+    Args:
+        kernels: The shape.
+        topology: Its segments.
+        roots: The roots on its edges.
+        low: The lowest place of each of these points.
+        high: The highest.
+        rows: The segments.
+    """
+    segments = topology.segments
+    found = np.empty((len(rows), 3))
+    for some in pieces(np.arange(len(rows))):
+        chosen = rows[some]
+        a, b = segments.edge_a[chosen], segments.edge_b[chosen]
+        found[some] = kernels.call(
+            arithmetic.face_point,
+            roots.kept[a],
+            roots.kept[b],
+            roots.slopes[a],
+            roots.slopes[b],
+            np.eye(3)[segments.axis[chosen]],
+            low[some],
+            high[some],
+            types=[(name, VEC3) for name in _FACE_COLUMNS],
+        )
+    return found
+
+
+_ROOT_COLUMNS: Final[list[tuple[str, Type]]] = [
+    ("start", VEC3),
+    ("way", VEC3),
+    ("first", FLOAT),
+    ("second", FLOAT),
+]
+_FACE_COLUMNS: Final = ("a", "b", "slope_a", "slope_b", "normal", "low", "high")
+_CREASE_COLUMNS: Final[list[tuple[str, Type]]] = [
+    ("points", Array(VEC3, 12)),
+    ("slopes", Array(VEC3, 12)),
+    ("weights", Array(FLOAT, 12)),
+    *((name, VEC3) for name in ("middle", "low", "high")),
+]

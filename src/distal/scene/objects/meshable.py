@@ -1,0 +1,103 @@
+"""The methods of solids that need triangles: meshes and measures.
+
+Input: the author's numbers. Output: a ``Mesh``, or measures of the solid with their errors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from distal.lang.render_options import Cancel, Progress
+from distal.lang.runtime_access import measuring, meshing
+from distal.scene.objects.placed import Placed
+
+if TYPE_CHECKING:
+    from distal.mesh.measuring import Measures
+    from distal.mesh.solid import Mesh
+
+
+class Meshable(Placed):
+    """A shape with a mesh."""
+
+    def mesh(
+        self,
+        tolerance: float | None = None,
+        feature: float | None = None,
+        params: Mapping[str, Any] | None = None,
+        time: float = 0.0,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+        *,
+        check: bool = False,
+        colors: bool = True,
+    ) -> Mesh:
+        """Return triangles of the surface: closed, without self-intersections, with sharp edges.
+
+        ``save`` of the result writes a file; its ``report`` says how exact it is and what is
+        missing. Always on the CPU.
+
+        Args:
+            tolerance: How far the mesh may be from the surface, in scene units; it is measured.
+                None: 0.002 of the largest side of the shape's box.
+            feature: The diameter of the smallest parts and gaps that must be found, in scene
+                units. None: the mesh becomes finer where it is seen to miss thin parts.
+            params: Values of parameters by name; the others have their defaults.
+            time: Time in seconds.
+            progress: Called with the finished share, from 0 to 1.
+            cancel: An event, or a function without arguments, that ends the work early.
+            check: Count open edges, pinched points and intersecting triangles for the report,
+                which takes longer.
+            colors: Whether the mesh has the colors of the shape's materials.
+
+        Raises:
+            CompileError: The shape's scene code has mistakes.
+            SceneValueError: The shape has no end or no inside, its values are not numbers, or it
+                needs too many triangles; the message says what to change.
+        """
+        request = meshing.MeshRequest(
+            tolerance=tolerance,
+            feature=feature,
+            params=params or {},
+            time=time,
+            progress=progress,
+            cancel=cancel,
+            check=check,
+            colors=colors,
+        )
+        return meshing.mesh_of(self, request)
+
+    def measure(
+        self,
+        density: float = 1.0,
+        tolerance: float | None = None,
+        params: Mapping[str, Any] | None = None,
+        time: float = 0.0,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> Measures:
+        """Return volume, area, mass, center of mass, inertia and box, each with its error.
+
+        They are those of meshes of two spacings, whose difference gives the error.
+
+        Args:
+            density: Mass of a unit of volume.
+            tolerance: How far the finer mesh may be from the surface, as for ``mesh``.
+            params: Values of parameters by name; the others have their defaults.
+            time: Time in seconds.
+            progress: Called with the finished share, from 0 to 1.
+            cancel: An event, or a function without arguments, that ends the work early.
+
+        Raises:
+            CompileError: The shape's scene code has mistakes.
+            SceneValueError: The shape has no mesh, or a number is out of range.
+        """
+        request = meshing.MeshRequest(
+            tolerance=tolerance,
+            params=params or {},
+            time=time,
+            progress=progress,
+            cancel=cancel,
+            colors=False,
+        )
+        return measuring.measures_of(self, density, request)

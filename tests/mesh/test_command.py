@@ -1,0 +1,126 @@
+"""``distal mesh`` and ``distal measure``: files, texts, exit codes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from distal.cli.application import application
+
+PARTS = """\
+from distal import Box, Circle, Plane, Scene, Sphere
+from distal.lang import slider
+
+part = Box(2.0, 1.0, 1.0).paint("#ff0000")
+flat = Circle(1.0)
+endless = Plane()
+size = slider("size", 1.0, low=0.5, high=2.0)
+ball = Sphere(size)
+wire = Sphere(1.0) | Box(4.0, 0.001, 0.001).named("wire")
+scene = Scene(part)
+"""
+
+
+@pytest.fixture
+def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "parts.py").write_text(PARTS)
+    return lambda *args: CliRunner().invoke(application, args)
+
+
+def test_a_mesh_is_saved_and_described(run: Any) -> None:
+    done = run("mesh", "parts.py:part", "-o", "part.stl", "--unit", "cm", "--check")
+    assert done.exit_code == 0
+    first, second, third = done.stderr.splitlines()
+    assert first.startswith("part.stl: ") and first.endswith(" triangles, 2 x 1 x 1 cm")
+    assert "cm from the surface" in second
+    assert third == "0 open edges, 0 pinched points, 0 intersections"
+    data = Path("part.stl").read_bytes()[84:]
+    rows = np.frombuffer(data, np.dtype([("numbers", "<f4", 12), ("rest", "<u2")]))["numbers"]
+    a, b, c = rows[:, 3:].reshape(-1, 3, 3).astype(float).transpose(1, 0, 2)
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0
+    assert volume == pytest.approx(2000.0, rel=1e-6)  # cubic millimeters
+
+
+def test_the_report_as_json(run: Any) -> None:
+    done = run("mesh", "parts.py:scene", "-o", "part.ply", "--tolerance", "0.01", "--json")
+    report = json.loads(done.stdout)
+    assert report["tolerance"] == 0.01 and report["unit"] == "mm" and report["name"] == "Box"
+    assert report["error"]["largest"] <= 0.01
+
+
+def test_parameters_change_the_mesh(run: Any) -> None:
+    done = run("measure", "parts.py:ball", "--set", "size=2", "--json")
+    found = json.loads(done.stdout)
+    volume = found["volume"]
+    assert abs(volume["value"] - 33.510322) < volume["error"]
+    assert found["bounds"] == [[-2.0, -2.0, -2.0], [2.0, 2.0, 2.0]]
+
+
+def test_measures_in_words(run: Any) -> None:
+    done = run("measure", "parts.py:part", "--density", "2")
+    lines = done.stdout.splitlines()
+    assert lines[0].startswith("volume   2 ± ")
+    assert lines[2].startswith("mass     4 ± ")
+    assert lines[4].startswith("inertia  0.666667, 0, 0; 0, 1.66667, 0; 0, 0, 1.66667 ± ")
+    assert lines[6] == "bounds   (-1, -0.5, -0.5) to (1, 0.5, 0.5), which the shape never leaves"
+
+
+def test_lost_parts_are_warned_of(run: Any) -> None:
+    done = run("mesh", "parts.py:wire", "-o", "w.stl", "--feature", "0.4", "--tolerance", "0.1")
+    assert done.exit_code == 0
+    assert "warning: 'wire' (line 9) is thinner than" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("args", "code", "text"),
+    [
+        (
+            ("mesh", "parts.py:part", "-o", "p.step"),
+            1,
+            "error: a mesh is not saved as '.step': use one of .3mf, .stl, .glb, .ply, .obj\n",
+        ),
+        (
+            ("mesh", "parts.py:part", "-o", "p.stl", "--unit", "yard"),
+            1,
+            "error: a unit is one of um, mm, cm, m, inch, ft, not 'yard'\n",
+        ),
+        (
+            ("mesh", "parts.py:part", "-o", "p.stl", "--tolerance", "0"),
+            2,
+            "error: --tolerance is a length above 0, not 0\n",
+        ),
+        (
+            ("mesh", "parts.py:flat", "-o", "p.stl"),
+            1,
+            "error: 'Circle' is a flat shape: .extrude(height) makes a solid\n",
+        ),
+        (
+            ("mesh", "parts.py:part", "-o", "parts.py"),
+            2,
+            "error: 'parts.py' is the scene itself\n",
+        ),
+        (
+            ("measure", "parts.py:part", "--density", "-1"),
+            2,
+            "error: --density is a number above 0, not -1\n",
+        ),
+    ],
+)
+def test_mistakes(run: Any, args: tuple[str, ...], code: int, text: str) -> None:
+    done = run(*args)
+    assert (done.exit_code, done.stderr) == (code, text)
+    assert not list(Path().glob("p.*"))
+
+
+def test_a_shape_without_end_is_refused_at_its_line(run: Any) -> None:
+    done = run("mesh", "parts.py:endless", "-o", "p.stl")
+    assert done.exit_code == 1
+    assert "error: 'Plane' has no end along x and y and z" in done.stderr
+    assert "parts.py:6:11" in done.stderr
+    assert not Path("p.stl").exists()
