@@ -213,12 +213,22 @@ def _top(at: TracebackType) -> str:
     return str(at.tb_frame.f_globals.get("__name__", "")).partition(".")[0]
 
 
+def not_in_the_playground(name: str, more: str = "") -> PackageError:
+    """Return the error of something that the playground's Python lacks.
+
+    Args:
+        name: A package, or a module of distal.
+        more: What else the author can do.
+    """
+    fix = f"run the scene on your machine{more}"
+    return PackageError(f"{name} is not in the playground: {fix}", is_missing=True)
+
+
 def _reported(error: Exception, package: Package) -> PackageError | MemoryError:
     if _missing(error) is package:
         if sys.platform == "emscripten":
             name = "NumPy" if package.name == "numpy" else package.name
-            fix = "run the scene on your machine, or write it with math and distal.lang"
-            return PackageError(f"{name} is not in the playground: {fix}", is_missing=True)
+            return not_in_the_playground(name, ", or write it with math and distal.lang")
         return PackageError(f"{package.name} is missing: {package.remedy}", is_missing=True)
     causes = list(_causes(error))
     if any(isinstance(c, MemoryError) or _says_no_memory(c) for c in causes):

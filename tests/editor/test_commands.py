@@ -125,7 +125,7 @@ def test_examples_exports_views_and_colors_by_name(tmp_path):
 def test_commands_by_touch(tmp_path):
     with studio(tmp_path, **PHONE) as app:
         app.page.get_by_role("button", name="Find a command").tap()
-        app.page.locator(".palette li", has_text=re.compile("^Show how often")).tap()
+        app.page.locator(".palette li", has_text=re.compile("^Show what each")).tap()
         app.wait("() => studio.costs.isOpen")
         wide = app.page.evaluate("() => document.documentElement.scrollWidth")
         assert wide <= PHONE["viewport"]["width"]

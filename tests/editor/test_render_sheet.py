@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from distal.cli.application import application
 from distal.editor.local.render_choices import choices
 from tests.editor.studio_page import SCENE, SLOW_MS, studio
-from tests.editor.test_app import AXE, RULES
+from tests.accessibility import violations
 
 pytest.importorskip("websockets")
 
@@ -123,13 +123,6 @@ def test_what_a_format_needs_and_what_a_field_lacks_is_said_before(tmp_path, mon
             sheet.get_by_label("Format").select_option("mp4")
             sheet.get_by_label("Light").select_option("path")
             assert sheet.get_by_label("Quality").input_value() == "high"
-            app.page.screenshot(path="/tmp/jt/sheet.png")
-            app.page.evaluate(AXE.read_text())
-            found = app.page.evaluate(
-                "(rules) => axe.run('dialog', { runOnly: rules })"
-                ".then((r) => r.violations.map((v) => v.id))",
-                RULES,
-            )
-            assert found == []
+            assert violations(app.page) == []
     finally:
         choices.cache_clear()

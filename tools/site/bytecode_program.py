@@ -26,13 +26,15 @@ STDLIB = f"/lib/python{sys.version_info.major}{sys.version_info.minor}.zip/"
 # What a terminal, a network, a debugger or a test uses, and rare encodings.
 _UNUSED = """
 _pydatetime _pyio _pyrepl/ antigravity bdb cProfile cmd. code. ctypes/ curses/ dbm/ doctest
-ensurepip/ ftplib getpass idlelib/ imaplib mailbox modulefinder multiprocessing/ netrc optparse pdb
+ensurepip/ ftplib getpass idlelib/ imaplib ipaddress mailbox modulefinder multiprocessing/ netrc optparse pdb
 pickletools poplib profile pstats pty pyclbr pydoc rlcompleter smtplib socketserver sqlite3/
-tabnanny trace. tty turtle unittest/ venv/ webbrowser wsgiref/ xmlrpc/ zipapp
+tabnanny tarfile trace. tty turtle unittest/ venv/ webbrowser wsgiref/ xml/ xmlrpc/ zipapp
 encodings/big5 encodings/cp encodings/euc encodings/gb encodings/hz encodings/iso
 encodings/johab encodings/koi8 encodings/mac encodings/shift
 """
 LEFT_OUT = tuple(_UNUSED.split())
+# The most instructions of an entry in a table of lines.
+_ENTRY = 8
 
 
 # So that what the first answer needs is bytecode, too.
@@ -119,18 +121,27 @@ def _written(files: list[tuple[str, bytes]]) -> bytes:
 def _bytecode(source: bytes, file: str, *, keeps_docs: bool = False) -> bytes:
     """Return a module's bytecode, which Python takes without looking at the source.
 
-    It has no places of instructions, and docstrings of functions only if they are documented.
+    All instructions are at the first line of their function, which has a docstring only if it is
+    documented.
     """
     tree = ast.parse(source)
     if not keeps_docs:
         for node in ast.walk(tree):
             if isinstance(node, ast.FunctionDef) and ast.get_docstring(node, clean=False):
                 node.body[0] = ast.copy_location(ast.Pass(), node.body[0])
-    code = _without_places(compile(tree, file, "exec", dont_inherit=True))
+    code = _at_first_lines(compile(tree, file, "exec", dont_inherit=True))
     flags = (1).to_bytes(4, "little")  # the digest of a source, which is not checked
     return importlib.util.MAGIC_NUMBER + flags + bytes(8) + marshal.dumps(code)
 
 
-def _without_places(code: CodeType) -> CodeType:
-    parts = tuple(_without_places(c) if isinstance(c, CodeType) else c for c in code.co_consts)
-    return code.replace(co_linetable=b"", co_consts=parts)
+def _at_first_lines(code: CodeType) -> CodeType:
+    """Return code whose instructions are all at the line where it begins, as a short table.
+
+    Without a table, frames have no lines, and ``traceback`` fails.
+    """
+    parts = tuple(_at_first_lines(c) if isinstance(c, CodeType) else c for c in code.co_consts)
+    count = len(code.co_code) // 2
+    lengths = [_ENTRY] * (count // _ENTRY) + [count % _ENTRY] * (count % _ENTRY > 0)
+    # An entry without columns for so many instructions, and no step to another line.
+    table = b"".join(bytes((0x80 | 13 << 3 | length - 1, 0)) for length in lengths)
+    return code.replace(co_linetable=table, co_consts=parts)

@@ -32,7 +32,10 @@ PYTHON = (
 )
 START = "planet"
 # Of distal, what the compile path needs: not what only devices, windows and videos use.
-_LEFT_OUT = ("cli", "gallery", "lessons", "notebook", "video", "window", "editor/local")
+_LEFT_OUT = (
+    *("cli", "editor/local", "gallery", "lessons", "mesh", "notebook"),
+    *("polygons", "video", "window"),
+)
 # The cell is a part of the page's own text, so the page's policy holds in it, beside its own: the
 # cell's script, known by its digest, starts Python from what the page hands it.
 _POLICY = (

@@ -7,7 +7,10 @@ also imports the real module by the same name under ``TYPE_CHECKING``, for the t
 from __future__ import annotations
 
 import importlib
+import sys
 from typing import Any
+
+from distal.packages import not_in_the_playground
 
 
 class LazyModule:
@@ -19,4 +22,10 @@ class LazyModule:
         self._name = name
 
     def __getattr__(self, attribute: str) -> Any:
-        return getattr(importlib.import_module(self._name), attribute)
+        try:
+            module = importlib.import_module(self._name)
+        except ModuleNotFoundError as error:
+            if sys.platform != "emscripten" or not str(error.name).startswith("distal."):
+                raise
+            raise not_in_the_playground(str(error.name)) from error
+        return getattr(module, attribute)
