@@ -13,8 +13,8 @@ from typer.testing import CliRunner
 
 from distal.cli.application import application
 from distal.editor.local.render_choices import choices
-from tests.editor.studio_page import SCENE, SLOW_MS, studio
 from tests.accessibility import violations
+from tests.editor.studio_page import SCENE, SLOW_MS, studio
 
 pytest.importorskip("websockets")
 
@@ -102,7 +102,6 @@ def test_a_film_is_written_beside_the_scene(tmp_path):
         app.page.locator(".jobs .done").wait_for(timeout=SLOW_MS)
         text = app.page.locator(".jobs .done").inner_text()
         assert "scene-2.gif" in text and "beside the scene" in text
-        app.page.screenshot(path="/tmp/jt/film.png")
     assert (tmp_path / "scene.gif").read_bytes() == b"mine"
     assert (tmp_path / "scene-2.gif").read_bytes()[:4] == b"GIF8"
 
