@@ -39,6 +39,7 @@ def test_runs_work_and_time_are_shown_apart_and_go_when_something_changes(tmp_pa
 
         page.get_by_label("Time (measured)").check()
         assert page.evaluate(NONE)
+        assert about(app).startswith("The part of the picture's time")
         page.get_by_role("button", name="Measure").click()
         app.wait("() => studio.costs.times")
         # Which is the largest is tested by the time of the CPU: here other work may disturb it.
