@@ -19,6 +19,7 @@ from typing import Any, Final, TypeAlias
 from weakref import WeakKeyDictionary
 
 from distal.diagnostics import CompileError, Diagnostic, LoadError, Span
+from distal.frontend.problems import did_you_mean
 from distal.ir.nodes import EntryKind
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
@@ -305,11 +306,23 @@ def _failure(file: Path, error: Exception) -> LoadError:
     shown = name
     if name != str(file):  # a module in the same folder: show its path in the form of the scene's
         shown = str(file.parent / Path(name).name)
-    reason = str(explained(error) or f"{type(error).__name__}: {error}")
+    reason = str(explained(error) or f"{type(error).__name__}: {error}{_similar_name(error)}")
     lines = [reason, f"  --> {shown if span is None else f'{shown}:{span.line}'}"]
     if span is not None:
         lines.append(f"  {span.text.strip()}")
     return LoadError("\n".join(lines), span, reason)
+
+
+def _similar_name(error: Exception) -> str:
+    """Return a hint with the known name most similar to an unknown one; "" if none is similar."""
+    trace = error.__traceback__
+    if not isinstance(error, NameError) or not error.name or trace is None:
+        return ""
+    while trace.tb_next is not None:
+        trace = trace.tb_next
+    frame = trace.tb_frame
+    hint = did_you_mean(error.name, {**frame.f_builtins, **frame.f_globals, **frame.f_locals})
+    return f"; {hint}" if hint else ""
 
 
 def _place(trace: types.TracebackType) -> Span:

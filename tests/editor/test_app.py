@@ -74,6 +74,35 @@ def test_a_dragged_number_changes_its_bytes_and_the_picture_and_is_one_undo(tmp_
         assert app.text == SCENE
 
 
+def test_a_number_is_dragged_in_the_text_itself(tmp_path):
+    def press(literal: str, right: int) -> None:
+        box = app.page.locator(".literal", has_text=literal).first.bounding_box()
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        app.page.mouse.move(x, y)
+        app.page.mouse.down()
+        for step in range(1, 5):
+            app.page.mouse.move(x + right * step / 4, y)
+        app.page.mouse.up()
+
+    with studio(tmp_path) as app:
+        press("0.50", 80)  # 20 steps of 0.01
+        app.wait("() => studio.editor.view.state.doc.toString().includes('Box(0.70)')")
+        app.idle()
+        assert app.text == SCENE.replace("Box(0.50)", "Box(0.70)")
+        assert app.page.locator(".dial input[type=number]").input_value() == "0.7"
+        app.page.keyboard.press("Control+z")
+        app.idle()
+        assert app.text == SCENE
+
+        press("(1, 2, 3)", 0)  # a press that rests is a click
+        fields = app.page.locator(".dial input[type=number]")
+        assert [field.input_value() for field in fields.all()] == ["1", "2", "3"]
+        caret = app.page.evaluate("() => studio.editor.view.state.selection.main.head")
+        assert abs(caret - SCENE.index("(1, 2, 3)") - 4.5) < 1
+        press("(1, 2, 3)", 8)  # the number in the middle
+        app.wait("() => studio.editor.view.state.doc.toString().includes('(1, 4, 3)')")
+
+
 def test_a_number_of_a_function_is_turned_without_compiling(tmp_path):
     with studio(tmp_path, FUNC) as app:
         app.page.evaluate(
@@ -177,11 +206,14 @@ def test_a_click_on_the_picture_selects_the_line(tmp_path):
 
 def test_an_endless_loop_is_ended_and_typing_goes_on(tmp_path):
     with studio(tmp_path) as app:
+        app.page.evaluate("(text) => studio.editor.replace('scene.py', text)", f"{SCENE}(")
+        app.wait("() => document.querySelector('.mistakes').childElementCount")
         loop = f"while True: pass\n{SCENE}"
         app.page.evaluate("(text) => studio.editor.replace('scene.py', text)", loop)
         app.wait("() => !document.querySelector('.notice').hidden")
         assert "gave no answer within 5 s" in app.page.locator(".notice").inner_text()
         assert "while True" in app.text
+        assert app.mistakes == ""
         app.page.evaluate("(text) => studio.editor.replace('scene.py', text)", SCENE)
         app.wait(IDLE)
         app.wait("() => document.querySelector('.notice').hidden")
@@ -378,6 +410,12 @@ def test_names_are_completed_and_calls_explained(tmp_path):
         at = app.page.evaluate(place, SCENE.index("Sphere(size)") + 2)
         app.page.mouse.move(at["left"], at["top"] + 5)
         app.page.locator(".name", has_text="Ball, centred at the origin.").wait_for()
+        app.page.evaluate("() => studio.editor.replace('scene.py', 'for i in ran')")
+        app.page.evaluate("() => studio.editor.goTo(1)")
+        app.page.keyboard.press("End")
+        app.page.keyboard.press("Control+Space")
+        options.first.wait_for()
+        assert options.all_inner_texts()[0] == "range"
 
 
 def test_what_a_new_file_begins_with_is_a_picture(tmp_path):

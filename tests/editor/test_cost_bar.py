@@ -39,6 +39,7 @@ def test_runs_work_and_time_are_shown_apart_and_go_when_something_changes(tmp_pa
 
         page.get_by_label("Time (measured)").check()
         assert page.evaluate(NONE)
+        assert about(app).startswith("The part of the picture's time")
         page.get_by_role("button", name="Measure").click()
         # Two compilations and fifteen draws a line: minutes where other work has the processor.
         page.wait_for_function("() => studio.costs.times", timeout=4 * SLOW_MS)

@@ -163,7 +163,10 @@ def test_a_mistake_is_at_its_line(child: Child) -> None:
     assert wrong["kind"] == "mistakes" and wrong["mistakes"][0]["line"] == 6
     missing = child.ask("look", SPHERE.replace("Box(0.5)", "Boxx(0.5)"))
     (mistake,) = missing["mistakes"]
-    assert mistake["message"].startswith("NameError") and mistake["line"] == 6
+    assert mistake["message"] == "NameError: name 'Boxx' is not defined; did you mean 'Box'?"
+    assert mistake["line"] == 6
+    (own,) = child.ask("look", "raise NameError('of the author')\n")["mistakes"]
+    assert own["message"] == "NameError: of the author"
     line = SPHERE.replace("Box(0.5)", "Boxx(0.5)").splitlines()[5]
     assert line[mistake["column"] : mistake["end_column"]] == "Boxx"
     text = distal.gallery()["melting"].read_text().replace("blend)", "blend + vec3(1.0))")

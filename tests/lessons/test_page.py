@@ -116,6 +116,19 @@ def test_a_goal_is_measured_and_reached_by_its_solution(pages):
         assert "reached." in goal.inner_text()
 
 
+def test_a_goal_is_measured_while_time_plays(pages):
+    try:
+        with offline_page(pages[9], **DESK) as watched:
+            watched.page.wait_for_function(
+                "() => document.querySelector('.picture [data-distal]')?.distal.playing"
+                " && Number(document.querySelector('.goal').dataset.difference) > 0.03",
+                timeout=STILL_MS,
+            )
+            assert "The goal is reached at 0.6 %" in watched.page.locator(".goal").inner_text()
+    except BrowserUnavailableError as error:
+        pytest.skip(str(error))
+
+
 def test_the_keyboard_alone_is_enough(pages):
     with opened(pages[6], **DESK) as page:
         page.keyboard.press("Tab")

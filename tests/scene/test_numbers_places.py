@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import linecache
+from functools import cached_property
 
 import pytest
 
@@ -70,3 +71,18 @@ def test_a_file_changed_in_the_meantime_is_read_again(tmp_path):
         names = {"here": author_place, "__name__": "scene"}
         exec(compile(text, str(scene), "exec"), names)
         assert names["found"].text == text.splitlines()[names["found"].line - 1]
+
+
+def test_a_cached_property_points_at_the_line_of_the_author_who_reads_it():
+    inside = {"here": author_place, "cached_property": cached_property, "__name__": "distal.made"}
+    exec("class Made:\n    @cached_property\n    def place(self):\n        return here()\n", inside)
+    names = {"made": inside["Made"](), "__name__": "scene"}
+    exec(compile("\n\nfound = made.place", "<a scene>", "exec"), names)
+    assert (names["found"].file, names["found"].line) == ("<a scene>", 3)
+
+
+def test_bytecode_without_positions_has_no_line():
+    code = compile("found = here()", "<bytecode alone>", "exec").replace(co_linetable=b"")
+    names = {"here": author_place, "__name__": "scene"}
+    exec(code, names)
+    assert (names["found"].line, names["found"].text) == (0, "")

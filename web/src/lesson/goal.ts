@@ -44,7 +44,9 @@ function goal(card: HTMLElement, player: Player, stills: Stills, changes: Change
     (entries) => {
       if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
       sight.disconnect();
-      void player.settled().then(measure);
+      // While time plays, the picture never comes to rest.
+      if (player.playing) soon();
+      else void player.settled().then(measure);
     },
     { rootMargin: "200px" },
   );

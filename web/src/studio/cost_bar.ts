@@ -59,6 +59,8 @@ export class CostBar {
     const choices = CHOICES.map(([which, label]) => {
       const input = make("input", { type: "radio", name: "cost", value: which, checked: which === this.#which });
       input.onchange = () => {
+        // Figures of another kind did not become stale.
+        this.#figures = new Map();
         this.#which = which;
         this.changed();
         void this.#count();

@@ -7,7 +7,7 @@
 
 import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } from "@codemirror/autocomplete";
 import { defaultKeymap, history, historyKeymap, indentWithTab, isolateHistory } from "@codemirror/commands";
-import { python } from "@codemirror/lang-python";
+import { pythonLanguage } from "@codemirror/lang-python";
 import {
   HighlightStyle,
   bracketMatching,
@@ -102,7 +102,7 @@ export class Editor {
       highlightSelectionMatches(),
       linked,
       costs(),
-      python(),
+      pythonLanguage,
       literals(events),
       names(),
       keymap.of([

@@ -1,5 +1,5 @@
 /**
- * The literals of the code that can be turned: their marks, and the dial over one of them.
+ * The literals of the code that can be turned: their marks, the dial over one of them, drags of numbers.
  *
  * Input: the literals that the worker found. Output: an extension of the editor. Marks follow the text
  * until the next literals come; the dial stays open while its literal is rewritten.
@@ -23,6 +23,11 @@ export interface Turning {
   turn(literal: SourceLiteral, value: LiteralValue): void;
   release(): void;
 }
+
+/** A press that moves farther is a drag. */
+const CLICK_PX = 4;
+/** A drag so far is one step of the number. */
+const STEP_PX = 4;
 
 export const setLiterals = StateEffect.define<readonly SourceLiteral[]>();
 const openDial = StateEffect.define<SourceLiteral | null>();
@@ -158,11 +163,55 @@ export function literals(turning: Turning): Extension {
     if (now) view.dispatch({ effects: openDial.of(null) });
     view.dispatch({ effects: openDial.of(literal) });
   };
+  let isDragged = false;
+  /** A press on a number that moves turns its dial; one that rests puts the caret there. */
+  const press = (event: MouseEvent, view: EditorView, pressed: Element) => {
+    const { clientX: from, clientY } = event;
+    const start = view.posAtDOM(pressed);
+    const at = view.posAtCoords({ x: from, y: clientY }) ?? start;
+    const ends = new AbortController();
+    const { signal } = ends;
+    let slider: HTMLInputElement | undefined;
+    let first = 0;
+    const release = () => {
+      ends.abort();
+      if (slider) slider.dispatchEvent(new Event("change"));
+      else view.dispatch({ selection: { anchor: at } });
+    };
+    const move = ({ clientX, buttons }: MouseEvent) => {
+      if (!buttons) return release(); // Released outside the window.
+      if (!slider) {
+        if (Math.abs(clientX - from) < CLICK_PX) return;
+        isDragged = true;
+        open(view, start);
+        // In a vector, the numbers before this one end in commas.
+        const number = view.state.sliceDoc(start, at).split(",").length - 1;
+        slider = dial!.element.querySelectorAll<HTMLInputElement>("[type=range]")[number];
+        if (!slider) return release();
+        first = slider.valueAsNumber;
+      }
+      slider.valueAsNumber = first + Math.round((clientX - from) / STEP_PX) * +slider.step;
+      slider.dispatchEvent(new Event("input"));
+    };
+    addEventListener("mousemove", move, { signal });
+    addEventListener("mouseup", release, { signal });
+    view.focus();
+  };
   return [
     marks,
     opened,
     EditorView.domEventHandlers({
+      mousedown(event, view) {
+        isDragged = false;
+        const pressed = (event.target as HTMLElement).closest?.(".literal:is(.number, .vector)");
+        const { altKey, button, ctrlKey, detail, metaKey, shiftKey } = event;
+        const isOther = button || detail > 1 || altKey || ctrlKey || metaKey || shiftKey;
+        if (!pressed || isOther) return false;
+        press(event, view, pressed);
+        return true;
+      },
       click(event, view) {
+        if (isDragged) return; // Its dial stays.
         const pressed = (event.target as HTMLElement).closest?.(".literal, .swatch");
         const isPressed = pressed && view.state.selection.main.empty;
         open(view, isPressed ? view.posAtDOM(pressed) : -1);

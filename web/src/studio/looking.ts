@@ -237,12 +237,14 @@ export class Looking {
   }
 
   restarted(reason: string): void {
-    const { page, picture, turning } = this.studio;
+    const { page, picture, tabs, turning } = this.studio;
     this.ready = null;
     this.isStopped = true;
     this.#isStoppedTold = true;
     turning.drop();
     picture.isOld = true;
+    // They are those of an older text.
+    tabs.showMistakes([]);
     page.work.textContent = "Stopped";
     page.tell(`Stopped: ${reason}. Change the code, or run it again.`, ["Run again", () => this.run()]);
   }

@@ -6,7 +6,7 @@
  */
 
 import type { Completion, CompletionContext, CompletionResult } from "@codemirror/autocomplete";
-import { pythonLanguage } from "@codemirror/lang-python";
+import { localCompletionSource, pythonLanguage } from "@codemirror/lang-python";
 import { syntaxTree } from "@codemirror/language";
 import { StateField, type EditorState, type Extension } from "@codemirror/state";
 import { hoverTooltip, showTooltip, type Tooltip } from "@codemirror/view";
@@ -25,7 +25,13 @@ function completions(names: Names, isMethod: boolean): Completion[] {
   });
 }
 
-const OF_GLOBALS = completions(GLOBALS, false);
+/** Of Python itself, what scenes use: the many names of its exceptions would hide those of distal. */
+const PYTHON =
+  "and break def elif else enumerate False float for from if import in int len list None not " +
+  "or print range return round sorted sum True tuple while zip";
+const OF_PYTHON: Completion[] = PYTHON.split(" ").map((label) => ({ label, type: "keyword" }));
+
+const OF_GLOBALS = [...completions(GLOBALS, false), ...OF_PYTHON.filter(({ label }) => !(label in GLOBALS))];
 const OF_METHODS = completions(METHODS, true);
 
 function complete(context: CompletionContext): CompletionResult | null {
@@ -100,5 +106,6 @@ const called = StateField.define<Called | null>({
 });
 
 export function names(): Extension {
-  return [pythonLanguage.data.of({ autocomplete: complete }), hover, called];
+  const sources = [complete, localCompletionSource];
+  return [sources.map((autocomplete) => pythonLanguage.data.of({ autocomplete })), hover, called];
 }

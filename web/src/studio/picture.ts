@@ -36,6 +36,8 @@ export interface PictureEvents {
 /** A press that moves farther is a drag. */
 const CLICK_PX = 4;
 const STEPS = 1000;
+const NO_SLIDERS =
+  "This scene has no sliders. Drag an underlined number of the code to change it; click the picture to find a shape's line.";
 
 export class Picture {
   readonly element = make("div", { className: "picture" });
@@ -154,8 +156,7 @@ export class Picture {
       const heading = title && make("h3", {}, title);
       return make("div", { role: "group", "aria-label": title || "Parameters" }, heading, ...rows);
     });
-    this.knobs.replaceChildren(...made);
-    this.knobs.hidden = !made.length;
+    this.knobs.replaceChildren(...(made.length ? made : [make("p", { className: "quiet" }, NO_SLIDERS)]));
   }
 
   #moved(name: string, value: Value): void {

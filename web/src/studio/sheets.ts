@@ -85,7 +85,7 @@ export function help(commands: readonly Command[], version: string): void {
   sheet(
     "Keys",
     make("dl", { className: "keys" }, ...rows),
-    make("p", {}, "A click on a number in the code opens its dial. A click on the picture selects the line of the shape."),
+    make("p", {}, "Drag a number in the code, or click it for its dial. A click on the picture selects the line of the shape."),
     make("p", { className: "quiet" }, `distal ${version}`),
   );
 }

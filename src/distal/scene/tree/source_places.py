@@ -8,6 +8,7 @@ file.
 
 from __future__ import annotations
 
+import functools
 import linecache
 import os
 import sys
@@ -24,6 +25,8 @@ _Position: TypeAlias = tuple[int | None, int | None, int | None, int | None]
 
 _PACKAGE: Final = os.path.dirname(os.path.abspath(distal.__file__)) + os.sep
 _GALLERY: Final = os.path.join(_PACKAGE, "gallery") + os.sep
+# A cached property is called by the standard library: its caller is meant.
+_CACHING: Final = functools.cached_property.__get__.__code__.co_filename
 # The table of a scene of a thousand lines takes 100 kB; a few code objects are enough, because
 # loops call few functions.
 _REMEMBERED: Final = 16
@@ -71,7 +74,8 @@ def _is_inside(frame: FrameType) -> bool:
             module = str(frame.f_globals.get("__name__", ""))
             return module.partition(".")[0] == "distal"
         path = os.path.abspath(file)
-        found = path.startswith(_PACKAGE) and not path.startswith(_GALLERY)
+        is_own = path.startswith(_PACKAGE) and not path.startswith(_GALLERY)
+        found = is_own or file == _CACHING
         _inside[file] = found
     return found
 
@@ -89,7 +93,7 @@ def _span_at(frame: FrameType, text: _CodeText) -> Span:
     known: _Position = (None, None, None, None)
     if 0 <= index < len(text.positions):
         known = text.positions[index]
-    line = known[0] or frame.f_lineno
+    line = known[0] or frame.f_lineno or 0  # bytecode without positions has no line
     content = text.lines[line - 1].rstrip("\r\n") if 1 <= line <= len(text.lines) else ""
     end_line = known[1] or line
     if known[0] is None or known[2] is None or known[3] is None:
