@@ -224,8 +224,13 @@ def _run(
         raise LoadError(f"{file} left with sys.exit({error.code!r}) while it was loaded") from None
     except Exception as error:
         raise _failure(file, error) from error
+    except BaseException as error:
+        if type(error).__module__ != name:  # ctrl-C and the like are not the author's
+            raise
+        raise _failure(file, error) from error
     finally:
-        sys.path.remove(folder)
+        if folder in sys.path:  # the author's code may have changed it
+            sys.path.remove(folder)
         neighbours = _forget_neighbours(Path(folder), known)
     return module, neighbours
 
@@ -292,7 +297,7 @@ def _syntax_error(error: SyntaxError, filename: str) -> CompileError:
     return CompileError([Diagnostic(f"this is not Python: {error.msg}", span)])
 
 
-def _failure(file: Path, error: Exception) -> LoadError:
+def _failure(file: Path, error: BaseException) -> LoadError:
     """Return the report for an error, with the line of the author's files where it was raised."""
     name, span = str(file), None
     folder = file.resolve().parent
@@ -305,11 +310,20 @@ def _failure(file: Path, error: Exception) -> LoadError:
     shown = name
     if name != str(file):  # a module in the same folder: show its path in the form of the scene's
         shown = str(file.parent / Path(name).name)
-    reason = str(explained(error) or f"{type(error).__name__}: {error}")
+    reason = _reason(error)
     lines = [reason, f"  --> {shown if span is None else f'{shown}:{span.line}'}"]
     if span is not None:
         lines.append(f"  {span.text.strip()}")
     return LoadError("\n".join(lines), span, reason)
+
+
+def _reason(error: BaseException) -> str:
+    kind = type(error).__name__
+    try:
+        found = explained(error) if isinstance(error, Exception) else None
+        return str(found or f"{kind}: {error}")
+    except Exception:  # the author's own class
+        return f"{kind}: its text cannot be made"
 
 
 def _place(trace: types.TracebackType) -> Span:
