@@ -92,7 +92,7 @@ class StudioWorker:
 
     def answers(self, request: AppRequest) -> list[Message]:
         """Return the messages that answer a request: what was printed, then the answer."""
-        printed = _Printed()
+        printed = _PrintedText()
         with _captured(printed):
             answer = self._answer(request)
         first: list[Message] = []
@@ -128,7 +128,7 @@ class StudioWorker:
             return Mistakes(**number, mistakes=found, literals=literals, edits=edits)
 
 
-class _Printed(io.StringIO):
+class _PrintedText(io.StringIO):
     """What the author's code prints: its begin, and its length. All of it may be gigabytes."""
 
     def __init__(self) -> None:
