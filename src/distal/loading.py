@@ -225,8 +225,13 @@ def _run(
         raise LoadError(f"{file} left with sys.exit({error.code!r}) while it was loaded") from None
     except Exception as error:
         raise _failure(file, error) from error
+    except BaseException as error:
+        if type(error).__module__ != name:  # ctrl-C and the like are not the author's
+            raise
+        raise _failure(file, error) from error
     finally:
-        sys.path.remove(folder)
+        if folder in sys.path:  # the author's code may have changed it
+            sys.path.remove(folder)
         neighbours = _forget_neighbours(Path(folder), known)
     return module, neighbours
 
@@ -293,7 +298,7 @@ def _syntax_error(error: SyntaxError, filename: str) -> CompileError:
     return CompileError([Diagnostic(f"this is not Python: {error.msg}", span)])
 
 
-def _failure(file: Path, error: Exception) -> LoadError:
+def _failure(file: Path, error: BaseException) -> LoadError:
     """Return the report for an error, with the line of the author's files where it was raised."""
     name, span = str(file), None
     folder = file.resolve().parent
@@ -306,14 +311,14 @@ def _failure(file: Path, error: Exception) -> LoadError:
     shown = name
     if name != str(file):  # a module in the same folder: show its path in the form of the scene's
         shown = str(file.parent / Path(name).name)
-    reason = str(explained(error) or f"{type(error).__name__}: {error}{_similar_name(error)}")
+    reason = _reason(error)
     lines = [reason, f"  --> {shown if span is None else f'{shown}:{span.line}'}"]
     if span is not None:
         lines.append(f"  {span.text.strip()}")
     return LoadError("\n".join(lines), span, reason)
 
 
-def _similar_name(error: Exception) -> str:
+def _similar_name(error: BaseException) -> str:
     """Return a hint with the known name most similar to an unknown one; "" if none is similar."""
     trace = error.__traceback__
     if not isinstance(error, NameError) or not error.name or trace is None:
@@ -323,6 +328,15 @@ def _similar_name(error: Exception) -> str:
     frame = trace.tb_frame
     hint = did_you_mean(error.name, {**frame.f_builtins, **frame.f_globals, **frame.f_locals})
     return f"; {hint}" if hint else ""
+
+
+def _reason(error: BaseException) -> str:
+    kind = type(error).__name__
+    try:
+        found = explained(error) if isinstance(error, Exception) else None
+        return str(found or f"{kind}: {error}{_similar_name(error)}")
+    except Exception:  # the author's own class
+        return f"{kind}: its text cannot be made"
 
 
 def _place(trace: types.TracebackType) -> Span:

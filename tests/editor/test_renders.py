@@ -287,3 +287,70 @@ def test_a_name_is_taken_once(tmp_path):
         "made-3.gif",
     ]
     assert {file.read_bytes() for file in folder.iterdir()} == {b"film"}
+
+
+FORGED = """import os, sys, atexit
+line = '{"stage": "rendering", "done": 0.987, "text": "forged"}\\n'
+atexit.register(lambda: os.write(1, line.encode()))
+print(line, flush=True)
+sys.__stdout__.write(line)
+sys.__stdout__.flush()
+os.write(1, line.encode())
+print("x" * 3_000_000)
+"""
+
+
+def test_printed_lines_are_no_progress(socket):
+    socket.send(rendering(1, FORGED + SCENE))
+    told = []
+    while (message := parsed(socket.recv(timeout=ANSWER_S))).kind != "answer":
+        told.append((getattr(message, "text", None), getattr(message, "done", None)))
+    assert message.result.name == "scene.png"
+    assert told
+    assert not [one for one in told if "forged" in str(one) or one[1] == 0.987]
+
+
+def test_requests_that_cannot_be_rendered_do_not_stop_the_queue(server, socket, tmp_path):
+    attempts = [
+        (rendering(1, "x = '\ud800'\n"), "line 1 of 'scene.py' has a character that is not"),
+        (rendering(1, object="../../x"), "'../../x' is not the name of a scene"),
+        (rendering(1, object="x\0"), "is not the name of a scene"),
+        (rendering(1, main="../scene.py"), "there is no file '../scene.py' among the texts"),
+        (rendering(1, files={"scene.py": SCENE, "a\0.py": ""}), "'a\\x00.py' is not the name"),
+        (rendering(1, files={"scene.py": SCENE, "../a.py": ""}), "'../a.py' is not the name"),
+        (rendering(1, look="x\0y"), "cannot be rendered (ValueError"),
+    ]
+    for sent, reason in attempts:
+        socket.send(sent)
+        assert reason in until(socket, "mistakes", 1).mistakes[0].message
+    assert os.listdir(tmp_path / "scenes") == ["scene.py"]
+    socket.send(rendering(2))
+    until(socket, "answer", 2)
+
+
+def test_a_full_disk_is_told_and_the_next_render_works(socket, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr("distal.editor.local.renders.ScratchFolder", full)
+        socket.send(rendering(1))
+        text = until(socket, "mistakes", 1).mistakes[0].message
+        assert text == "[Errno 28] No space left on device"
+    socket.send(rendering(2))
+    until(socket, "answer", 2)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="the system has no fork")
+def test_a_render_that_leaves_a_process_behind_ends(socket, tmp_path):
+    place = tmp_path / "number"
+    fork = (
+        "import os, time\nnumber = os.fork()\nif number == 0:\n    time.sleep(600)\n"
+        f"open({str(place)!r}, 'w').write(str(number))\n"
+    )
+    socket.send(rendering(1, fork + SCENE))
+    assert until(socket, "answer", 1).result.name == "scene.png"
+    with pytest.raises(OSError, match="No such process"):
+        for _ in range(100):
+            os.kill(int(place.read_text()), 0)
+            time.sleep(0.05)

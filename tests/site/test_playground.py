@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+from distal.editor.links import link_of
 from distal.editor.local.files import SceneFiles
 from distal.editor.messages import LookRequest
 from distal.editor.worker import StudioWorker
@@ -248,7 +249,15 @@ def test_another_page_has_it_in_a_frame(address, folder):
         assert opened.value.evaluate(text) == gallery()["raymarcher"].read_text()
 
 
-@pytest.mark.parametrize("fragment", ["#c=", "#c=AAAA", "#c=!!", "#example=none", "#x"])
+BROKEN = [
+    *("#c=", "#c=AAAA", "#c=!!", "#example=none", "#example=constructor", "#x"),
+    link_of({"files": {}, "main": "toString"}),
+    link_of({"files": {"../a.py": ""}, "main": "../a.py"}),
+    link_of({"files": {"a.py": "#" * 50_000_000}, "main": "a.py"}),
+]
+
+
+@pytest.mark.parametrize("fragment", BROKEN, ids=range(len(BROKEN)))
 def test_a_broken_link_shows_the_start(address, fragment):
     with context(address) as made:
         page = made.new_page()
@@ -331,3 +340,54 @@ def test_the_cell_is_sealed(awake):
     assert "DONE" not in told, told
     assert page.evaluate("() => heard") == []
     assert page.evaluate("() => localStorage.getItem('a')") is None
+
+
+MADE_UP = """
+import __main__, json
+def post(**message): __main__.post(json.dumps(message))
+for text in ("{", "null", "[1]", '"x"', "{}", '{"kind":"__proto__"}', "x" * 65_000_000):
+    __main__.post(text)
+post(kind="changed", files={"planet.py": "stolen"}, digests={"planet.py": "x"})
+post(kind="restarted", id=None, reason="made up")
+for number in (-7, None, "x", 10**9):
+    post(kind="mistakes", id=number, revision=1, mistakes=[])
+    post(kind="dropped", id=number, revision=1)
+from distal import *
+scene = Scene(Sphere(0.5))
+"""
+FLOOD = """
+import __main__
+while True:
+    __main__.post('{"kind":"progress","id":1,"revision":1,"done":0,"label":"","text":""}')
+"""
+
+
+def test_what_the_code_in_the_cell_makes_up_is_left_out(awake):
+    page = awake
+    show_again(page)
+    before = page.evaluate("() => studio.editor.view.state.doc.toString()")
+    assert ask(page, MADE_UP)["kind"] == "scene"
+    assert page.evaluate("() => studio.editor.view.state.doc.toString()") == before
+    assert "made up" not in page.locator(".notice").inner_text()
+
+
+def test_a_flood_of_messages_ends_the_worker(awake):
+    page = awake
+    assert ask(page, FLOOD) is None
+    notice = "() => document.querySelector('.notice').textContent.includes('too many messages')"
+    page.wait_for_function(notice, timeout=SLOW_MS)
+    show_again(page)
+
+
+def test_an_answer_of_no_form_leaves_the_app_alive(awake):
+    page = awake
+    show_again(page)
+    # The app's own next request, answered by a scene without a payload.
+    page.evaluate(
+        "() => { const { channel } = studio; const old = channel.post; channel.post = (asked) => {"
+        " channel.post = old; setTimeout(() => channel.onMessage("
+        "{ kind: 'scene', id: asked.id, objects: [] })); }; studio.looking.look(); }"
+    )
+    told = "() => document.body.textContent.includes('The picture cannot be shown')"
+    page.wait_for_function(told, timeout=SLOW_MS)
+    show_again(page)

@@ -27,7 +27,8 @@ STDLIB = f"/lib/python{sys.version_info.major}{sys.version_info.minor}.zip/"
 _UNUSED = """
 _pydatetime _pyio _pyrepl/ antigravity bdb cProfile cmd. code. ctypes/ curses/ dbm/ doctest
 ensurepip/ ftplib getpass idlelib/ imaplib ipaddress mailbox modulefinder multiprocessing/ netrc
-optparse pdb pickletools poplib profile pstats pty pyclbr pydoc rlcompleter smtplib socketserver sqlite3/
+optparse pdb pickletools poplib profile pstats pty pyclbr pydoc rlcompleter smtplib socketserver
+sqlite3/
 tabnanny tarfile trace. tty turtle unittest/ venv/ webbrowser wsgiref/ xml/ xmlrpc/ zipapp
 encodings/big5 encodings/cp encodings/euc encodings/gb encodings/hz encodings/iso
 encodings/johab encodings/koi8 encodings/mac encodings/shift

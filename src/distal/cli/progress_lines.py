@@ -1,17 +1,19 @@
 """Progress as lines of JSON on stdout, for programs that run a command.
 
 Input: stages and shares of the work. Output: one object a line: ``stage``, ``done`` (0 to 1) and
-``text``. A reader that is gone ends the command. Standard library only.
+``text``. What the author's code prints goes nowhere, so that no line of it is taken for one of
+these. A reader that is gone ends the command. Standard library only.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import sys
 import threading
 import time
 from types import TracebackType
-from typing import Final, Self
+from typing import IO, Final, Self
 
 from distal.cli.messages import say
 from distal.lang.progress_lines import COMPILING, KEY, RENDERING
@@ -20,10 +22,26 @@ JSON: Final = "json"
 _PAUSE_S: Final = 0.1  # at least, between two lines of one stage
 
 
+def _own_stdout() -> IO[str]:
+    """Return stdout for these lines alone; who prints from now on writes to nothing.
+
+    A stdout that somebody in this process has put in place is left to them.
+    """
+    if sys.stdout is not sys.__stdout__ or sys.stdout is None:
+        return sys.stdout
+    sys.stdout.flush()
+    nothing = os.open(os.devnull, os.O_WRONLY)
+    own = os.dup(1)
+    os.dup2(nothing, 1)
+    os.close(nothing)
+    return os.fdopen(own, "w", encoding="utf-8", newline="\n")
+
+
 class _ProgressWriter:
     """Writes lines; may be called by several threads."""
 
     def __init__(self) -> None:
+        self._stream = _own_stdout()
         self._lock = threading.Lock()
         self._stage = COMPILING
         self._last = 0.0
@@ -49,9 +67,12 @@ class _ProgressWriter:
             if stage == self._stage and done < 1.0 and now - self._last < _PAUSE_S:
                 return
             self._stage, self._last = stage, now
-            line = json.dumps({KEY: stage, "done": done, "text": text})
-            sys.stdout.write(f"{line}\n")
-            sys.stdout.flush()
+            self.answer(json.dumps({KEY: stage, "done": done, "text": text}))
+
+    def answer(self, line: str) -> None:
+        """Write a line of data."""
+        self._stream.write(f"{line}\n")
+        self._stream.flush()
 
 
 class PictureLines(_ProgressWriter):

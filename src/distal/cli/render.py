@@ -31,7 +31,6 @@ from distal.cli.base import (
     SteeringOption,
     ThreadsOption,
     TimeOption,
-    answer,
     application,
     check_view,
     chosen_device,
@@ -290,7 +289,7 @@ def render(
         "size": list(width_height),
     }
     if stats:
-        answer(json.dumps(figures))
+        progress.answer(json.dumps(figures))
     else:
         say(f"{output}: {picture.width}x{picture.height}; {stages(figures)}")
         if picture.stats.get("noise") is not None:

@@ -21,6 +21,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from distal.cli.base import answer
 from distal.cli.messages import say
 from distal.cli.progress_lines import JSON, FrameLines, PictureLines
 
@@ -49,6 +50,10 @@ class _Bar:
 
     def stage(self, name: str) -> None:
         """Begin a stage of the work; a bar shows only the one that takes long."""
+
+    def answer(self, line: str) -> None:
+        """Write a line of data to stdout."""
+        answer(line)
 
     def _shown(self) -> Progress | None:
         """Return the bar, started if necessary; None if it must not be shown (yet)."""

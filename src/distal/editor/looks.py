@@ -28,7 +28,7 @@ from distal.editor.messages import (
 )
 from distal.editor.places import column, shapes_of
 from distal.editor.programs import KeptPrograms, key_of, numbers_of
-from distal.editor.scene_folder import check_name
+from distal.editor.scene_folder import check_name, encoded_text
 from distal.export.page_options import PageOptions
 from distal.export.payload import Facts, framed, lowered, parameter_entry, payload
 from distal.ir.nodes import Module, Origin
@@ -97,7 +97,7 @@ class Looks:
             if self._written.get(name) == files.get(name):
                 continue
             if name in files:
-                (self._folder / name).write_text(files[name], encoding="utf-8")
+                (self._folder / name).write_bytes(encoded_text(name, files[name]))
                 self._written[name] = files[name]
             else:
                 (self._folder / name).unlink(missing_ok=True)

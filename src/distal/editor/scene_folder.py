@@ -22,12 +22,31 @@ def check_name(name: str) -> None:
     Raises:
         LoadError: It is another.
     """
-    if PurePath(name).name != name or not name.endswith(".py"):
-        raise LoadError(f"'{name[:80]}' is not the name of a Python file")
+    if PurePath(name).name != name or not name.endswith(".py") or not name.isprintable():
+        shown = ascii(name[:80])[1:-1] if not name.isprintable() else name[:80]
+        raise LoadError(f"'{shown}' is not the name of a Python file")
+
+
+def encoded_text(name: str, text: str) -> bytes:
+    """Return the bytes of a file's text.
+
+    Raises:
+        LoadError: It has half a character (a lone surrogate), which no file can hold.
+    """
+    try:
+        return text.encode("utf-8")
+    except UnicodeEncodeError as error:
+        line = text.count("\n", 0, error.start) + 1
+        raise LoadError(f"line {line} of '{name}' has a character that is not Unicode") from None
 
 
 def link_beside(source: Path, folder: Path) -> None:
     """Link what a folder has, apart from Python files, where links are allowed."""
+    with contextlib.suppress(OSError):  # the folder is gone, or may not be read
+        _link_entries(source, folder)
+
+
+def _link_entries(source: Path, folder: Path) -> None:
     for entry in itertools.islice(source.iterdir(), MOST_LINKS):
         if entry.suffix != ".py" and entry.name != "__pycache__":
             with contextlib.suppress(OSError):

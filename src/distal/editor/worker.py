@@ -17,7 +17,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import IO, Any, Final
 
@@ -55,6 +55,7 @@ from distal.export.payload import FORMAT
 from distal.packages import explained, is_installed
 from distal.version import __version__
 
+PATIENCE_S: Final = 5.0  # for the author's code, when nobody is there any more
 PAUSE_S: Final = 1.0  # without a request, until memory is tidied
 
 Send = Callable[[Message], None]
@@ -91,15 +92,15 @@ class StudioWorker:
 
     def answers(self, request: AppRequest) -> list[Message]:
         """Return the messages that answer a request: what was printed, then the answer."""
-        printed = io.StringIO()
+        printed = _PrintedText()
         with _captured(printed):
             answer = self._answer(request)
-        text = printed.getvalue()
         first: list[Message] = []
-        if text:
-            kept = text[:LONGEST_PRINTED]
-            more = "" if kept == text else f"\n… {len(text) - len(kept):,} characters more"
-            first = [Printed(id=request.id, revision=request.revision, text=kept + more)]
+        if printed.length:
+            text = printed.getvalue()
+            left = printed.length - len(text)
+            more = f"\n… {left:,} characters more" if left else ""
+            first = [Printed(id=request.id, revision=request.revision, text=text + more)]
         return [*first, answer]
 
     def _answer(self, request: AppRequest) -> Message:
@@ -122,12 +123,26 @@ class StudioWorker:
                 return self._looks.hold(request, begin)
             result = ANSWERS[request.kind](AnswerWork(request, self._looks))
             return Answer(**number, request=request.kind, result=result)
-        except Exception as error:
+        except (Exception, KeyboardInterrupt) as error:
             found = _mistakes_of(error, request)
             return Mistakes(**number, mistakes=found, literals=literals, edits=edits)
 
 
-def _mistakes_of(error: Exception, request: SourceRequest) -> tuple[Mistake, ...]:
+class _PrintedText(io.StringIO):
+    """What the author's code prints: its begin, and its length. All of it may be gigabytes."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.length = 0
+
+    def write(self, text: str) -> int:
+        """Keep a text as far as there is room."""
+        super().write(text[: max(0, LONGEST_PRINTED - self.length)])
+        self.length += len(text)
+        return len(text)
+
+
+def _mistakes_of(error: BaseException, request: SourceRequest) -> tuple[Mistake, ...]:
     """Return what the author or the app did wrong; an unknown error names its type, too."""
     if isinstance(error, _NAMED):
         return mistakes_of(error, request.files)
@@ -135,8 +150,11 @@ def _mistakes_of(error: Exception, request: SourceRequest) -> tuple[Mistake, ...
         text = "the scene is nested too deeply"
     elif isinstance(error, _REFUSED):
         text = str(error)
+    elif isinstance(error, KeyboardInterrupt):
+        text = "the scene's code raised KeyboardInterrupt"
     else:
-        text = str(explained(error) or f"{type(error).__name__}: {error}")
+        found = explained(error) if isinstance(error, Exception) else None
+        text = str(found or f"{type(error).__name__}: {error}".removesuffix(": "))
     return (Mistake(severity="error", message=text),)
 
 
@@ -151,7 +169,7 @@ def _captured(into: IO[str]) -> Iterator[None]:
         yield
 
 
-def serve(worker: StudioWorker, lines: IO[str], send: Send) -> None:
+def serve(worker: StudioWorker, lines: Iterable[str], send: Send) -> None:
     """Answer requests until ``stop`` or the end of the input.
 
     Args:
@@ -213,7 +231,7 @@ def _received(line: str | None, mailbox: Mailbox, send: Send) -> bool:
     return True
 
 
-def _read(lines: IO[str], arriving: queue.SimpleQueue[str | None]) -> None:
+def _read(lines: Iterable[str], arriving: queue.SimpleQueue[str | None]) -> None:
     for line in lines:
         arriving.put(line)
     arriving.put(None)
@@ -222,8 +240,9 @@ def _read(lines: IO[str], arriving: queue.SimpleQueue[str | None]) -> None:
 def main() -> None:
     """Answer requests on standard input, in a folder that is removed at the end.
 
-    The streams of messages are copies: the author's code has neither. An argument names the folder
-    of the scene, whose other files are linked beside the texts, so that a scene finds its pictures.
+    The streams of messages are copies: the author's code has neither. The first argument names the
+    folder of the scene, whose other files are linked beside the texts, so that a scene finds its
+    pictures; the second one a folder for the texts that somebody else removes.
     """
     requests = os.fdopen(os.dup(0), "r", encoding="utf-8", newline="\n")
     messages = os.fdopen(os.dup(1), "w", encoding="utf-8", newline="\n")
@@ -235,10 +254,20 @@ def main() -> None:
         messages.write(f"{encoded(message)}\n")
         messages.flush()
 
-    with tempfile.TemporaryDirectory(prefix="distal_studio_") as folder:
-        if len(sys.argv) > 1:
-            link_beside(Path(sys.argv[1]), Path(folder))
-        serve(StudioWorker(Path(folder), send), requests, send)
+    with contextlib.ExitStack() as stack:
+        beside, texts = [*sys.argv[1:3], None, None][:2]
+        folder = Path(texts or stack.enter_context(tempfile.TemporaryDirectory()))
+        if beside is not None:
+            link_beside(Path(beside), folder)
+        serve(StudioWorker(folder, send), _until_left(requests), send)
+
+
+def _until_left(lines: IO[str]) -> Iterator[str]:
+    """Yield the lines. After the last one nobody is there: what does not end by itself is ended."""
+    yield from lines
+    timer = threading.Timer(PATIENCE_S, os._exit, (1,))
+    timer.daemon = True
+    timer.start()
 
 
 if __name__ == "__main__":

@@ -16,6 +16,9 @@ const WORK_MS = 120_000;
 const ANSWERS = ["scene", "numbers", "answer", "mistakes", "dropped"];
 /** What comes out of the cell is a stranger's: longer messages are not read. */
 const LONGEST = 64_000_000;
+const KINDS = ["ready", "printed", "progress", ...ANSWERS];
+/** Messages of one request at most; the worker sends three. */
+const MOST = 100;
 
 export class CellChannel implements Channel {
   onMessage: Channel["onMessage"] = () => {};
@@ -26,6 +29,12 @@ export class CellChannel implements Channel {
   #isStarted = false;
   #waiting = new Map<number, number>();
   #timer = 0;
+  /** Messages since the last answer. */
+  #count = 0;
+  /** The author's code has ended, for the first request that waits. */
+  #hasRun = false;
+  /** The worker was told to end: what it still says is not read. */
+  #isEnding = false;
 
   /** `folder`: where the files of Python are. */
   constructor(readonly folder: string) {}
@@ -81,14 +90,29 @@ export class CellChannel implements Channel {
     if (typeof data !== "string") {
       return this.#fail(String((data as { failed?: unknown } | null)?.failed).slice(0, 400));
     }
-    if (data.length > LONGEST) return;
-    const message = JSON.parse(data) as Response;
-    if (ANSWERS.includes(message.kind)) {
-      this.#waiting.delete((message as { id: number }).id);
+    const message = messageOf(data);
+    if (this.#isEnding && message?.kind !== "ready") return;
+    if (++this.#count > MOST) return this.#restart("the scene's code sent too many messages");
+    if (!message) return;
+    if (message.kind === "ready") this.#begin();
+    const isAnswer = ANSWERS.includes(message.kind);
+    // Only answers to what was asked count: code that makes up others would never be ended.
+    if (isAnswer && !this.#waiting.delete((message as { id: number }).id)) return;
+    if (isAnswer) {
       clearTimeout(this.#timer);
+      this.#begin();
       if (this.#waiting.size) this.#wait(CODE_MS);
-    } else if (message.kind === "progress") this.#wait(WORK_MS);
+    } else if (message.kind === "progress" && !this.#hasRun) {
+      this.#hasRun = true;
+      this.#wait(WORK_MS);
+    }
     this.onMessage(message);
+  }
+
+  /** The next request is the worker's. */
+  #begin(): void {
+    this.#isEnding = this.#hasRun = false;
+    this.#count = 0;
   }
 
   #wait(ms: number): void {
@@ -100,6 +124,7 @@ export class CellChannel implements Channel {
 
   #restart(reason: string): void {
     clearTimeout(this.#timer);
+    this.#isEnding = true;
     const [first, ...others] = this.#waiting;
     this.#waiting.clear();
     this.onMessage({ kind: "restarted", id: first?.[0] ?? null, reason });
@@ -111,5 +136,16 @@ export class CellChannel implements Channel {
     if (this.#port && this.#waiting.size) return this.#restart(reason);
     this.onState(false);
     this.onMessage({ kind: "restarted", id: null, reason: `Python could not be loaded: ${reason}` });
+  }
+}
+
+/** The message in a text of the cell; null for a text that is none, or of a kind that no worker sends. */
+function messageOf(text: string): Response | null {
+  if (text.length > LONGEST) return null;
+  try {
+    const found = JSON.parse(text) as Response | null;
+    return found && KINDS.includes(found.kind) ? found : null;
+  } catch {
+    return null;
   }
 }

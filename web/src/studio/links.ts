@@ -42,7 +42,7 @@ function isShared(found: Shared | null): found is Shared {
   if (typeof found?.main !== "string" || typeof found.files !== "object" || !found.files) return false;
   const names = Object.entries(found.files);
   const areFine = names.every(([name, text]) => /^[^/\\]+\.py$/.test(name) && typeof text === "string");
-  return areFine && found.main in found.files;
+  return areFine && Object.hasOwn(found.files, found.main);
 }
 
 /** Reads a stream as far as a link may go: a short one can unpack to gigabytes. */

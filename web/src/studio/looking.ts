@@ -121,7 +121,13 @@ export class Looking {
       page.work.textContent = "…";
       const answer = await client.ask({ kind: "look", ...this.source, guided: false });
       this.#done = wanted;
-      if (answer) await this.take(answer, revision);
+      try {
+        if (answer) await this.take(answer, revision);
+      } catch (error) {
+        // A worker that runs a stranger's code may answer anything; the next text is asked all the same.
+        page.print(`The picture cannot be shown: ${String((error as Error).message).slice(0, 200)}`);
+        page.work.textContent = "";
+      }
     }
     this.#isBusy = false;
     this.#guideSoon();

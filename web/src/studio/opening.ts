@@ -40,14 +40,10 @@ export class Opening {
     const { camera, values = {}, time } = this.#shared;
     this.#shared = null;
     if (!player) return;
-    if (camera) player.setSteering(camera);
-    if (time !== undefined) player.setTime(time);
+    attempt(() => camera && player.setSteering(camera));
+    attempt(() => time !== undefined && player.setTime(time));
     for (const { name } of player.payload.parameters) {
-      try {
-        if (values[name] !== undefined) player.setParameter(name, values[name]);
-      } catch {
-        // A link made by hand: what does not fit is left out.
-      }
+      attempt(() => values?.[name] !== undefined && player.setParameter(name, values[name]));
     }
   }
 
@@ -73,5 +69,14 @@ export class Opening {
     if (!this.studio.settings.gallery.some((one) => one.name === name)) return undefined;
     const response = await fetch(`gallery/${encodeURIComponent(name)}.json`);
     return response.ok ? ((await response.json()) as Opened) : undefined;
+  }
+}
+
+/** A link made by hand: what does not fit is left out. */
+function attempt(act: () => void): void {
+  try {
+    act();
+  } catch {
+    // As above.
   }
 }

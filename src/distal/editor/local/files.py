@@ -7,15 +7,21 @@ newline alone; a file keeps the line ends that it had. Needs the standard librar
 from __future__ import annotations
 
 import ast
+import errno
 import hashlib
+import os
+import stat
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path, PurePath
+from pathlib import Path
+from typing import Final
 
 from distal.diagnostics import LoadError
 from distal.editor.messages import Changed, Saved
+from distal.editor.scene_folder import check_name, encoded_text
 from distal.images.atomic_files import replacement
 
+LONGEST_FILE: Final = 8_000_000  # bytes of a file that is shown or saved
 _BOM = "\ufeff"
 
 
@@ -43,20 +49,43 @@ class SourceFile:
             LoadError: It cannot be read, or is not UTF-8.
         """
         try:
-            data = path.read_bytes()
+            with open(path, "rb", opener=_opened) as file:
+                data = file.read(LONGEST_FILE + 1)
             text = data.decode("utf-8")
         except OSError as error:
             raise LoadError(f"'{path}' cannot be read: {error.strerror}") from None
         except UnicodeDecodeError:
             raise LoadError(f"'{path}' is not UTF-8 text") from None
+        if len(data) > LONGEST_FILE:
+            raise LoadError(f"'{path}' has more than {LONGEST_FILE:,} bytes")
         mark = _BOM if text.startswith(_BOM) else ""
         ends = "\r\n" if "\r\n" in text else "\n"
         plain = text.removeprefix(_BOM).replace("\r\n", "\n").replace("\r", "\n")
         return cls(plain, digest_of(data), ends, mark)
 
-    def encoded(self, text: str) -> bytes:
-        """Return the bytes of a new text of this file."""
-        return (self.mark + text.replace("\n", self.ends)).encode("utf-8")
+    def encoded(self, name: str, text: str) -> bytes:
+        """Return the bytes of a new text of this file.
+
+        Raises:
+            LoadError: It is too long, or has what no file can hold.
+        """
+        data = encoded_text(name, self.mark + text.replace("\n", self.ends))
+        if len(data) > LONGEST_FILE:
+            raise LoadError(f"'{name}' would have more than {LONGEST_FILE:,} bytes")
+        return data
+
+
+def _opened(path: str, flags: int) -> int:
+    """Open an ordinary file; a pipe or a device would never come to its end.
+
+    Raises:
+        OSError: It is none, or it cannot be opened.
+    """
+    found = os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
+    if not stat.S_ISREG(os.fstat(found).st_mode):
+        os.close(found)
+        raise OSError(errno.EINVAL, "it is no ordinary file")
+    return found
 
 
 def digest_of(data: bytes) -> str:
@@ -116,26 +145,35 @@ class SceneFiles:
             digest: The digest of what it replaces; None or "" for a new file.
 
         Raises:
-            LoadError: There is no such name, or the file cannot be written.
+            LoadError: There is no such name, or the text cannot be in a file.
+            SaveError: The file cannot be written.
         """
         path = self._path_of(name)
-        there = SourceFile.of(path) if path.exists() else SourceFile("", "")
+        there = SourceFile.of(path) if os.path.lexists(path) else SourceFile("", "")
         if there.digest != (digest or ""):
             return Saved(digest=there.digest, conflict=there.text)
-        data = there.encoded(text)
-        try:
-            with replacement(path) as file:
-                file.write(data)
-        except OSError as error:
-            raise LoadError(f"'{name}' cannot be written: {error.strerror}") from None
+        data = there.encoded(name, text)
+        with replacement(path) as file:
+            file.write(data)
         self._known[name] = SourceFile(text, digest_of(data), there.ends, there.mark)
         return Saved(digest=digest_of(data))
 
     def _path_of(self, name: str) -> Path:
-        path = (self.folder / name).resolve()
-        if PurePath(name).name != name or not name.endswith(".py") or path.parent != self.folder:
+        try:
+            check_name(name)
+        except LoadError as error:
+            raise LoadError(f"{error.reason} in {self.folder}") from None
+        path = self.folder / name
+        if not self._is_inside(path):
             raise LoadError(f"'{name[:80]}' is not the name of a Python file in {self.folder}")
         return path
+
+    def _is_inside(self, path: Path) -> bool:
+        """Whether a file is in the folder, wherever links to it lead."""
+        try:
+            return Path(os.path.realpath(path)).parent == self.folder
+        except (OSError, ValueError):
+            return False
 
     def _found(self) -> Iterator[tuple[str, SourceFile]]:
         """Yield the scene's file and the modules that it imports, and those that they import."""
@@ -145,7 +183,8 @@ class SceneFiles:
             file = self._read(name)
             yield name, file
             for beside in sorted(f"{module}.py" for module in _imported(file.text)):
-                is_there = beside in self._known or (self.folder / beside).is_file()
+                path = self.folder / beside
+                is_there = beside in self._known or (path.is_file() and self._is_inside(path))
                 if is_there and beside not in seen:
                     seen.add(beside)
                     waiting.append(beside)
@@ -164,7 +203,7 @@ def _imported(text: str) -> set[str]:
     """Return the names of the top-level modules that a text imports; none if it is not Python."""
     try:
         tree = ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError):
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
         return set()
     found: set[str] = set()
     for node in ast.walk(tree):

@@ -8,18 +8,21 @@ from __future__ import annotations
 
 import contextlib
 import json
+import queue
 import secrets
-import subprocess
 import sys
-import tempfile
 import threading
+import time
 from pathlib import Path
 from typing import Any, Final
 
+from distal.editor.local.process import ChildProcess
+from distal.editor.local.scratch import LESSON, ScratchFolder
 from distal.editor.local.serving import NOT_FOUND, HttpReply, LocalServer
 
 MAKING_S: Final = 120.0
 _LOOK_S: Final = 0.3
+_TICK_S: Final = 0.05
 _SUFFIXES: Final = (".md", ".py", ".png", ".jpg", ".hdr", ".exr", ".svg")
 _SHELL: Final = Path(__file__).with_name("lesson.html")
 
@@ -42,7 +45,7 @@ class LessonServer(LocalServer):
         self._page = b""
         self._count = 0
         self._text = "The page is made …"
-        self._process: subprocess.Popen[str] | None = None
+        self._process: ChildProcess | None = None
         self._process_lock = threading.Lock()
         super().__init__(port)
 
@@ -67,46 +70,59 @@ class LessonServer(LocalServer):
     def _times(self) -> dict[str, int]:
         """Return when the files of the lesson's folder were written, by name."""
         found: dict[str, int] = {}
-        for path in self._lesson.parent.iterdir():
-            if path.suffix in _SUFFIXES:
-                with contextlib.suppress(OSError):  # gone again
-                    found[path.name] = path.stat().st_mtime_ns
+        with contextlib.suppress(OSError):  # the folder is gone
+            for path in self._lesson.parent.iterdir():
+                if path.suffix in _SUFFIXES:
+                    with contextlib.suppress(OSError):  # gone again
+                        found[path.name] = path.stat().st_mtime_ns
         return found
 
     def _make(self) -> None:
         self._tell("The page is made …")
-        with tempfile.TemporaryDirectory(prefix="distal_lesson_") as folder:
-            page = Path(folder) / "lesson.html"
+        scratch: ScratchFolder | None = None
+        try:
+            scratch = ScratchFolder(LESSON)
+            page = scratch.path / "lesson.html"
             mistake = self._mistake_of_making(page)
             if mistake is None:
                 self._page = page.read_bytes()
                 self._count += 1
+        except FileNotFoundError:
+            mistake = "The page was not made: a scene's code ended the process (exit status 0)."
+        except OSError as error:
+            mistake = f"The page was not made: {error}"
+        finally:
+            if scratch is not None:
+                scratch.remove()
         self._tell(mistake or "")
 
     def _mistake_of_making(self, page: Path) -> str | None:
         """Make the page; return what went wrong, or None."""
         command = [sys.executable, "-m", "distal.cli", "export", str(self._lesson), "-o", str(page)]
+        status: queue.SimpleQueue[tuple[int, str]] = queue.SimpleQueue()
+        temporary = page.with_name("temporary")
+        temporary.mkdir()
         with self._process_lock:
             if self._over.is_set():
                 return ""
-            process = self._process = subprocess.Popen(
+            process = self._process = ChildProcess(
                 command,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.PIPE,
-                encoding="utf-8",
-                errors="replace",
-                start_new_session=True,
+                lambda _: None,
+                lambda code, said: status.put((code, said)),
+                temporary=temporary,
             )
-        try:
-            _, said = process.communicate(timeout=self._limit)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.communicate()
-            return f"The page was not made within {self._limit:g} s: does a scene run for ever?"
-        if process.returncode == 0:
+        ends = time.monotonic() + self._limit
+        while status.empty() and not self._over.is_set():
+            if time.monotonic() > ends:
+                process.kill()
+                return f"The page was not made within {self._limit:g} s: does a scene run for ever?"
+            time.sleep(_TICK_S)
+        if self._over.is_set():
+            return ""
+        code, said = status.get()
+        if code == 0:
             return None
-        return said.strip() or f"The page was not made (exit status {process.returncode})."
+        return said or f"The page was not made (exit status {code})."
 
     def _tell(self, text: str) -> None:
         self._text = text
@@ -116,17 +132,9 @@ class LessonServer(LocalServer):
         return json.dumps({"text": self._text, "count": self._count})
 
     def _talk(self, connection: Any) -> None:
-        with self._lock:
-            self._tabs[connection] = None
-        try:
-            connection.send(self._state())
-            for _ in connection:
-                pass
-        except self._closed:
+        connection.send(self._state())
+        for _ in connection:
             pass
-        finally:
-            with self._lock:
-                del self._tabs[connection]
 
     def _reply(self, path: str) -> HttpReply:
         if path == "/lesson" and self._page:

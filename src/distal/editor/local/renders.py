@@ -13,7 +13,6 @@ import json
 import secrets
 import shutil
 import sys
-import tempfile
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -24,6 +23,7 @@ from typing import Any, Final
 from distal.diagnostics import LoadError
 from distal.editor.commands import file_stem, render_arguments, shown, video_arguments
 from distal.editor.local.process import ChildProcess
+from distal.editor.local.scratch import RENDER, ScratchFolder
 from distal.editor.messages import (
     Answer,
     Dropped,
@@ -36,7 +36,7 @@ from distal.editor.messages import (
     RenderFormat,
     RenderRequest,
 )
-from distal.editor.scene_folder import check_name, link_beside
+from distal.editor.scene_folder import check_name, encoded_text, link_beside
 from distal.images.atomic_files import SaveError, replacement
 from distal.lang.lazy_module import LazyModule
 from distal.lang.progress_lines import KEY, LOADING, STAGES
@@ -51,6 +51,8 @@ _START_S: Final = 60.0  # until the command has begun
 _TICK_S: Final = 0.05
 _WAITING: Final = "waiting"
 _MOST_KEPT: Final = 4  # pictures of a tab that a browser may still fetch
+_TEMPORARY: Final = "temporary"  # what the command's libraries put away for a while
+_LONGEST_REASON: Final = 400  # characters
 _SURE: Final = 0.02  # the share after which the remaining time is estimated
 
 
@@ -118,22 +120,26 @@ class RenderJob:
         """Tell that it is not made."""
         self._tell(Dropped(id=self.request.id, revision=self.request.revision))
 
-    def run(self) -> Path | None:
+    def run(self) -> ScratchFolder | None:
         """Render; return the folder of a picture that the browser has to fetch, or None."""
         number: dict[str, Any] = {"id": self.request.id, "revision": self.request.revision}
-        place = Path(tempfile.mkdtemp(prefix="distal_render_"))
+        place: ScratchFolder | None = None
         result: Rendered | None = None
         try:
-            result = self._made(place)
+            place = ScratchFolder(RENDER)
+            result = self._made(place.path)
             answer: Message = Dropped(**number)
             if result is not None:
                 answer = Answer(**number, request="render", result=result)
         except (LoadError, SaveError, OSError) as error:
             text = error.reason if isinstance(error, LoadError) else str(error)
             answer = Mistakes(**number, mistakes=(Mistake(severity="error", message=text),))
+        except Exception as error:  # the renders of the others go on
+            text = f"this cannot be rendered ({type(error).__name__}: {error})"[:_LONGEST_REASON]
+            answer = Mistakes(**number, mistakes=(Mistake(severity="error", message=text),))
         is_kept = result is not None and result.address is not None
-        if not is_kept:
-            shutil.rmtree(place, ignore_errors=True)
+        if place is not None and not is_kept:
+            place.remove()
         self._tell(Dropped(**number) if self._is_cancelled else answer)
         return place if is_kept else None
 
@@ -145,13 +151,14 @@ class RenderJob:
             SaveError: It cannot be written beside the scene.
         """
         format = render_choices.format_named(self.request.format)
+        check_source(self.request)
         name = f"{file_stem(self.request)}.{format.name}"
         source, made = place / "scene", place / "made"
-        source.mkdir()
-        made.mkdir()
+        for folder in (source, made, place / _TEMPORARY):
+            folder.mkdir()
         for file, text in self.request.files.items():
             check_name(file)
-            (source / file).write_text(text, encoding="utf-8")
+            (source / file).write_bytes(encoded_text(file, text))
         link_beside(self._beside, source)
         self._run(arguments_of(self.request, format, str(made / name)), source, format)
         with self._lock:
@@ -188,7 +195,12 @@ class RenderJob:
             if self._is_cancelled:
                 return
             self._process = ChildProcess(
-                command, received, self._ended, folder=folder, is_lowered=True
+                command,
+                received,
+                self._ended,
+                folder=folder,
+                temporary=folder.with_name(_TEMPORARY),
+                is_lowered=True,
             )
         while not self._over.wait(_TICK_S):
             if time.monotonic() > self._ends:
@@ -205,7 +217,7 @@ class RenderJob:
             stage, done, text = found[KEY], float(found["done"]), str(found["text"])
         except (ValueError, TypeError, KeyError):
             return
-        if stage not in STAGES or not 0.0 <= done <= 1.0:
+        if stage not in STAGES or not 0.0 <= done <= 1.0 or len(text) > _LONGEST_REASON:
             return
         if (stage, done) != self._known:  # a device reports the same share again and again
             self._known = (stage, done)
@@ -231,6 +243,18 @@ class RenderJob:
     def _ended(self, code: int, report: str) -> None:
         self._status = (code, report)
         self._over.set()
+
+
+def check_source(request: PictureRequest) -> None:
+    """Check that a request names one of its own files, and an object as Python would.
+
+    Raises:
+        LoadError: It does not: its words would be a path.
+    """
+    if request.main not in request.files:
+        raise LoadError(f"there is no file '{request.main[:80]}' among the texts")
+    if request.object is not None and not request.object.isidentifier():
+        raise LoadError(f"'{request.object[:80]}' is not the name of a scene")
 
 
 def arguments_of(request: PictureRequest, format: RenderFormat, output: str) -> list[str]:
@@ -293,7 +317,7 @@ class RenderQueue:
         self._beside, self._limits = beside, limits
         self._lock = threading.Condition()
         self._jobs: list[RenderJob] = []  # the first one runs
-        self._kept: list[tuple[object, Path]] = []
+        self._kept: list[tuple[object, ScratchFolder]] = []
         self._thread: threading.Thread | None = None
         self._is_over = False
 
@@ -328,7 +352,7 @@ class RenderQueue:
         self.cancel(owner)
         with self._lock:
             for place in [place for tab, place in self._kept if tab is owner]:
-                shutil.rmtree(place, ignore_errors=True)
+                place.remove()
             self._kept = [kept for kept in self._kept if kept[0] is not owner]
 
     def close(self) -> None:
@@ -346,7 +370,7 @@ class RenderQueue:
     def result(self, folder: str, token: str) -> bytes | None:
         """Return a picture by the parts of its address; None if there is none."""
         with self._lock:
-            places = {place.name: place for _, place in self._kept}
+            places = {place.path.name: place.path for _, place in self._kept}
         if folder not in places:
             return None
         with contextlib.suppress(OSError):  # removed in this moment
@@ -365,13 +389,13 @@ class RenderQueue:
             with self._lock:
                 self._jobs.remove(job)
                 if place is not None and job.is_unwanted:
-                    shutil.rmtree(place, ignore_errors=True)
+                    place.remove()
                 elif place is not None:
                     self._keep(job.owner, place)
 
-    def _keep(self, owner: object, place: Path) -> None:
+    def _keep(self, owner: object, place: ScratchFolder) -> None:
         self._kept.append((owner, place))
         of_owner = [kept for kept in self._kept if kept[0] is owner]
         for kept in of_owner[:-_MOST_KEPT]:
-            shutil.rmtree(kept[1], ignore_errors=True)
+            kept[1].remove()
             self._kept.remove(kept)

@@ -20,7 +20,7 @@ from distal.editor.local.renders import CODE_S as RENDER_CODE_S
 from distal.editor.local.renders import RenderLimits, RenderQueue
 from distal.editor.local.serving import NOT_FOUND, HttpReply, LocalServer
 from distal.editor.local.tab import CODE_S, StudioTab
-from distal.editor.messages import Changed, encoded
+from distal.editor.messages import Changed, Restarted, encoded
 from distal.loading import gallery, posters
 from distal.version import __version__
 
@@ -81,28 +81,26 @@ class StudioServer(LocalServer):
             with contextlib.suppress(self._closed):  # the tab is gone: the loop below ends
                 connection.send(text)
 
-        with self._lock:
-            self._tabs[connection] = None  # from now on it gets what changes
         send(encoded(self._files.all()))
         early, self._early = self._early, None
-        session = StudioTab(
-            self._files,
-            send,
-            self._limit,
-            lambda saved: self._tell(saved, connection),
-            early,
-            self._renders,
-        )
+        try:
+            session = StudioTab(
+                self._files,
+                send,
+                self._limit,
+                lambda saved: self._tell(saved, connection),
+                early,
+                self._renders,
+            )
+        except OSError as error:  # the app comes again
+            send(encoded(Restarted(id=None, reason=f"no worker can be started: {error}")))
+            return
         with self._lock:
             self._tabs[connection] = session
         try:
             for text in connection:
                 session.received(text)
-        except self._closed:
-            pass
         finally:
-            with self._lock:
-                del self._tabs[connection]
             session.end()
 
     def _look_at_files(self) -> None:
@@ -110,7 +108,7 @@ class StudioServer(LocalServer):
         while not self._over.wait(_LOOK_S):
             try:
                 changed = self._files.read()
-            except LoadError:
+            except (LoadError, OSError):
                 continue  # while it is written; or gone: the app still has the text
             if changed is not None:
                 self._tell(changed)

@@ -6,6 +6,7 @@ Input: what a path gets, what a socket says. Output: an address that is good onc
 
 from __future__ import annotations
 
+import logging
 import threading
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ from typing import Any, Final
 from urllib.parse import urlsplit
 
 from distal.editor.local.guard import HOST, Guard
+from distal.editor.local.scratch import sweep
 from distal.editor.messages import LONGEST_MESSAGE
 from distal.packages import imported
 
@@ -29,6 +31,20 @@ _PHRASES: Final = {
     503: "Service Unavailable",
 }
 NOT_FOUND: Final = 404
+
+
+# The codes of sockets that are closed: by a mistake of the server, and because it is busy.
+_FAILED: Final = 1011
+_TRY_LATER: Final = 1013
+
+
+def _silent() -> logging.Logger:
+    """Return a log that nobody sees: what a stranger sends must not fill the terminal."""
+    found = logging.getLogger("distal.studio")
+    found.propagate = False
+    if not found.handlers:
+        found.addHandler(logging.NullHandler())
+    return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,8 +75,9 @@ class LocalServer(ABC):
         self._tabs: dict[Any, Any] = {}
         self._lock = threading.Lock()
         self._over = threading.Event()
+        sweep()
         self._server = imported("websockets.sync.server").serve(
-            self._talk,
+            self._talk_alone,
             HOST,
             port,
             process_request=self._answered,
@@ -68,6 +85,7 @@ class LocalServer(ABC):
             max_size=LONGEST_MESSAGE,
             server_header=None,
             ping_interval=None,
+            logger=_silent(),
         )
         self._guard = Guard(self._server.socket.getsockname()[1])
         threading.Thread(target=self._server.serve_forever, daemon=True).start()
@@ -85,6 +103,25 @@ class LocalServer(ABC):
         """End the server."""
         self._over.set()
         self._server.shutdown()
+
+    def _talk_alone(self, connection: Any) -> None:
+        """Talk with a tab, if there are not too many; what fails ends this tab alone."""
+        with self._lock:
+            is_too_many = len(self._tabs) >= MOST_TABS  # several may have come at once
+            if not is_too_many:
+                self._tabs[connection] = None  # from now on it gets what changes
+        if is_too_many:
+            connection.close(_TRY_LATER, "too many tabs are open")
+            return
+        try:
+            self._talk(connection)
+        except self._closed:
+            pass
+        except Exception as error:
+            connection.close(_FAILED, type(error).__name__)
+        finally:
+            with self._lock:
+                self._tabs.pop(connection, None)
 
     @abstractmethod
     def _talk(self, connection: Any) -> None:
@@ -106,7 +143,10 @@ class LocalServer(ABC):
 
     def _answered(self, connection: Any, request: Any) -> Any:
         """Answer a request for a file; None lets a socket open."""
-        path = urlsplit(request.path).path
+        try:
+            path = urlsplit(request.path).path
+        except ValueError:  # as "//[" is
+            return self._response(HttpReply(NOT_FOUND, b"There is no such page.\n"))
         is_socket = path == "/socket"
         if not self._guard.is_ours(request.headers, needs_origin=is_socket):
             return self._response(HttpReply(403, b"This server answers its own pages only.\n"))

@@ -38,12 +38,14 @@ from distal.editor.messages import (
     encoded,
     parsed,
 )
+from distal.images.atomic_files import SaveError
 
 # Seconds that the author's code has, and that a compilation, a check or an export has after it.
 CODE_S: Final = 5.0
 WORK_S: Final = 120.0
 _TICK_S: Final = 0.1
 _ANSWERS: Final = ("scene", "numbers", "answer", "mistakes", "dropped")
+_FROM_WORKER: Final = ("ready", "progress", "printed", *_ANSWERS)
 
 
 class StudioTab:
@@ -74,18 +76,22 @@ class StudioTab:
         self._lock = threading.RLock()
         self._waiting: dict[int, int] = {}  # the revision by id, in the order of arrival
         self._ends = 0.0
+        self._has_run = False  # the author's code, for the first request that waits
         self._is_over = False
         with self._lock:  # the worker's lines wait until it is known
             self._worker = self._started(early)
         threading.Thread(target=self._watch, daemon=True).start()
 
-    def received(self, text: str) -> None:
+    def received(self, text: str | bytes) -> None:
         """Take a message of the app."""
         try:
-            request = parsed(text)
+            self._take(parsed(text))
         except MessageError as error:
             self._tell(_refusal(-1, -1, str(error)))
-            return
+        except RecursionError:
+            self._tell(_refusal(-1, -1, "the message is nested too deeply"))
+
+    def _take(self, request: Message) -> None:
         if isinstance(request, SaveRequest):
             self._tell(self._saved(request))
         elif isinstance(request, RenderRequest | CommandRequest | ChoicesRequest | CancelRequest):
@@ -130,8 +136,9 @@ class StudioTab:
     def _saved(self, request: SaveRequest) -> Message:
         try:
             saved = self._files.save(request.file, request.text, request.digest)
-        except LoadError as error:
-            return _refusal(request.id, request.revision, error.reason)
+        except (LoadError, SaveError) as error:
+            reason = error.reason if isinstance(error, LoadError) else str(error)
+            return _refusal(request.id, request.revision, reason)
         if saved.conflict is None:
             name = request.file
             self._on_saved(Changed(files={name: request.text}, digests={name: saved.digest}))
@@ -161,14 +168,25 @@ class StudioTab:
         return worker
 
     def _pass_on(self, line: str) -> None:
-        """Send a worker's message to the app; its text is not read further than needed."""
-        found = json.loads(line)
-        kind, number = found.get("kind"), found.get("id")
+        """Send a worker's message to the app; its text is not read further than needed.
+
+        What the author's code has written to the worker's stream is left out.
+        """
+        try:
+            found = json.loads(line)
+            kind, number = found["kind"], found.get("id")
+        except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+            return
+        if kind not in _FROM_WORKER or not isinstance(number, int | None):
+            return
         if kind in _ANSWERS:
-            self._waiting.pop(number, None)
-            self._ends = time.monotonic() + self._limit
-        elif kind == "progress":
+            if number is not None and self._waiting.pop(number, None) is not None:
+                self._ends = time.monotonic() + self._limit
+                self._has_run = False
+        elif kind == "progress" and not self._has_run:
+            # Once: code that says it again and again would never be ended.
             self._ends = time.monotonic() + WORK_S
+            self._has_run = True
         if number != EARLY_ID:
             self._send(line.rstrip("\n"))
 
@@ -188,7 +206,11 @@ class StudioTab:
             if other is not None:
                 self._tell(Dropped(id=other, revision=self._waiting[other]))
         self._waiting.clear()
-        self._worker = self._started()
+        self._has_run = False
+        try:
+            self._worker = self._started()
+        except OSError as error:  # tried again when the next request has waited
+            self._tell(Restarted(id=None, reason=f"no worker can be started: {error}"))
 
     def _tell(self, message: Message) -> None:
         self._send(encoded(message))
