@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from distal.compiler import constant_evaluation
     from distal.export import registry as exports
     from distal.frontend import python_expressions
+    from distal.mesh.outlines import outlining
     from distal.notebook import widget
     from distal.runtime import executor as runtime_executor
     from distal.runtime import heights as ray_views
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 else:
     constant_evaluation = LazyModule("distal.compiler.constant_evaluation")
     exports = LazyModule("distal.export.registry")
+    outlining = LazyModule("distal.mesh.outlines.outlining")
     python_expressions = LazyModule("distal.frontend.python_expressions")
     ray_views = LazyModule("distal.runtime.heights")
     recording = LazyModule("distal.video.recording")
@@ -49,6 +51,7 @@ __all__ = [
     "constant_evaluation",
     "executor",
     "exports",
+    "outlining",
     "python_expressions",
     "ray_views",
     "recording",

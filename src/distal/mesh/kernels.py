@@ -1,0 +1,95 @@
+"""Functions of scene code that need a shape's field, compiled for this shape.
+
+Input: a shape's tree, parameter values and a time. Output: arrays, one row for each edge, cell or
+triangle, in 64 bits. Does not depend on topology.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from distal.frontend import Assembly
+from distal.ir.nodes import Param, Read, Return
+from distal.ir.types import Type
+from distal.lang.composed import Composed
+from distal.lang.functions import Func
+from distal.lang.runtime_access import executor
+from distal.scene.lowering.parts.table import rolled_for
+from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
+
+if TYPE_CHECKING:
+    from distal.scene.tree.node import Node
+
+
+class OfField(Composed):
+    """A function of scene code whose parameter ``field`` is a shape's field."""
+
+    def __init__(self, node: Node, function: Func, types: Sequence[tuple[str, Type]]) -> None:
+        self._node = node
+        self._function = function
+        self.name = f"{function.name} of {node.name}"
+        self.signature = tuple(types)
+
+    def compose(self, assembly: Assembly) -> str:
+        """Add the function to the program, and return its name."""
+        node = rolled_for(assembly, self._node, exact=True)
+        composer = ShapeComposer(assembly, [node])
+        shape = composer.field(node, composer.values.all(node), ZERO_CELL)
+        given = {name: Read(name, type) for name, type in self.signature}
+        value = assembly.call(self._function, {**given, "field": shape})
+        params = tuple(Param(name, type) for name, type in self.signature)
+        return assembly.define(
+            self._function.name, params, value.type, (Return(value),), node.place
+        )
+
+    def functions(self) -> Iterable[Func]:
+        """Yield the scene functions that the shape calls."""
+        return self._node.functions()
+
+
+@dataclass(slots=True)
+class FieldKernels:
+    """Evaluates functions of a shape's field.
+
+    Attributes:
+        node: The shape's tree.
+        params: Values of parameters by name.
+        time: Seconds.
+        rows: How many rows have been evaluated so far.
+    """
+
+    node: Node
+    params: Mapping[str, Any]
+    time: float
+    rows: int = 0
+    _made: dict[Func, OfField] = field(default_factory=dict)
+
+    def call(self, function: Func, *columns: Any, types: Sequence[tuple[str, Type]]) -> Any:
+        """Return the values of a function for many rows.
+
+        Args:
+            function: The function; its parameter ``field`` is the shape.
+            columns: The values of its other parameters.
+            types: Their names and types.
+        """
+        made = self._made.get(function)
+        if made is None:
+            made = self._made[function] = OfField(self.node, function, types)
+        self.rows += len(columns[0])
+        args = [as_rows(column) for column in columns]
+        return executor().call(made, args, {}, params=self.params, time=self.time)
+
+
+def rows_of(function: Func, *columns: Any) -> Any:
+    """Return the values of a function that needs no field, for many rows."""
+    return executor().call(function, [as_rows(column) for column in columns], {})
+
+
+def as_rows(column: Any) -> Any:
+    """Return a column as numbers of 64 bits; truth values stay."""
+    array = np.asarray(column)
+    return array if array.dtype == np.bool_ else np.asarray(array, np.float64)
