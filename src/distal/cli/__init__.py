@@ -15,7 +15,7 @@ import warnings
 
 # The commands, as --help lists them: first those that new users need.
 COMMANDS = (
-    *("render", "view", "studio", "video", "export", "rerender"),
+    *("render", "view", "studio", "video", "slice", "export", "rerender"),
     *("check", "probe", "compile", "examples", "doctor"),
 )
 # The others have a module of their name: one of them is imported without the rest.

@@ -66,14 +66,18 @@ class _Bar:
 
 
 class ProgressBar(_Bar):
-    """The progress bar of a picture.
+    """The progress bar of a picture or a mesh.
 
     Call it with the finished fraction.
+
+    Args:
+        what: The kind of work.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, what: str = "rendering") -> None:
+        self._what = what
         super().__init__(
-            TextColumn("rendering"),
+            TextColumn(what),
             BarColumn(),
             TextColumn("{task.fields[figures]}"),
             TimeRemainingColumn(),
@@ -91,7 +95,7 @@ class ProgressBar(_Bar):
         if bar is None:
             return
         if self._task is None:
-            self._task = bar.add_task("rendering", total=1.0, figures="")
+            self._task = bar.add_task(self._what, total=1.0, figures="")
         bar.update(self._task, completed=done, figures=self._figures)
 
 

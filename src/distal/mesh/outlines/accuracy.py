@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from distal.ir.types import FLOAT, VEC2
+from distal.ir.types import FLOAT, VEC2, Type
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.outlines.arithmetic import (
     behind_thin,
@@ -21,7 +21,7 @@ from distal.mesh.outlines.arithmetic import (
 from distal.mesh.outlines.tiles import Floats, Integers, values_at
 
 _SHARES: Final = (0.0, 0.25, 0.5, 0.75)
-_LINE: Final = [("a", VEC2), ("b", VEC2), ("share", FLOAT)]
+_LINE: Final[list[tuple[str, Type]]] = [("a", VEC2), ("b", VEC2), ("share", FLOAT)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ def thin_places(kernels: FieldKernels, suspected: Floats, step: float) -> Floats
     if not len(suspected):
         return suspected
     given = suspected, np.full(len(suspected), step)
-    types = [("p", VEC2), ("step", FLOAT)]
+    types: list[tuple[str, Type]] = [("p", VEC2), ("step", FLOAT)]
     found, away, behind = kernels.call(behind_thin, *given, types=types)
     # A value of 0 without a change of sign behind it, as between two shapes that touch, is no edge.
     thin = (values_at(kernels, suspected) < 0.0) != (behind < 0.0)

@@ -224,7 +224,7 @@ def behind_thin(field: Field2, p: vec2, step: float) -> tuple[vec2, float, float
         value, slope = value_and_gradient(field, q)
         q = q + step_to_edge(value, slope)
     away = length(q - p)
-    behind = field(p + (q - p) * ((away + 1e-3 * step) / max(away, 1e-12)))
+    behind = field(p + (q - p) * ((away + 1e-6 * step) / max(away, 1e-12)))
     return q, away, behind
 
 

@@ -60,7 +60,7 @@ def _candidates(starts: Integers, ends: Integers) -> tuple[Integers, Integers]:
     square, owner = [], []
     for x in range(int((high - low)[:, 0].max()) + 1):
         for y in range(int((high - low)[:, 1].max()) + 1):
-            at = low + (x, y)
+            at = low + np.array((x, y))
             there = np.all(at <= high, axis=1)
             square.append((at[there, 0] + LARGEST << 31) + at[there, 1] + LARGEST)
             owner.append(line[there])

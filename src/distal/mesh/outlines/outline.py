@@ -23,7 +23,7 @@ class Outline:
 
     Attributes:
         loops: An array (n, 2) for each polyline, in scene units; the last point is joined to the
-            first. The inside is at the left: outer polylines are counter-clockwise, holes clockwise.
+            first. The inside is at the left: outer ones are counter-clockwise, holes clockwise.
         area: The area inside.
         length: The length of all polylines.
         report: What is known about the outline: its spacing, counts, errors and warnings.
@@ -46,7 +46,9 @@ class Outline:
         for loop in self.loops:
             array = np.array(loop, np.float64)
             if array.ndim != 2 or array.shape[1] != 2 or len(array) < 3:
-                raise ValueError(f"a loop is an array (n, 2) of 3 points or more, not {array.shape}")
+                raise ValueError(
+                    f"a loop is an array (n, 2) of 3 points or more, not {array.shape}"
+                )
             array.flags.writeable = False
             loops.append(array)
         object.__setattr__(self, "loops", tuple(loops))
@@ -79,7 +81,7 @@ class Outline:
     def _repr_svg_(self) -> str:
         """Return the outline as SVG, for notebooks."""
         file = io.BytesIO()
-        formats.OUTLINE_FORMATS[".svg"].write(file, self.loops)
+        formats.OUTLINE_FORMATS[".svg"].write(file, self.loops, None)
         return file.getvalue().decode()
 
     def __repr__(self) -> str:

@@ -21,7 +21,7 @@ from distal.lang.runtime_access import executor
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.outlines.accuracy import area_and_length
 from distal.mesh.outlines.outline import Outline
-from distal.mesh.outlines.tiles import Extent, Floats
+from distal.mesh.outlines.tiles import Extent, Floats, values_at
 from distal.mesh.outlines.tracing import Nothing, TooFine, Traced, traced
 from distal.mesh.problems import MeshProblem
 from distal.scene.lowering.derived import BoundsOf
@@ -114,6 +114,7 @@ def outline_or_none(kernels: FieldKernels, request: OutlineRequest) -> Outline |
     except MeshProblem as problem:
         _refuse_problem(node, extent, problem)
     if isinstance(found, Nothing):
+        _refuse_false_slope(kernels, extent)
         return found
     if isinstance(found, TooFine):
         refuse(
@@ -200,6 +201,18 @@ def _refuse_problem(node: Node, extent: Extent, problem: MeshProblem) -> NoRetur
                 "give a smaller slope=, smaller bounds=, or a larger tolerance=",
                 node.place,
             )
+
+
+def _refuse_false_slope(kernels: FieldKernels, extent: Extent) -> None:
+    """Refuse a shape without an edge whose box has a middle inside: its slope cannot be true."""
+    node, middle = kernels.node, (extent.low + extent.high) * 0.5
+    if values_at(kernels, middle[None])[0] < 0.0:
+        refuse(
+            f"'{node.name}' is inside at {shown_place(middle)}, and its slope, {extent.slope:g}, "
+            "says that it has no edge in its box",
+            "a larger slope=",
+            node.place,
+        )
 
 
 def _refuse_nothing(node: Node, found: Nothing) -> NoReturn:

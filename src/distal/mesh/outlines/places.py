@@ -16,7 +16,7 @@ from typing import Final
 
 import numpy as np
 
-from distal.ir.types import FLOAT, VEC2
+from distal.ir.types import FLOAT, VEC2, Type
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.outlines.arithmetic import (
     POINT_MARGIN,
@@ -37,8 +37,18 @@ from distal.mesh.outlines.tiles import (
     known,
 )
 
-_ROOT: Final = [("start", VEC2), ("way", VEC2), ("first", FLOAT), ("second", FLOAT)]
-_POINT: Final = [("a", VEC2), ("b", VEC2), ("slope_a", VEC2), ("slope_b", VEC2)]
+_ROOT: Final[list[tuple[str, Type]]] = [
+    ("start", VEC2),
+    ("way", VEC2),
+    ("first", FLOAT),
+    ("second", FLOAT),
+]
+_POINT: Final[list[tuple[str, Type]]] = [
+    ("a", VEC2),
+    ("b", VEC2),
+    ("slope_a", VEC2),
+    ("slope_b", VEC2),
+]
 # A corner that is farther from the edge than this share of a cell is no corner.
 _NEAR: Final = 1e-3
 
@@ -160,7 +170,7 @@ def nearby(
     keys = keys_of(found.cells)[pieces.cell]
     middle = np.floor((tips - lattice.origin) / lattice.step).astype(np.int64)
     for number in range(18):
-        wanted = keys_of(middle + (number % 3 - 1, number // 3 % 3 - 1))
+        wanted = keys_of(middle + np.array((number % 3 - 1, number // 3 % 3 - 1)))
         piece = np.searchsorted(keys, wanted) + number // 9
         there = np.flatnonzero(keys[np.minimum(piece, len(keys) - 1)] == wanted)
         there = there[piece[there] < len(keys)]

@@ -3,8 +3,8 @@
 Input: polylines and a distance. Output: the indices of the points that stay. Corners stay if they
 are farther from the line of the others. The result may cross itself; the caller tests it.
 
-Source: David Douglas, Thomas Peucker, "Algorithms for the Reduction of the Number of Points Required
-    to Represent a Digitized Line or its Caricature" (1973).
+Source: David Douglas, Thomas Peucker, "Algorithms for the Reduction of the Number of Points
+    Required to Represent a Digitized Line or its Caricature" (1973).
 """
 
 from __future__ import annotations
@@ -98,4 +98,3 @@ def _without_straight(loop: Floats, kept: Integers) -> Integers:
         if len(kept) - int(straight.sum()) >= 3:
             kept = kept[~straight]
     return kept
-

@@ -226,7 +226,7 @@ def _neighbours(tiles: Integers, inside: Bools) -> Integers:
     found = []
     for axis in range(2):
         for at, way in ((0, -1), (TILE, 1)):
-            side = inside.take(at, axis=1 + axis)
+            side: Bools = inside.take(at, axis=1 + axis).reshape(len(tiles), -1)
             beside = tiles[side.any(axis=1) & ~side.all(axis=1)]
             beside[:, axis] += way
             found.append(beside)

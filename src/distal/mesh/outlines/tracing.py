@@ -207,9 +207,7 @@ def _next_step(found: Traced | Nothing, tolerance: float) -> float | None:
     return found.step * min(max(factor, _FINEST_STEP), _COARSEST_STEP)
 
 
-def _simplified(
-    kernels: FieldKernels, extent: Extent, found: Traced, tolerance: float
-) -> Traced:
+def _simplified(kernels: FieldKernels, extent: Extent, found: Traced, tolerance: float) -> Traced:
     """Return the outline with rounded points, without those that are not needed.
 
     Args:
@@ -236,9 +234,7 @@ def _simplified(
     return replace(_with(found, loops, every, found.accuracy), crossings=crossings)
 
 
-def _with(
-    found: Traced, loops: list[Floats], kept: list[Integers], accuracy: Accuracy
-) -> Traced:
+def _with(found: Traced, loops: list[Floats], kept: list[Integers], accuracy: Accuracy) -> Traced:
     corners = [corner[rows] for corner, rows in zip(found.corners, kept, strict=True)]
     return replace(found, loops=loops, corners=corners, accuracy=accuracy)
 
