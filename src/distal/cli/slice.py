@@ -28,10 +28,9 @@ from distal.cli.base import (
 from distal.cli.messages import say
 from distal.diagnostics import LoadError
 from distal.images.atomic_files import SaveError
-from distal.mesh.files.outlines import layer_name
 
 if TYPE_CHECKING:
-    from distal.mesh.outlines.layers import Layer
+    from distal.mesh.outlines.layers import SolidLayer
     from distal.mesh.outlines.outlining import OutlineRequest
     from distal.scene.objects.field import BaseShape
 
@@ -188,7 +187,7 @@ def _shape_of(obj: Any, height: float | None, place: float | None) -> BaseShape:
 
 def _layers(
     shape: Any, height: float | None, place: float | None, axis: str, request: OutlineRequest
-) -> Iterator[Layer]:
+) -> Iterator[SolidLayer]:
     """Return the layers of a shape; a flat one is its only layer.
 
     Args:
@@ -198,11 +197,11 @@ def _layers(
         axis: The axis across the layers.
         request: What is asked.
     """
-    from distal.mesh.outlines.layers import Layer, layer_places, layers_at
+    from distal.mesh.outlines.layers import SolidLayer, layer_places, layers_at
     from distal.mesh.outlines.outlining import outline_of
 
     if shape.flat:
-        return iter([Layer(0.0, outline_of(shape, request))])
+        return iter([SolidLayer(0.0, outline_of(shape, request))])
     if height is not None:
         return layers_at(shape, layer_places(shape, height, axis, request), axis, request)
     assert place is not None
@@ -210,7 +209,7 @@ def _layers(
 
 
 def _saved(
-    output: Path, kind: str, unit: str, shape: BaseShape, layers: Iterator[Layer]
+    output: Path, kind: str, unit: str, shape: BaseShape, layers: Iterator[SolidLayer]
 ) -> dict[str, Any]:
     """Save layers, those of a folder each when it is there, and return the report.
 
@@ -225,6 +224,7 @@ def _saved(
         SaveError: No layer has an inside, or a file cannot be written.
     """
     from distal.mesh.files.formats import write_layers, write_outlines
+    from distal.mesh.files.outlines import layer_name
 
     folder = _is_folder(output)
     rows: list[dict[str, Any]] = []
@@ -263,6 +263,8 @@ def _left_over(folder: Path, kind: str, count: int) -> list[str]:
         kind: The format of its files.
         count: How many layers were written.
     """
+    from distal.mesh.files.outlines import layer_name
+
     names = sorted(path.name for path in folder.glob(f"layer-*.{kind}"))
     written = {f"{layer_name(number + 1)}.{kind}" for number in range(count)}
     rest = [name for name in names if name not in written]

@@ -35,7 +35,7 @@ _PLACE: Final = "place_of_the_layer"
 
 
 @dataclass(frozen=True, slots=True)
-class Layer:
+class SolidLayer:
     """One layer.
 
     Attributes:
@@ -85,7 +85,7 @@ def layer_places(shape: Shape, height: float, axis: str, request: OutlineRequest
 
 def layers_at(
     shape: Shape, places: list[float], axis: str, request: OutlineRequest
-) -> Iterator[Layer]:
+) -> Iterator[SolidLayer]:
     """Yield the layers of a solid at places along an axis.
 
     On a layer across y, x is that of space and y is -z, as files with z up have it.
@@ -111,9 +111,9 @@ def layers_at(
         one = replace(request, params=params, progress=_part_of(request, index, len(places)))
         found = outline_or_none(kernels, one)
         if isinstance(found, Outline):
-            yield Layer(place, found, (low, high))
+            yield SolidLayer(place, found, (low, high))
         else:
-            yield Layer(place, None, None, _thin(place, found))
+            yield SolidLayer(place, None, None, _thin(place, found))
     if request.progress is not None:
         request.progress(1.0)
 

@@ -22,7 +22,7 @@ from distal.mesh.kernels import FieldKernels
 from distal.mesh.outlines.accuracy import area_and_length
 from distal.mesh.outlines.outline import Outline
 from distal.mesh.outlines.tiles import Extent, Floats, values_at
-from distal.mesh.outlines.tracing import Nothing, TooFine, Traced, traced
+from distal.mesh.outlines.tracing import Nothing, TooFine, TracedOutline, traced
 from distal.mesh.problems import MeshProblem
 from distal.scene.lowering.derived import BoundsOf
 from distal.scene.tree.errors import refuse
@@ -114,7 +114,8 @@ def outline_or_none(kernels: FieldKernels, request: OutlineRequest) -> Outline |
     except MeshProblem as problem:
         _refuse_problem(node, extent, problem)
     if isinstance(found, Nothing):
-        _refuse_false_slope(kernels, extent)
+        if not found.sampled:
+            _refuse_false_slope(kernels, extent)
         return found
     if isinstance(found, TooFine):
         refuse(
@@ -231,7 +232,7 @@ def shown_place(place: Sequence[float] | Floats) -> str:
     return f"({', '.join(f'{number:.4g}' for number in place)})"
 
 
-def _report(node: Node, extent: Extent, found: Traced, tolerance: float) -> dict[str, Any]:
+def _report(node: Node, extent: Extent, found: TracedOutline, tolerance: float) -> dict[str, Any]:
     """Return the report of an outline.
 
     Args:

@@ -48,7 +48,7 @@ UNIT: Final = 2.0**-28
 
 
 @dataclass(frozen=True, slots=True)
-class Traced:
+class TracedOutline:
     """An outline at one spacing.
 
     Attributes:
@@ -115,7 +115,7 @@ class TooFine:
 
 def traced(
     kernels: FieldKernels, extent: Extent, tolerance: float, watch: Watch
-) -> Traced | Nothing | TooFine:
+) -> TracedOutline | Nothing | TooFine:
     """Return an outline within the tolerance, or what prevents it.
 
     Args:
@@ -140,7 +140,7 @@ def traced(
         if following is None:
             break
         tiles = found.sampled * found.step / following
-        if tiles > MOST_TILES and isinstance(found, Traced):
+        if tiles > MOST_TILES and isinstance(found, TracedOutline):
             possible = found.error.largest * found.sampled / MOST_TILES / _TRACED
             return TooFine(2.0 * possible, 2.0 * found.cells * found.step / following)
         step = following
@@ -149,7 +149,7 @@ def traced(
 
 def _at_spacing(
     kernels: FieldKernels, extent: Extent, step: float, watch: Watch
-) -> Traced | Nothing:
+) -> TracedOutline | Nothing:
     lattice = Lattice.over(extent, step)
     cells = edge_cells(kernels, lattice, extent, 2 * MOST_TILES, lambda share: watch(0.5 * share))
     thin = thin_places(kernels, cells.suspected, step)
@@ -169,7 +169,7 @@ def _at_spacing(
     cuts = np.concatenate([places.cut, tips[near]])
     cut = int(np.argmax(cuts))
     cut_at = np.concatenate([places.points, thin[near]])[cut]
-    return Traced(
+    return TracedOutline(
         step=step,
         sampled=cells.sampled,
         cells=len(cells.cells),
@@ -190,7 +190,7 @@ def _lines(loops: list[Floats]) -> tuple[Floats, Floats]:
     return np.concatenate(loops), np.concatenate(ends)
 
 
-def _next_step(found: Traced | Nothing, tolerance: float) -> float | None:
+def _next_step(found: TracedOutline | Nothing, tolerance: float) -> float | None:
     """Return the next spacing; None if this outline is as wanted."""
     if len(found.thin) or isinstance(found, Nothing):
         finer = 2 * found.sampled <= _TILES_FOR_THIN and found.sampled > 0
@@ -207,7 +207,9 @@ def _next_step(found: Traced | Nothing, tolerance: float) -> float | None:
     return found.step * min(max(factor, _FINEST_STEP), _COARSEST_STEP)
 
 
-def _simplified(kernels: FieldKernels, extent: Extent, found: Traced, tolerance: float) -> Traced:
+def _simplified(
+    kernels: FieldKernels, extent: Extent, found: TracedOutline, tolerance: float
+) -> TracedOutline:
     """Return the outline with rounded points, without those that are not needed.
 
     Args:
@@ -234,7 +236,9 @@ def _simplified(kernels: FieldKernels, extent: Extent, found: Traced, tolerance:
     return replace(_with(found, loops, every, found.accuracy), crossings=crossings)
 
 
-def _with(found: Traced, loops: list[Floats], kept: list[Integers], accuracy: Accuracy) -> Traced:
+def _with(
+    found: TracedOutline, loops: list[Floats], kept: list[Integers], accuracy: Accuracy
+) -> TracedOutline:
     corners = [corner[rows] for corner, rows in zip(found.corners, kept, strict=True)]
     return replace(found, loops=loops, corners=corners, accuracy=accuracy)
 
