@@ -41,6 +41,7 @@ NO_OPERATOR = {
     "imported": "asks",
     "fill": "tape/test_filled_shapes",
     "heights": "tape/test_shape_heights",
+    "outline": "mesh/test_outlines",
     **dict.fromkeys(("on", "align", "extents"), "scene/test_anchors"),
     **dict.fromkeys(("fillet", "chamfer", "infill", "wrap_around"), "scene/test_shaped_edges"),
     "mesh": "mesh/test_mesh",

@@ -10,7 +10,7 @@ import pytest
 from distal.fields.flats.outlines import OUTLINE
 from distal.fields.guarantees import EXACT
 from distal.scene.objects.lettering import text_outline
-from distal.scene.objects.outlines import TOLERANCE, Outline, _quadratics, svg_path
+from distal.scene.objects.outlines import TOLERANCE, DrawnOutline, _quadratics, svg_path
 from distal.scene.tree.errors import SceneTypeError, SceneValueError
 from tests.fields.checks import examined, numbers_hold
 from tests.fields.rows import Sample
@@ -20,12 +20,12 @@ LEAF = "M10 80 C 40 10 65 10 95 80 S 150 120 180 80 A 25 25 0 0 1 160 140 Q 90 1
 SLOT = "M 0 0 H 10 V 6 H 0 Z M 2 2 v 2 h 6 v -2 z"
 
 
-def sample_of(outline: Outline, even_odd: bool = False) -> Sample:
+def sample_of(outline: DrawnOutline, even_odd: bool = False) -> Sample:
     choices = {"lines": outline.lines, "curves": outline.curves, "even_odd": even_odd}
     return Sample(OUTLINE, {}, choices)
 
 
-def distances(outline: Outline, points, even_odd: bool = False):
+def distances(outline: DrawnOutline, points, even_odd: bool = False):
     return sample_of(outline, even_odd).evaluate(np.array(points, np.float64))[0]
 
 
@@ -49,7 +49,7 @@ def test_an_outline_keeps_what_it_promises(outline):
     np.testing.assert_array_equal(subject.high, outline.high)
 
 
-def gone_around(outline: Outline, points):
+def gone_around(outline: DrawnOutline, points):
     """How often the chains go around points, by angles along dense polylines."""
     t = np.linspace(0.0, 1.0, 200)[:, None]
     lines = np.array(outline.lines.data, np.float64).reshape(-1, 2, 2)

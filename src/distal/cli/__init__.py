@@ -15,7 +15,7 @@ import warnings
 
 # The commands, as --help lists them: first those that new users need.
 COMMANDS = (
-    *("render", "view", "studio", "video", "mesh", "export", "rerender"),
+    *("render", "view", "studio", "video", "mesh", "slice", "export", "rerender"),
     *("check", "probe", "measure", "compile", "examples", "doctor"),
 )
 # The others have a module of their name: one of them is imported without the rest.

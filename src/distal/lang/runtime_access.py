@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from distal.export import registry as exports
     from distal.frontend import python_expressions
     from distal.mesh import measuring, meshing
+    from distal.mesh.outlines import outlining
     from distal.notebook import widget
     from distal.runtime import executor as runtime_executor
     from distal.runtime import heights as ray_views
@@ -29,6 +30,7 @@ else:
     exports = LazyModule("distal.export.registry")
     measuring = LazyModule("distal.mesh.measuring")
     meshing = LazyModule("distal.mesh.meshing")
+    outlining = LazyModule("distal.mesh.outlines.outlining")
     python_expressions = LazyModule("distal.frontend.python_expressions")
     ray_views = LazyModule("distal.runtime.heights")
     recording = LazyModule("distal.video.recording")
@@ -54,6 +56,7 @@ __all__ = [
     "exports",
     "measuring",
     "meshing",
+    "outlining",
     "python_expressions",
     "ray_views",
     "recording",

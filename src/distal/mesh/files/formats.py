@@ -18,7 +18,14 @@ from numpy.typing import NDArray
 from distal.images.atomic_files import SaveError, check_destination, replacement
 from distal.mesh.files.glb import write_glb
 from distal.mesh.files.obj import write_obj
-from distal.mesh.files.outlines import write_dxf, write_svg
+from distal.mesh.files.outlines import (
+    FileLayer,
+    Frame,
+    write_dxf,
+    write_dxf_layers,
+    write_svg,
+    write_svg_layers,
+)
 from distal.mesh.files.parts import FilePart, Finish, Solid, part_of, placed
 from distal.mesh.files.ply import write_ply
 from distal.mesh.files.stl import write_stl
@@ -51,11 +58,13 @@ class OutlineFormat:
 
     Attributes:
         name: Its name.
-        write: Writes closed polylines.
+        write: Writes closed polylines; in a frame, if one is given.
+        write_layers: Writes the polylines of several heights.
     """
 
     name: str
-    write: Callable[[BinaryIO, Sequence[NDArray[np.float64]]], None]
+    write: Callable[[BinaryIO, Sequence[NDArray[np.float64]], Frame | None], None]
+    write_layers: Callable[[BinaryIO, Sequence[FileLayer]], None]
 
 
 MESH_FORMATS: Final = {
@@ -66,8 +75,8 @@ MESH_FORMATS: Final = {
     ".obj": MeshFormat("OBJ", "colors, normals, names", MILLIMETER, False, None),
 }
 OUTLINE_FORMATS: Final = {
-    ".svg": OutlineFormat("SVG", write_svg),
-    ".dxf": OutlineFormat("DXF", write_dxf),
+    ".svg": OutlineFormat("SVG", write_svg, write_svg_layers),
+    ".dxf": OutlineFormat("DXF", write_dxf, write_dxf_layers),
 }
 
 
@@ -130,7 +139,11 @@ def check_output(path: str | PathLike[str], unit: str) -> None:
 
 
 def write_outlines(
-    path: str | PathLike[str], polylines: Sequence[Any], *, unit: str = "mm"
+    path: str | PathLike[str],
+    polylines: Sequence[Any],
+    *,
+    unit: str = "mm",
+    frame: tuple[Any, Any] | None = None,
 ) -> None:
     """Save closed polylines in the format that the file's suffix names, in millimeters.
 
@@ -138,6 +151,8 @@ def write_outlines(
         path: The file; its suffix is a key of ``OUTLINE_FORMATS``.
         polylines: Arrays (n, 2), y up, in scene units; the last point is joined to the first.
         unit: The length of one scene unit, a key of ``UNITS``.
+        frame: The corners (low, high) of the drawing, so that several lie on each other; None for
+            those of the polylines.
 
     Raises:
         SaveError: The suffix or the unit is unknown, a polyline is invalid, or the file system
@@ -150,8 +165,53 @@ def write_outlines(
     if not len(polylines):
         raise SaveError("there is no outline to save: the shape has no edge here")
     lines = [_polyline(line, index) * scale for index, line in enumerate(polylines)]
+    corners = None if frame is None else (np.array(frame[0]) * scale, np.array(frame[1]) * scale)
     with replacement(target) as file:
-        chosen.write(file, lines)
+        chosen.write(file, lines, corners)
+
+
+def write_layers(
+    path: str | PathLike[str], layers: Sequence[tuple[float, Sequence[Any]]], *, unit: str = "mm"
+) -> None:
+    """Save the closed polylines of several heights in one file, in millimeters.
+
+    Args:
+        path: The file; its suffix is a key of ``OUTLINE_FORMATS``.
+        layers: The height of each layer in scene units, and its polylines as for
+            ``write_outlines``.
+        unit: The length of one scene unit, a key of ``UNITS``.
+
+    Raises:
+        SaveError: The suffix or the unit is unknown, a polyline is invalid, or the file system
+            reports an error.
+    """
+    target = Path(path)
+    check_outline_file(target, unit)
+    scale = _meters(unit) / MILLIMETER
+    if not any(len(polylines) for _, polylines in layers):
+        raise SaveError("there is no layer to save: the solid has no inside at their heights")
+    scaled = [
+        (height * scale, [_polyline(line, i) * scale for i, line in enumerate(polylines)])
+        for height, polylines in layers
+        if len(polylines)
+    ]
+    with replacement(target) as file:
+        OUTLINE_FORMATS[target.suffix.lower()].write_layers(file, scaled)
+
+
+def check_outline_file(path: str | PathLike[str], unit: str) -> None:
+    """Check that an outline can be saved, before time is spent on it.
+
+    Args:
+        path: The file.
+        unit: The length of one scene unit.
+
+    Raises:
+        SaveError: The suffix or the unit is unknown, or the folder is not writable.
+    """
+    _chosen(Path(path), OUTLINE_FORMATS, "an outline")
+    _meters(unit)
+    check_destination(Path(path))
 
 
 def _write_obj(target: Path, parts: Sequence[FilePart]) -> None:

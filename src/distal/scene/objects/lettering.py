@@ -1,9 +1,9 @@
 """Layout of text as outlines: chooses a font and places its glyphs.
 
-Input: a text, a font's name or file. Output: an ``Outline``. Glyph distances are the font's widths
-and kerning. There are no ligatures, and all text runs from left to right. The default font is the
-one inside Pillow, which is the same on every machine; if it lacks a letter, the first known font of
-the machine that has all letters is used.
+Input: a text, a font's name or file. Output: a ``DrawnOutline``. Glyph distances are the font's
+widths and kerning. There are no ligatures, and all text runs from left to right. The default font
+is the one inside Pillow, which is the same on every machine; if it lacks a letter, the first known
+font of the machine that has all letters is used.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import Any, Final
 from distal.diagnostics import Span
 from distal.frontend.problems import did_you_mean
 from distal.packages import imported
-from distal.scene.objects.outlines import Edge, Outline, font_tools, made_of, outline_pen
+from distal.scene.objects.outlines import DrawnOutline, Edge, font_tools, made_of, outline_pen
 from distal.scene.tree.conversion import beside
 from distal.scene.tree.errors import SceneValueError, refuse, refuse_kind
 from distal.scene.tree.source_places import author_place
@@ -41,7 +41,7 @@ def text_outline(
     align: str = "center",
     line_spacing: float = 1.2,
     place: Span | None = None,
-) -> Outline:
+) -> DrawnOutline:
     r"""Return the outline of a text; the middle of its capital letters is at y = 0.
 
     Args:

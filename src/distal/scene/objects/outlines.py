@@ -1,8 +1,8 @@
 """Drawings and letters as outlines: closed chains of lines and curves for ``fields.outlines``.
 
-Input: an SVG path, or a text and a font (which ``lettering`` lays out). Output: an ``Outline``: the
-buffers of edges and the box around them. Input that cannot be read is an error at the author's
-line. Paths and fonts are read by fontTools, an optional package.
+Input: an SVG path, or a text and a font (which ``lettering`` lays out). Output: a
+``DrawnOutline``: the buffers of edges and the box around them. Input that cannot be read is an
+error at the author's line. Paths and fonts are read by fontTools, an optional package.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _NOT_IN_A_PATH: Final = re.compile(r"[^MmZzLlHhVvCcSsQqTtAa0-9eE+\-.,\s]")
 
 
 @dataclass(frozen=True, slots=True)
-class Outline:
+class DrawnOutline:
     """Closed chains of edges, as the buffers of ``fields.flats.outlines.outline``.
 
     Attributes:
@@ -49,7 +49,7 @@ class Outline:
     high: tuple[float, float]
 
 
-def svg_path(path: str, *, size: float | None = None, place: Span | None = None) -> Outline:
+def svg_path(path: str, *, size: float | None = None, place: Span | None = None) -> DrawnOutline:
     """Return the outline of an SVG path; y points up, and the middle is at the origin.
 
     Open subpaths are closed by a line, as SVG does for filling.
@@ -144,7 +144,7 @@ def outline_pen(glyphs: Any, place: Span | None) -> Any:
     return OutlinePen()
 
 
-def made_of(edges: Iterable[Edge], what: str, place: Span | None) -> Outline:
+def made_of(edges: Iterable[Edge], what: str, place: Span | None) -> DrawnOutline:
     """Return the outline made of closed chains of edges.
 
     Args:
@@ -175,7 +175,7 @@ def made_of(edges: Iterable[Edge], what: str, place: Span | None) -> Outline:
     points = np.concatenate([segments.reshape(-1, 2), bows])
     left, below = points.min(axis=0).tolist()
     right, above = points.max(axis=0).tolist()
-    return Outline(Buffer(segments), Buffer(bows), (left, below), (right, above))
+    return DrawnOutline(Buffer(segments), Buffer(bows), (left, below), (right, above))
 
 
 def _numbers(edges: Sequence[Edge]) -> Any:

@@ -28,7 +28,7 @@ from distal.scene.objects.filling import filled
 from distal.scene.objects.from_data import FromData
 from distal.scene.objects.heights import seen_heights
 from distal.scene.objects.meshable import Meshable
-from distal.scene.objects.placed import Placed
+from distal.scene.objects.outlined import Outlined
 from distal.scene.objects.turns import warn_of_degrees
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.source_places import author_place
@@ -414,7 +414,7 @@ class Shape(Meshable, FromData):
         return seen_heights(self, options, side, box)
 
 
-class Shape2D(Placed):
+class Shape2D(Outlined):
     """A flat shape: a signed distance function of a point in the plane."""
 
     flat = True
