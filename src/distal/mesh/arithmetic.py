@@ -42,9 +42,9 @@ CREASE_COSINE = 0.95
 
 
 @func
-def samples_along_x(  # type: ignore[valid-type]
+def samples_along_x(
     field: Field3, corner: vec3, first: float, origin: float, step: float
-) -> array[float, 9]:
+) -> array[float, 9]:  # type: ignore[valid-type]
     """Return the field's values at nine points of the lattice along x.
 
     A point on the face of two bricks has the same coordinates in both: they depend on its number
