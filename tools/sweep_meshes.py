@@ -26,7 +26,7 @@ import distal  # noqa: E402
 from distal.devices.base import Cancelled  # noqa: E402
 from distal.mesh.checks import checked  # noqa: E402
 from distal.scene.tree.errors import SceneValueError  # noqa: E402
-from tests.mesh.noise_fields import noise  # noqa: E402
+from tests.mesh.noise_fields import at_spacing, noise  # noqa: E402
 from tools.catalogue_cells import cells  # noqa: E402
 
 GROUPS: Final = ("solids", "operators", "blends", "examples", "noise")
@@ -44,6 +44,7 @@ EXAMPLES: Final = (
 )
 FIELDS: Final = 100
 BOX: Final = 1.2  # scene units: what is left of a shape without an end
+NOISE_STEP: Final = 0.05
 _SAMPLES: Final = 20_000  # points of the mesh whose distance is checked again
 _LIBRARY: Final = ("solids", "operators", "blends")
 
@@ -95,10 +96,13 @@ def solid(subject: Subject) -> Any:
     return shape & distal.Box(BOX)
 
 
-def faults_of(shape: Any, share: float, limit: float) -> tuple[list[str], dict[str, Any]]:
+def faults_of(
+    subject: Subject, shape: Any, share: float, limit: float
+) -> tuple[list[str], dict[str, Any]]:
     """Mesh a solid, and return its faults and the report.
 
     Args:
+        subject: What it is.
         shape: The solid.
         share: The tolerance, as a share of the largest side of the box.
         limit: Seconds of processor time.
@@ -107,6 +111,8 @@ def faults_of(shape: Any, share: float, limit: float) -> tuple[list[str], dict[s
         Cancelled: The time is over.
         SceneValueError: The solid has no mesh; the message says why.
     """
+    if subject.group == "noise":
+        return _faults_of_noise(shape)
     low, high = (np.array(corner) for corner in shape.bounds())
     tolerance = share * float((high - low).max())
     begin = time.process_time()
@@ -128,6 +134,17 @@ def faults_of(shape: Any, share: float, limit: float) -> tuple[list[str], dict[s
     return found, report
 
 
+def _faults_of_noise(shape: Any) -> tuple[list[str], dict[str, Any]]:
+    """Mesh noise at one spacing: it has details of any size, so no tolerance can be kept."""
+    made = at_spacing(shape, NOISE_STEP, tolerance=0.02).made
+    single = made.points.astype(np.float32).astype(np.float64)
+    found = []
+    for points, bits in ((made.points, 64), (single, 32)):
+        faults = checked(points, made.triangles)
+        found += [f"{n} {kind} in {bits} bits" for kind, n in faults.items() if n]
+    return found, {"triangles": len(made.triangles), "warnings": []}
+
+
 def _beyond(shape: Any, made: Any) -> float:
     """Return how far points of the triangles are from the surface, at least."""
     rng = np.random.default_rng(1)
@@ -144,7 +161,7 @@ def line_of(subject: Subject, share: float, limit: float) -> tuple[bool, str]:
         shape = solid(subject)
         if shape is None:
             return True, "flat"
-        found, report = faults_of(shape, share, limit)
+        found, report = faults_of(subject, shape, share, limit)
     except Cancelled:
         return True, f"not finished in {limit:g} CPU s"
     except SceneValueError as refusal:
@@ -152,8 +169,9 @@ def line_of(subject: Subject, share: float, limit: float) -> tuple[bool, str]:
     except Exception as error:  # the sweep goes on, and names it
         return False, f"FAULT {type(error).__name__}: {error}"
     spent = time.process_time() - begin
-    what = f"{report['triangles']:,} triangles, {spent:.1f} CPU s, error "
-    what += f"{report['error']['largest']:.2g} of {report['tolerance']:.2g}"
+    what = f"{report['triangles']:,} triangles, {spent:.1f} CPU s"
+    if "error" in report:
+        what += f", error {report['error']['largest']:.2g} of {report['tolerance']:.2g}"
     notes = "".join(f"\n    note: {warning}" for warning in report["warnings"])
     return not found, ("FAULT " + "; ".join(found) + ": " if found else "") + what + notes
 
