@@ -5,6 +5,7 @@
 #                on every target; make clean undoes set-up
 # make sweep-fields   holds every shape and operator against its claims at many more numbers
 # make sweep-segments  follows 1e7 segments of rays and counts those on the wrong side of a surface
+# make sweep-meshes  meshes every solid, the printable examples and 100 random fields, and names faults
 # make parity    draws every example in every place and writes docs/parity.md
 # make mutate    changes the source in small ways and reports what no test notices:
 #                MODULES="distal/fields distal/scene" COUNT=200 SEED=7
@@ -28,13 +29,14 @@ WORKERS ?= 3
 SWEEP ?= 5000
 SAMPLES ?= 40
 SEGMENTS ?= 1e7
+TOLERANCE ?= 0.01
 MODULES ?= distal/fields distal/render distal/passes/fold* distal/scene
 COUNT ?= 100
 SEED ?=
 SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers glslang-tools \
 	chromium xvfb xdotool imagemagick
 
-.PHONY: picture test test-all lint units system bench site sweep sweep-fields sweep-segments parity mutate versions clean
+.PHONY: picture test test-all lint units system bench site sweep sweep-fields sweep-segments sweep-meshes parity mutate versions clean
 .NOTPARALLEL:
 
 picture: $(VENV)/.setup-run
@@ -74,6 +76,10 @@ sweep-fields: $(VENV)/.setup-test
 
 sweep-segments: $(VENV)/.setup-test
 	DISTAL_SEGMENTS=$(SEGMENTS) $(BIN)/python -m pytest -s tests/paths/test_segment_leaks.py
+
+# GROUPS="examples noise" runs a part; a tolerance is a share of a shape's size.
+sweep-meshes: $(VENV)/.setup-test
+	nice $(BIN)/python tools/sweep_meshes.py $(GROUPS) --tolerance $(TOLERANCE)
 
 site: $(VENV)/.setup-test web/node_modules/.ready
 	$(BIN)/python tools/build_site.py

@@ -23,6 +23,7 @@ size = slider("size", 1.0, low=0.5, high=2.0)
 ball = Sphere(size)
 wire = Sphere(1.0) | Box(4.0, 0.001, 0.001).named("wire")
 scene = Scene(part)
+pair = part.named("body") | Sphere(0.3).translate(y=2.0).named("knob") | endless
 """
 
 
@@ -52,6 +53,19 @@ def test_the_report_as_json(run: Any) -> None:
     report = json.loads(done.stdout)
     assert report["tolerance"] == 0.01 and report["unit"] == "mm" and report["name"] == "Box"
     assert report["error"]["largest"] <= 0.01
+
+
+def test_named_parts_are_saved_apart(run: Any) -> None:
+    done = run("mesh", "parts.py:pair", "-o", "p.3mf", "--parts", "--tolerance", "0.02")
+    assert done.exit_code == 0
+    lines = done.stderr.splitlines()
+    assert lines[0].startswith("p.3mf, body: ") and lines[0].endswith("2 x 1 x 1 mm")
+    assert lines[2].startswith("p.3mf, knob: ")
+    assert lines[4] == "'Plane' (line 6) has no end and is left out"
+    done = run("mesh", "parts.py:pair", "-o", "p.glb", "--parts", "--tolerance", "0.02", "--json")
+    found = json.loads(done.stdout)
+    assert [part["name"] for part in found["parts"]] == ["body", "knob"]
+    assert found["endless"] == ["'Plane' (line 6)"]
 
 
 def test_parameters_change_the_mesh(run: Any) -> None:

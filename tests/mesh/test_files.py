@@ -231,7 +231,7 @@ def test_glb_passes_the_validator(tmp_path):
         solid(normals=normals, colors=np.abs(normals)),
         solid(normals=normals, triangle_colors=TWO_COLORS),
     ]
-    write(tmp_path / "a.glb", every, finishes=[Finish(opacity=0.3), None, Finish()])
+    write(tmp_path / "a.glb", every, finishes=[Finish(opacity=0.3), None, Finish(transmission=0.9)])
     script = (
         "const v = require('gltf-validator'), fs = require('fs');"
         "v.validateBytes(new Uint8Array(fs.readFileSync(process.argv[1])))"

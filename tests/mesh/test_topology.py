@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 
 import distal
+from distal import Shape
+from distal.lang import func, vec3
 from distal.mesh import places, triangle_arithmetic, triangulate
 from distal.mesh.checks import checked, intersections, open_edges, pinched_points
 from distal.mesh.exact import intersect
 from distal.mesh.kernels import rows_of
+from distal.mesh.lattice import Lattice
 from tests.mesh.noise_fields import at_spacing, noise
 
 CLEAN = {"open_edges": 0, "pinched_points": 0, "intersections": 0}
@@ -33,6 +36,26 @@ def test_noise_gives_a_clean_mesh(
     assert checked(points, triangles) == CLEAN
     # Files hold 32 bits.
     assert checked(points.astype(np.float32).astype(np.float64), triangles) == CLEAN
+
+
+@func
+def wall(p: vec3, at: float = 0.0) -> float:
+    """A ball that ends at a wall, without a slope: -1 inside, 1 outside."""
+    return -1.0 if p.x * p.x + p.y * p.y + p.z * p.z < 0.16 and p.x < at else 1.0
+
+
+def test_a_lattice_point_of_two_bricks_has_one_sign() -> None:
+    # The wall is between what two ways to compute a face's x give: they differ by rounding.
+    step, low = 0.029, np.full(3, -0.5)
+    lattice = Lattice.over(low, -low, step)
+    ends = [(lattice.places([[8 * n, 0, 0]])[0, 0], n) for n in (1, 2)]
+    for true, n in ends:
+        other = lattice.places([[8 * n - 8, 0, 0]])[0, 0] + 8.0 * step
+        box = (tuple(low), tuple(-low))
+        between = Shape.from_function(wall, at=max(true, other), slope=50.0, bounds=box)
+        found = at_spacing(between, step)
+        assert open_edges(found.made.triangles) == 0
+    assert any(lattice.places([[8 * n - 8, 0, 0]])[0, 0] + 8.0 * step != x for x, n in ends)
 
 
 def test_orientation_is_outwards() -> None:

@@ -26,6 +26,7 @@ from distal.cli.base import (
 from distal.diagnostics import LoadError
 
 if TYPE_CHECKING:
+    from distal.mesh.scene_parts import SceneParts
     from distal.mesh.solid import Mesh
     from distal.scene.objects.shape import Shape
 
@@ -64,6 +65,18 @@ def mesh(
     bed: Annotated[
         bool, typer.Option("--bed", help="Stand the part on 0, centered, as printers want it.")
     ] = False,
+    colors: Annotated[
+        int | None,
+        typer.Option(metavar="N", help="At most so many colors, for a printer with N filaments."),
+    ] = None,
+    simplify: Annotated[
+        bool,
+        typer.Option("--simplify", help="Remove triangles that the tolerance can spare."),
+    ] = False,
+    parts: Annotated[
+        bool,
+        typer.Option("--parts", help="Save each shape with a name as a part of its own."),
+    ] = False,
     check: Annotated[
         bool,
         typer.Option("--check", help="Count open edges, pinched points and intersections."),
@@ -77,22 +90,40 @@ def mesh(
     """Save a shape's surface as triangles: closed, with sharp edges, in a unit of length."""
     from distal.cli.messages import say
     from distal.cli.report import ProgressBar
+    from distal.mesh import palette, scene_parts
     from distal.mesh.files import formats
+    from distal.mesh.meshing import MeshRequest
+    from distal.packages import imported
 
     if output.resolve() == Path(read_scene(scene)[0]).resolve():
         raise UsageError(f"'{output}' is the scene itself")
     check_lengths(tolerance=tolerance, feature=feature)
+    if colors is not None and not 1 <= colors <= palette.MOST:
+        raise UsageError(f"--colors is a number from 1 to {palette.MOST}, not {colors}")
+    if simplify:
+        imported("manifold3d")  # a missing package is named before the work
     formats.check_output(output, unit)
     shape, values, seconds = load_solid(scene, assignments, at)
     with ProgressBar("meshing") as progress:
-        made = shape.mesh(tolerance, feature, values, seconds, progress=progress, check=check)
-    made.save(output, unit=unit, bed=bed)
+        request = MeshRequest(
+            tolerance,
+            feature,
+            values,
+            seconds,
+            progress=progress,
+            check=check,
+            colors=True if colors is None else colors,
+            simplify=simplify,
+        )
+        found = scene_parts.meshes_of(shape.node, request, parts=parts)
+    found.save(output, unit=unit, bed=bed)
     if as_json:
-        answer(json.dumps({**made.report, "name": made.name, "unit": unit}))
+        rows = [{**made.report, "name": made.name, "unit": unit} for made in found.meshes]
+        answer(json.dumps({"parts": rows, "endless": list(found.endless)} if parts else rows[0]))
     else:
-        for line in report_lines(output, made, unit):
+        for line in report_lines(output, found, unit):
             say(line)
-    if check and any(made.report["check"].values()):
+    if check and any(any(made.report["check"].values()) for made in found.meshes):
         raise typer.Exit(1)
 
 
@@ -130,12 +161,20 @@ def load_solid(
     return shape, read_assignments(assignments or (), obj.parameters()), seconds
 
 
-def report_lines(output: Path, made: Mesh, unit: str) -> Iterator[str]:
+def report_lines(output: Path, found: SceneParts, unit: str) -> Iterator[str]:
     """Yield what was saved, how exact it is, and what to watch for."""
+    several = len(found.meshes) > 1
+    for made in found.meshes:
+        yield from _part_lines(f"{output}, {made.name}" if several else str(output), made, unit)
+    for name in found.endless:
+        yield f"{name} has no end and is left out"
+
+
+def _part_lines(title: str, made: Mesh, unit: str) -> Iterator[str]:
     report = made.report
     low, high = made.bounds
     sides = " x ".join(f"{b - a:.4g}" for a, b in zip(low, high, strict=True))
-    yield f"{output}: {report['triangles']:,} triangles, {sides} {unit}"
+    yield f"{title}: {report['triangles']:,} triangles, {sides} {unit}"
     error = report["error"]
     yield (
         f"at most {error['largest']:.2g} {unit} from the surface, {error['mean']:.2g} on average; "

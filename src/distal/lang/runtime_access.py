@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from distal.compiler import constant_evaluation
     from distal.export import registry as exports
     from distal.frontend import python_expressions
-    from distal.mesh import measuring, meshing
+    from distal.mesh import measuring, meshing, scene_parts
     from distal.mesh.outlines import outlining
     from distal.notebook import widget
     from distal.runtime import executor as runtime_executor
@@ -35,6 +35,7 @@ else:
     ray_views = LazyModule("distal.runtime.heights")
     recording = LazyModule("distal.video.recording")
     runtime_executor = LazyModule("distal.runtime.executor")
+    scene_parts = LazyModule("distal.mesh.scene_parts")
     standard_executor = LazyModule("distal.runtime.standard_executor")
     widget = LazyModule("distal.notebook.widget")
 
@@ -60,5 +61,6 @@ __all__ = [
     "python_expressions",
     "ray_views",
     "recording",
+    "scene_parts",
     "widget",
 ]

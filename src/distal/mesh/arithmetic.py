@@ -42,11 +42,24 @@ CREASE_COSINE = 0.95
 
 
 @func
-def samples_along_x(field: Field3, corner: vec3, step: float) -> array[float, 9]:  # type: ignore[valid-type]
-    """Return the field's values at nine points of the lattice along x."""
+def samples_along_x(
+    field: Field3, corner: vec3, first: float, origin: float, step: float
+) -> array[float, 9]:  # type: ignore[valid-type]
+    """Return the field's values at nine points of the lattice along x.
+
+    A point on the face of two bricks has the same coordinates in both: they depend on its number
+    in the lattice alone. Otherwise rounding could give it two signs.
+
+    Args:
+        field: The shape.
+        corner: The first point; its x is not used.
+        first: The number of the first point along x.
+        origin: The x of the point 0.
+        step: The length of a cell.
+    """
     found = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     for i in range(9):
-        found[i] = field(corner + vec3(step * float(i), 0.0, 0.0))
+        found[i] = field(vec3(origin + (first + float(i)) * step, corner.y, corner.z))
     return found
 
 

@@ -204,8 +204,10 @@ def _values(kernels: FieldKernels, lattice: Lattice, bricks: Integers) -> Floats
     found = kernels.call(
         samples_along_x,
         corners,
+        rows[..., 0].reshape(-1),
+        np.full(len(corners), lattice.origin[0]),
         np.full(len(corners), lattice.step),
-        types=[("corner", VEC3), ("step", FLOAT)],
+        types=[("corner", VEC3), ("first", FLOAT), ("origin", FLOAT), ("step", FLOAT)],
     )
     if not np.isfinite(found).all():
         row, i = (int(n) for n in np.argwhere(~np.isfinite(found))[0])

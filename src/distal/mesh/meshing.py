@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import time as clock
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import numpy as np
@@ -18,15 +18,20 @@ from distal.devices.base import Cancelled, cancel_test
 from distal.fields.guarantees import ended
 from distal.lang.render_options import Cancel, Progress, checked_time
 from distal.lang.runtime_access import executor
+from distal.mesh import simplify
 from distal.mesh.bricks import Slopes
 from distal.mesh.checks import checked
-from distal.mesh.coloring import colors_of
+from distal.mesh.coloring import colors_of, finish_of
 from distal.mesh.extract import Extent, Extracted, Nothing
+from distal.mesh.files.parts import Finish, Finishes
 from distal.mesh.kernels import FieldKernels
+from distal.mesh.palette import MOST as MOST_COLORS
 from distal.mesh.parts import leaves_at, named
 from distal.mesh.problems import MeshProblem
-from distal.mesh.solid import Floats, Mesh
+from distal.mesh.simplify import Simplified
+from distal.mesh.solid import Floats, Integers, Mesh
 from distal.mesh.spacing import BALL_CELLS, TooFine, Wanted, meshed
+from distal.packages import imported
 from distal.scene.lowering.derived import BoundsOf
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
@@ -36,6 +41,8 @@ if TYPE_CHECKING:
 
 # Without a tolerance it is this share of the largest side of the box.
 DEFAULT_TOLERANCE: Final = 2e-3
+# A mesh that is simplified first takes this share of the tolerance, and leaves the rest.
+FIRST_SHARE: Final = 0.5
 _MOST_NAMED: Final = 8  # lost parts that are named
 _STEEP: Final = 1e6  # a slope above it says nothing
 
@@ -54,7 +61,9 @@ class MeshRequest:
         progress: Called with the finished share, from 0 to 1.
         cancel: An event, or a function without arguments, that ends the work early.
         check: Whether open edges, pinched points and intersections are counted.
-        colors: Whether the mesh has the colors of the shape's materials.
+        colors: Whether the mesh has the colors of the shape's materials; a number for at most so
+            many different ones.
+        simplify: Whether points that the tolerance can spare are removed.
     """
 
     tolerance: float | None = None
@@ -64,7 +73,8 @@ class MeshRequest:
     progress: Progress | None = None
     cancel: Cancel | None = None
     check: bool = False
-    colors: bool = True
+    colors: bool | int = True
+    simplify: bool = False
 
     def __post_init__(self) -> None:
         """Check the numbers.
@@ -79,6 +89,10 @@ class MeshRequest:
             valid = isinstance(value, int | float) and not isinstance(value, bool)
             if not valid or not 0.0 < value < math.inf:
                 refuse(f"{name} is a length above 0, not {value!r:.40}", f"{name}=0.01")
+        wrong = not isinstance(self.colors, int) or not 0 <= self.colors <= MOST_COLORS
+        if wrong:
+            words = f"colors is True, False, or a number from 1 to {MOST_COLORS}"
+            refuse(f"{words}, not {self.colors!r:.40}", "colors=4")
         object.__setattr__(self, "time", checked_time(self.time))
 
 
@@ -99,22 +113,79 @@ def mesh_of(shape: Meshable, request: MeshRequest) -> Mesh:
         refuse_kind(
             f"'{node.name}' is flat, and a mesh is of a solid", ".extrude(height)", node.place
         )
+    return mesh_of_node(node, request)
+
+
+def mesh_of_node(node: Node, request: MeshRequest) -> Mesh:
+    """Return the mesh of a tree.
+
+    Args:
+        node: A solid.
+        request: What is asked.
+
+    Raises:
+        Cancelled: ``request.cancel`` stopped the work.
+        SceneValueError: The shape cannot be meshed.
+    """
     begin = clock.process_time()
     found, wanted, kernels = found_mesh(node, request)
     report = _report(node, found, wanted, request)
-    points, triangles = found.made.points, found.made.triangles
-    at_points, of_triangles = None, None
-    if request.colors:
-        at_points, of_triangles = colors_of(
-            node, points, triangles, params=request.params, time=request.time
+    points, triangles, normals = found.made.points, found.made.triangles, found.normals
+    at_points, of_triangles, finish = _appearance(node, points, triangles, request)
+    if request.simplify:
+        imported(simplify.PACKAGE)
+        less = simplify.simplified(
+            kernels,
+            points,
+            triangles,
+            of_triangles,
+            error=report["error"]["largest"],
+            tolerance=wanted.tolerance,
+            step=found.step,
+            watch=watch_of(replace(request, progress=None)),
         )
+        _record_simplified(report, less)
+        if less is not None:
+            triangles = less.triangles
+            points, normals = points[less.points], normals[less.points]
+            at_points, of_triangles, finish = _appearance(node, points, triangles, request)
     if request.check:
         report["check"] = checked(points, triangles, watch_of(request))
     report["rows"] = kernels.rows
     report["cpu_s"] = clock.process_time() - begin
     if request.progress is not None:
         request.progress(1.0)
-    return Mesh(points, triangles, found.normals, at_points, of_triangles, report, node.name)
+    made = (points, triangles, normals)
+    return Mesh(*made, at_points, of_triangles, report, node.name, finish)
+
+
+def _appearance(
+    node: Node, points: Floats, triangles: Integers, request: MeshRequest
+) -> tuple[Floats | None, Floats | None, Finish | Finishes | None]:
+    """Return the colors of points and of triangles, and the finish."""
+    if request.colors is False:
+        return None, None, None
+    most = None if request.colors is True else request.colors
+    where, params, time = (node, points, triangles), request.params, request.time
+    at_points, of_triangles = colors_of(*where, most=most, params=params, time=time)
+    return at_points, of_triangles, finish_of(*where, params=params, time=time)
+
+
+def _record_simplified(report: dict[str, Any], less: Simplified | None) -> None:
+    """Change the report to what it says about the mesh with fewer triangles."""
+    if less is None:
+        report["warnings"].append(
+            "the mesh was not simplified: no mesh with fewer triangles is within the tolerance"
+        )
+        return
+    error = report["error"]
+    report["triangles_before"] = report["triangles"]
+    report["points"], report["triangles"] = len(less.points), len(less.triangles)
+    # What manifold3d removes moves the surface by less than it is allowed to.
+    error["surface_to_mesh"] += less.moved
+    error["mesh_to_surface"], error["mean"] = less.largest, less.mean
+    error["place"] = list(less.place)
+    error["largest"] = max(less.largest, error["surface_to_mesh"])
 
 
 def found_mesh(node: Node, request: MeshRequest) -> tuple[Extracted, Wanted, FieldKernels]:
@@ -131,11 +202,15 @@ def found_mesh(node: Node, request: MeshRequest) -> tuple[Extracted, Wanted, Fie
     extent = extent_of(node, request)
     kernels = FieldKernels(node, request.params, request.time)
     wanted = Wanted(request.tolerance or DEFAULT_TOLERANCE * extent.size, request.feature)
+    share = FIRST_SHARE if request.simplify else 1.0
+    first = replace(wanted, tolerance=share * wanted.tolerance)
     try:
-        found = meshed(kernels, extent, wanted, watch_of(request))
+        found = meshed(kernels, extent, first, watch_of(request))
     except MeshProblem as problem:
         _refuse_problem(node, extent, problem)
     if isinstance(found, TooFine):
+        if found.tolerance is not None:
+            found = replace(found, tolerance=found.tolerance / share)
         _refuse_too_fine(node, found, wanted)
     if isinstance(found, Nothing):
         _refuse_nothing(node, found, request)

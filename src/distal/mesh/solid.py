@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from distal.mesh.files import formats
+from distal.mesh.files.parts import Finish, Finishes
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -32,6 +33,8 @@ class Mesh:
         triangle_colors: Of shape (m, 3): linear color of each triangle; None without colors.
         report: What is known about the mesh: its spacing, counts, errors and warnings.
         name: The name of the shape.
+        finish: How the mesh, or each triangle, reflects light in files with materials; None without
+            materials.
     """
 
     points: Floats
@@ -41,6 +44,7 @@ class Mesh:
     triangle_colors: Floats | None = None
     report: Mapping[str, Any] = field(default_factory=dict)
     name: str = "shape"
+    finish: Finish | Finishes | None = None
 
     def __post_init__(self) -> None:
         """Check the shapes of the arrays and make them read-only.
@@ -87,7 +91,7 @@ class Mesh:
         Raises:
             SaveError: The suffix or the unit is unknown, or the file cannot be written.
         """
-        formats.write(path, self, unit=unit, bed=bed)
+        formats.write(path, self, unit=unit, bed=bed, finishes=[self.finish])
 
     def __repr__(self) -> str:
         return f"<Mesh '{self.name}': {len(self.points)} points, {len(self.triangles)} triangles>"

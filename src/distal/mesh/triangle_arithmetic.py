@@ -79,12 +79,6 @@ def to_line(p: vec3, a: vec3, b: vec3) -> float:
 
 
 @func
-def shown_color(color: vec3) -> vec3:
-    """Return a color that files can hold: each part from 0 to 1."""
-    return clamp(color, 0.0, 1.0)
-
-
-@func
 def middle(a: vec3, b: vec3, c: vec3) -> vec3:
     """Return the middle of a triangle."""
     return (a + b + c) / 3.0

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
@@ -22,6 +23,7 @@ from distal.lang.functions import Func
 from distal.lang.lazy_module import LazyModule
 from distal.lang.presentable import Presentable
 from distal.lang.render_options import Cancel, Progress, RenderOptions
+from distal.lang.runtime_access import meshing, scene_parts
 from distal.loading import copy_loaded_from
 from distal.render import film, filters, tonemap, views
 from distal.scene.looks.dressed import Dressed, GivenArguments
@@ -46,6 +48,7 @@ from distal.scene.view_options import MODES, ViewOptions
 
 if TYPE_CHECKING:
     from distal.images.picture import Picture
+    from distal.mesh.scene_parts import SceneParts
     from distal.scene import rendering
     from distal.scene.looks.look import Look
     from distal.scene.objects.argument_types import Color, Number, Varying
@@ -500,6 +503,50 @@ class Scene(Composed, Presentable):
         if key not in self._pictures:
             self._pictures[key] = PathLayer(self, name, chosen, steered=steered)
         return self._pictures[key]
+
+    def save(
+        self,
+        path: str | PathLike[str],
+        tolerance: float | None = None,
+        feature: float | None = None,
+        params: Mapping[str, Any] | None = None,
+        time: float = 0.0,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+        *,
+        unit: str = "mm",
+        bed: bool = False,
+    ) -> SceneParts:
+        """Save the scene's parts as meshes in one file, with their names, colors and materials.
+
+        Each shape with a name (``.named()``) in a union is a part; what has none is one more. What
+        has no end is left out. The result has the ``meshes``, and what is ``endless``.
+
+        Args:
+            path: The file: ``.glb`` (with materials), ``.3mf``, ``.obj``, ``.ply`` or ``.stl``.
+            tolerance: How far a mesh may be from its surface, in scene units. None: 0.002 of the
+                largest side of each part.
+            feature: The diameter of the smallest parts and gaps that must be found.
+            params: Values of parameters by name; the others have their defaults.
+            time: Time in seconds.
+            progress: Called with the finished share, from 0 to 1.
+            cancel: An event, or a function without arguments, that ends the work early.
+            unit: The length of one scene unit: "um", "mm", "cm", "m", "inch" or "ft".
+            bed: Move all parts together, so that they stand on 0 and are centered there.
+
+        Raises:
+            CompileError: No part has an end, or a part cannot be meshed.
+            SaveError: The suffix or the unit is unknown, or the file cannot be written.
+        """
+        request = meshing.MeshRequest(
+            tolerance=tolerance,
+            feature=feature,
+            params=params or {},
+            time=time,
+            progress=progress,
+            cancel=cancel,
+        )
+        return scene_parts.saved(self, path, request, unit=unit, bed=bed)
 
     def developed(self, *, exposure: float | None = None, tone_map: str | None = None) -> Scene:
         """Return the scene with another exposure or tone map; None keeps the scene's own value."""

@@ -26,7 +26,7 @@ from distal.mesh.files.outlines import (
     write_svg,
     write_svg_layers,
 )
-from distal.mesh.files.parts import FilePart, Finish, Solid, part_of, placed
+from distal.mesh.files.parts import FilePart, Finish, Finishes, Solid, part_of, placed
 from distal.mesh.files.ply import write_ply
 from distal.mesh.files.stl import write_stl
 from distal.mesh.files.three_mf import write_three_mf
@@ -86,7 +86,7 @@ def write(
     *,
     unit: str = "mm",
     bed: bool = False,
-    finishes: Sequence[Finish | None] | None = None,
+    finishes: Sequence[Finish | Finishes | None] | None = None,
 ) -> None:
     """Save meshes in the format that the file's suffix names.
 
@@ -98,7 +98,8 @@ def write(
         solid: A mesh, or several parts of one file.
         unit: The length of one scene unit, a key of ``UNITS``.
         bed: Move the parts so that they stand on 0 and are centered there.
-        finishes: How each part reflects light, or None; formats without materials ignore it.
+        finishes: How each part, or each of its triangles, reflects light, or None; formats without
+            materials ignore it.
 
     Raises:
         SaveError: The suffix or the unit is unknown, a mesh is invalid, or the file system reports

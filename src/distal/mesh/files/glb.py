@@ -60,14 +60,17 @@ def write_glb(file: BinaryIO, parts: Sequence[FilePart]) -> None:
         SaveError: The file would be larger than the format allows.
     """
     document = _Document()
-    meshes, nodes, materials = [], [], []
+    meshes, nodes = [], []
+    materials: list[dict[str, Any]] = []
     for index, part in enumerate(parts):
         name = part.name or f"part {index + 1}"
-        materials.append({"name": name, **_material(part.finish or Finish())})
-        primitive = {**_primitive(document, part), "material": index}
-        meshes.append({"name": name, "primitives": [primitive]})
+        primitives = []
+        for piece in part.pieces():
+            primitives.append({**_primitive(document, piece), "material": len(materials)})
+            materials.append({"name": name, **_material(piece.whole_finish or Finish())})
+        meshes.append({"name": name, "primitives": primitives})
         nodes.append({"name": name, "mesh": index})
-    content = {
+    content: dict[str, Any] = {
         "asset": {"version": "2.0", "generator": "distal"},
         "scene": 0,
         "scenes": [{"nodes": list(range(len(nodes)))}],
@@ -78,6 +81,9 @@ def write_glb(file: BinaryIO, parts: Sequence[FilePart]) -> None:
         "bufferViews": document.views,
         "buffers": [{"byteLength": len(document.data)}],
     }
+    used = sorted({name for each in materials for name in each.get("extensions", ())})
+    if used:
+        content["extensionsUsed"] = used
     text = json.dumps(content, separators=(",", ":")).encode()
     text += b" " * (-len(text) % 4)
     total = 12 + 8 + len(text) + 8 + len(document.data)
@@ -139,6 +145,11 @@ def _material(finish: Finish) -> dict[str, Any]:
     material: dict[str, Any] = {"pbrMetallicRoughness": surface}
     if finish.opacity < 1.0:
         material["alphaMode"] = "BLEND"
+    if finish.transmission > 0.0:
+        material["extensions"] = {
+            "KHR_materials_ior": {"ior": max(float(finish.ior), 1.0)},
+            "KHR_materials_transmission": {"transmissionFactor": min(finish.transmission, 1.0)},
+        }
     if max(finish.emission) > 0.0:
         material["emissiveFactor"] = [min(max(float(c), 0.0), 1.0) for c in finish.emission]
     return material

@@ -71,8 +71,8 @@ def _groups(
     count = len(part.triangles)
     if part.triangle_colors is None:
         name = None
-        if part.finish is not None:
-            codes = display_codes(np.array([part.finish.color]))
+        if part.whole_finish is not None:
+            codes = display_codes(np.array([part.whole_finish.color]))
             name = _material(materials, tuple(codes[0].tolist()))
         return np.arange(count), [(name, 0, count)]
     found, which = np.unique(display_codes(part.triangle_colors), axis=0, return_inverse=True)

@@ -68,6 +68,8 @@ class Finish:
         roughness: 0 (a mirror) to 1.
         opacity: 0 to 1.
         emission: Linear light that the part emits.
+        transmission: The share of light that passes through, 0 to 1.
+        ior: The index of refraction.
     """
 
     color: tuple[float, float, float] = (1.0, 1.0, 1.0)
@@ -75,6 +77,21 @@ class Finish:
     roughness: float = 0.5
     opacity: float = 1.0
     emission: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    transmission: float = 0.0
+    ior: float = 1.5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Finishes:
+    """How the triangles of a part reflect light, if they differ.
+
+    Attributes:
+        kinds: The finishes.
+        of_triangles: For each triangle the index of its finish.
+    """
+
+    kinds: tuple[Finish, ...]
+    of_triangles: NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,7 +105,7 @@ class FilePart:
         normals: (n, 3) float64, or None.
         colors: Linear light of each point, or None.
         triangle_colors: Linear light of each triangle, or None.
-        finish: How the whole part reflects light, or None.
+        finish: How the part reflects light: as a whole or each triangle; or None.
     """
 
     name: str
@@ -97,11 +114,41 @@ class FilePart:
     normals: NDArray[np.float64] | None = None
     colors: NDArray[np.float64] | None = None
     triangle_colors: NDArray[np.float64] | None = None
-    finish: Finish | None = None
+    finish: Finish | Finishes | None = None
+
+    @property
+    def whole_finish(self) -> Finish | None:
+        """How the whole part reflects light, or None."""
+        return self.finish if isinstance(self.finish, Finish) else None
+
+    def pieces(self) -> list[FilePart]:
+        """Return the triangles of each finish as a part of its own."""
+        if not isinstance(self.finish, Finishes):
+            return [self]
+        of = self.finish.of_triangles
+        rows = [(kind, np.flatnonzero(of == i)) for i, kind in enumerate(self.finish.kinds)]
+        return [self._piece(kind, each) for kind, each in rows if len(each)]
+
+    def _piece(self, kind: Finish, rows: NDArray[np.intp]) -> FilePart:
+        used, corners = np.unique(self.triangles[rows], return_inverse=True)
+        shades = self.triangle_colors
+        return replace(
+            self,
+            points=self.points[used],
+            triangles=corners.reshape(-1, 3),
+            normals=None if self.normals is None else self.normals[used],
+            colors=None if self.colors is None else self.colors[used],
+            triangle_colors=None if shades is None else shades[rows],
+            finish=kind,
+        )
 
 
-def part_of(solid: Solid, finish: Finish | None = None) -> FilePart:
+def part_of(solid: Solid, finish: Finish | Finishes | None = None) -> FilePart:
     """Check a mesh.
+
+    Args:
+        solid: The mesh.
+        finish: How it reflects light, or None.
 
     Raises:
         SaveError: It has no triangle, a number that is not finite, or arrays that do not match.

@@ -93,9 +93,9 @@ def _object(
     name = quoteattr(_printable(part.name) or f"part {number // 2}")
     opening, attributes, palette = f'<object id="{number}" name={name} type="model"', "", ""
     faces = _triangles(part.triangles)
-    if colors is None and part.finish is not None:
+    if colors is None and part.whole_finish is not None:
         palette = f'<basematerials id="{group}"><base name="1" displaycolor="'
-        palette += f'{hex_of(part.finish.color).upper()}"/></basematerials>\n'
+        palette += f'{hex_of(part.whole_finish.color).upper()}"/></basematerials>\n'
         attributes = f' pid="{group}" pindex="0"'
     elif colors is not None:
         found, which = np.unique(_packed(colors), return_inverse=True)

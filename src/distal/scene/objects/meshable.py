@@ -30,7 +30,8 @@ class Meshable(Placed):
         cancel: Cancel | None = None,
         *,
         check: bool = False,
-        colors: bool = True,
+        colors: bool | int = True,
+        simplify: bool = False,
     ) -> Mesh:
         """Return triangles of the surface: closed, without self-intersections, with sharp edges.
 
@@ -48,7 +49,10 @@ class Meshable(Placed):
             cancel: An event, or a function without arguments, that ends the work early.
             check: Count open edges, pinched points and intersecting triangles for the report,
                 which takes longer.
-            colors: Whether the mesh has the colors of the shape's materials.
+            colors: Whether the mesh has the colors of the shape's materials; a number reduces them
+                to at most so many.
+            simplify: Remove points that the tolerance can spare; needs the extra ``mesh``. The
+                error is measured again.
 
         Raises:
             CompileError: The shape's scene code has mistakes.
@@ -64,6 +68,7 @@ class Meshable(Placed):
             cancel=cancel,
             check=check,
             colors=colors,
+            simplify=simplify,
         )
         return meshing.mesh_of(self, request)
 
