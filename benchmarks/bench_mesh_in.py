@@ -20,10 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.polygons.distances import Distances, distances
-from distal.polygons.triangles import Triangles
+from distal.polygons.triangles import SourceTriangles
 
 
-def rippled_torus(around: int, across: int) -> Triangles:
+def rippled_torus(around: int, across: int) -> SourceTriangles:
     """Return a closed mesh of ``2 * around * across`` triangles."""
     u = 2.0 * np.pi * np.arange(around)[:, None] / around
     v = 2.0 * np.pi * np.arange(across)[None] / across
@@ -35,7 +35,7 @@ def rippled_torus(around: int, across: int) -> Triangles:
     steps = ((0, 0), (0, 1), (1, 1), (1, 0))
     a, b, c, d = (((i + s) % around * across + (j + t) % across).reshape(-1) for s, t in steps)
     triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
-    return Triangles(points, triangles.astype(np.int64))
+    return SourceTriangles(points, triangles.astype(np.int64))
 
 
 def nodes_of(found: Distances) -> NDArray[np.float64]:

@@ -27,7 +27,7 @@ from distal.mesh.outlines.crossings import crossing_lines
 from distal.mesh.outlines.layers import layer_places, layers_at
 from distal.mesh.outlines.outline import Outline
 from distal.mesh.outlines.outlining import OutlineRequest
-from distal.mesh.outlines.tiles import Extent
+from distal.mesh.outlines.tiles import FlatExtent
 from distal.mesh.outlines.tracing import TracedOutline, _at_spacing
 from distal.scene.tree.errors import SceneValueError
 
@@ -86,7 +86,7 @@ def crossings(loops: Any) -> int:
 
 def at_spacing(shape: Any, step: float) -> TracedOutline:
     low, high = (np.array(corner) for corner in shape.bounds())
-    extent = Extent(low, high, shape.slope, shape.divisor)
+    extent = FlatExtent(low, high, shape.slope, shape.divisor)
     found = _at_spacing(FieldKernels(shape.node, {}, 0.0), extent, step, lambda share: None)
     assert isinstance(found, TracedOutline)
     return found

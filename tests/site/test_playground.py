@@ -106,6 +106,7 @@ def show_again(page, name: str = "planet") -> None:
     """Show an example as a new page does."""
     text = gallery()[name].read_text(encoding="utf-8")
     page.evaluate("([file, text]) => studio.editor.replace(file, text)", [f"{name}.py", text])
+    page.evaluate("() => studio.looking.run()")  # also after it was stopped
     page.wait_for_timeout(200)  # typing ends
     page.wait_for_function(_IDLE, timeout=SLOW_MS)
 

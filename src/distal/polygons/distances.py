@@ -20,9 +20,9 @@ from distal.polygons import arithmetic
 from distal.polygons.cells import sorted_into_cells
 from distal.polygons.inside import closed_by_winding, inside_by_normals, is_contradictory
 from distal.polygons.kernels import run
-from distal.polygons.topology import Joined, Topology, joined, topology
+from distal.polygons.topology import EdgeTopology, Joined, joined, topology
 from distal.polygons.tree import tree_buffers
-from distal.polygons.triangles import Triangles
+from distal.polygons.triangles import SourceTriangles
 
 # Ways to find the inside of a mesh.
 AUTO: Final = "auto"
@@ -53,13 +53,13 @@ class Distances:
     values: NDArray[np.float32]
     low: NDArray[np.float64]
     spacing: float
-    topology: Topology
+    topology: EdgeTopology
     sign: str
     turned: bool
     left_out: int
 
 
-def distances(mesh: Triangles, spacing: float | None = None, sign: str = AUTO) -> Distances:
+def distances(mesh: SourceTriangles, spacing: float | None = None, sign: str = AUTO) -> Distances:
     """Return the signed distances to a mesh.
 
     Args:
@@ -108,7 +108,7 @@ def _checked_spacing(size: NDArray[np.float64], spacing: float | None) -> float:
 
 
 def _signed(
-    mesh: Joined, joints: Topology, nodes: tuple[int, int, int], sign: str
+    mesh: Joined, joints: EdgeTopology, nodes: tuple[int, int, int], sign: str
 ) -> tuple[NDArray[np.float32], str, bool]:
     """Return distances in units of the grid, how the inside was found, and whether it was turned.
 
@@ -140,7 +140,7 @@ def _signed(
     return signed, WINDING, turned
 
 
-def described(joints: Topology) -> str:
+def described(joints: EdgeTopology) -> str:
     """Return in words how a mesh is joined."""
     if joints.open_edges:
         return f"the mesh is open, with {joints.open_edges} open edges"

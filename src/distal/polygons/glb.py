@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
-from distal.polygons.triangles import MOST_TRIANGLES, Triangles, checked
+from distal.polygons.triangles import MOST_TRIANGLES, SourceTriangles, checked
 
 _COMPONENTS: Final = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS: Final = {"SCALAR": 1, "VEC3": 3}
@@ -32,7 +32,7 @@ class _File:
     data: bytes
 
 
-def read_glb(data: bytes) -> Triangles:
+def read_glb(data: bytes) -> SourceTriangles:
     """Return the triangles of a GLB file.
 
     Raises:

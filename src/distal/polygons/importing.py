@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from distal.diagnostics import LoadError
 from distal.polygons.distances import UNSIGNED, WINDING, Distances, described, distances
 from distal.polygons.reading import format_of, read_mesh
-from distal.polygons.triangles import Triangles, checked
+from distal.polygons.triangles import SourceTriangles, checked
 from distal.polygons.units import MILLIMETER, UNITS
 
 # The most triangles at which the surface is measured.
@@ -31,7 +31,7 @@ _MOST_LOST: Final = 0.001
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class ImportRequest:
     """What an author asks for.
 
     Attributes:
@@ -113,7 +113,7 @@ class Imported:
     report: ImportReport
 
 
-def imported_file(path: Path, wanted: Wanted) -> Imported:
+def imported_file(path: Path, wanted: ImportRequest) -> Imported:
     """Return the grid of a file.
 
     Raises:
@@ -129,13 +129,13 @@ def imported_file(path: Path, wanted: Wanted) -> Imported:
 
 
 @lru_cache(maxsize=4)
-def _of_file(path: Path, version: tuple[int, int], wanted: Wanted) -> Imported:
+def _of_file(path: Path, version: tuple[int, int], wanted: ImportRequest) -> Imported:
     mesh = read_mesh(path)
     up = wanted.up or ("z" if format_of(path).z_up else "y")
     return _imported(mesh, path.name, replace(wanted, up=up))
 
 
-def imported_arrays(points: Any, triangles: Any, wanted: Wanted) -> Imported:
+def imported_arrays(points: Any, triangles: Any, wanted: ImportRequest) -> Imported:
     """Return the grid of arrays.
 
     Raises:
@@ -144,7 +144,7 @@ def imported_arrays(points: Any, triangles: Any, wanted: Wanted) -> Imported:
     return _imported(checked(points, triangles), "arrays", wanted)
 
 
-def _imported(mesh: Triangles, name: str, wanted: Wanted) -> Imported:
+def _imported(mesh: SourceTriangles, name: str, wanted: ImportRequest) -> Imported:
     if wanted.unit is not None:
         # A format without a unit is in millimeters, as programs for printers read it.
         meters = MILLIMETER if mesh.meters is None else mesh.meters
@@ -173,7 +173,9 @@ def _imported(mesh: Triangles, name: str, wanted: Wanted) -> Imported:
     return Imported(found.values, (x, y, z), (width, height, depth), local, areas, report)
 
 
-def _places(mesh: Triangles, found: Distances) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _places(
+    mesh: SourceTriangles, found: Distances
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return ``Imported.places``, not from the center, and ``Imported.areas``."""
     step = -(-len(mesh.triangles) // _MOST_MEASURED)
     corners = mesh.points[mesh.triangles[::step]]

@@ -8,10 +8,10 @@ from __future__ import annotations
 import numpy as np
 
 from distal.diagnostics import LoadError
-from distal.polygons.triangles import Triangles, checked, fans
+from distal.polygons.triangles import SourceTriangles, checked, fans
 
 
-def read_obj(data: bytes) -> Triangles:
+def read_obj(data: bytes) -> SourceTriangles:
     """Return the triangles of an OBJ file.
 
     Raises:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
-from distal.polygons.triangles import Triangles, checked, fans
+from distal.polygons.triangles import SourceTriangles, checked, fans
 
 _TYPES: Final = {
     **dict.fromkeys(("char", "int8"), "i1"),
@@ -53,7 +53,7 @@ class _Rest:
     words: list[bytes] | None = None  # the numbers of a text file
 
 
-def read_ply(data: bytes) -> Triangles:
+def read_ply(data: bytes) -> SourceTriangles:
     """Return the triangles of a PLY file.
 
     Raises:

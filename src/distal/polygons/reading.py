@@ -18,7 +18,7 @@ from distal.polygons.obj import read_obj
 from distal.polygons.ply import read_ply
 from distal.polygons.stl import read_stl
 from distal.polygons.three_mf import read_three_mf
-from distal.polygons.triangles import Triangles
+from distal.polygons.triangles import SourceTriangles
 
 LARGEST_FILE: Final = 2**30  # bytes
 
@@ -35,7 +35,7 @@ class ReadFormat:
 
     name: str
     z_up: bool
-    read: Callable[[bytes], Triangles]
+    read: Callable[[bytes], SourceTriangles]
 
 
 READ_FORMATS: Final = {
@@ -60,7 +60,7 @@ def format_of(path: Path) -> ReadFormat:
     return chosen
 
 
-def read_mesh(path: Path) -> Triangles:
+def read_mesh(path: Path) -> SourceTriangles:
     """Return the triangles of a file, in its own unit and axes.
 
     Raises:

@@ -12,14 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
-from distal.polygons.triangles import Triangles, checked, welded
+from distal.polygons.triangles import SourceTriangles, checked, welded
 
 _HEADER: Final = 84
 _RECORD: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("extra", "<u2")])
 _VERTEX: Final = re.compile(rb"^\s*vertex\s+(\S+)\s+(\S+)\s+(\S+)\s*$", re.MULTILINE | re.I)
 
 
-def read_stl(data: bytes) -> Triangles:
+def read_stl(data: bytes) -> SourceTriangles:
     """Return the triangles of an STL file.
 
     Raises:
@@ -41,7 +41,7 @@ def read_stl(data: bytes) -> Triangles:
     return _mesh(np.frombuffer(data, _RECORD, count, _HEADER)["corners"])
 
 
-def _text(data: bytes) -> Triangles:
+def _text(data: bytes) -> SourceTriangles:
     numbers = _VERTEX.findall(data)
     if len(numbers) % 3 or b"endsolid" not in data[-1024:].lower():
         raise LoadError(f"it ends after {len(numbers)} corners: it is truncated")
@@ -56,6 +56,6 @@ def _text(data: bytes) -> Triangles:
     return _mesh(corners)
 
 
-def _mesh(corners: NDArray[np.float32]) -> Triangles:
+def _mesh(corners: NDArray[np.float32]) -> SourceTriangles:
     points, which = welded(corners.reshape(-1, 3))
     return checked(points, which.reshape(-1, 3))

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
-from distal.polygons.triangles import MOST_TRIANGLES, Triangles, checked
+from distal.polygons.triangles import MOST_TRIANGLES, SourceTriangles, checked
 from distal.polygons.units import UNITS
 
 _CORE: Final = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
@@ -71,7 +71,7 @@ class _Archive:
     placed: int = 0
 
 
-def read_three_mf(data: bytes) -> Triangles:
+def read_three_mf(data: bytes) -> SourceTriangles:
     """Return the triangles of a 3MF file.
 
     Raises:
@@ -84,7 +84,7 @@ def read_three_mf(data: bytes) -> Triangles:
         raise LoadError(f"it is no whole zip archive, as 3MF is: {error}") from None
 
 
-def _read(whole: _Archive) -> Triangles:
+def _read(whole: _Archive) -> SourceTriangles:
     path = _start(whole)
     root = _root(whole, path)
     unit = root.get("unit", "millimeter")

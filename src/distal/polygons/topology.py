@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.polygons.triangles import Triangles, welded
+from distal.polygons.triangles import SourceTriangles, welded
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,7 +37,7 @@ class Joined:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Topology:
+class EdgeTopology:
     """Whether a mesh is closed.
 
     Attributes:
@@ -61,7 +61,7 @@ class Topology:
         return self.mates is not None
 
 
-def joined(mesh: Triangles, origin: NDArray[np.float64], spacing: float) -> Joined:
+def joined(mesh: SourceTriangles, origin: NDArray[np.float64], spacing: float) -> Joined:
     """Return a mesh in units of a grid, with equal points joined.
 
     Args:
@@ -79,7 +79,7 @@ def joined(mesh: Triangles, origin: NDArray[np.float64], spacing: float) -> Join
     return Joined(points, triangles, corners, len(proper) - len(triangles))
 
 
-def topology(mesh: Joined) -> Topology:
+def topology(mesh: Joined) -> EdgeTopology:
     """Return whether a mesh is closed."""
     starts = mesh.triangles.reshape(-1)
     ends = mesh.triangles[:, [1, 2, 0]].reshape(-1)
@@ -98,7 +98,7 @@ def topology(mesh: Joined) -> Topology:
     a, b, c = (corner.astype(np.float64) for corner in mesh.corners)
     volume = float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
     open_edges, shared = int((counts == 1).sum()), int((counts > 2).sum())
-    return Topology(open_edges, shared, turned, volume, mates)
+    return EdgeTopology(open_edges, shared, turned, volume, mates)
 
 
 def feature_normals(

@@ -1,4 +1,4 @@
-"""``Triangles``: the points and triangles that a file contains, or an author gives.
+"""``SourceTriangles``: the points and triangles that a file contains, or an author gives.
 
 Input: arrays. Output: checked arrays; equal points joined. Does not depend on files.
 """
@@ -20,7 +20,7 @@ _HASH: Final = np.array((0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E377
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Triangles:
+class SourceTriangles:
     """A mesh of triangles.
 
     Attributes:
@@ -34,7 +34,7 @@ class Triangles:
     meters: float | None = None
 
 
-def checked(points: Any, triangles: Any, meters: float | None = None) -> Triangles:
+def checked(points: Any, triangles: Any, meters: float | None = None) -> SourceTriangles:
     """Return a mesh from arrays.
 
     Args:
@@ -60,7 +60,7 @@ def checked(points: Any, triangles: Any, meters: float | None = None) -> Triangl
     if len(wrong_rows):
         values = ", ".join(f"{value:g}" for value in places[wrong_rows[0]])
         raise LoadError(f"point {wrong_rows[0]} is ({values}), which is no place")
-    return Triangles(places, corners.astype(np.int64), meters)
+    return SourceTriangles(places, corners.astype(np.int64), meters)
 
 
 def welded(places: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.int64]]:

@@ -429,7 +429,7 @@ export const METHODS: Names = {
   "kaleidoscope": ["(count)", "Repeat a wedge count times about the y axis, mirroring every other copy."],
   "kind": ["", ""],
   "measure": ["(density=1.0, tolerance=None, params=None, time=0.0, progress=None, cancel=None)", "Return volume, area, mass, center of mass, inertia and box, each with its error."],
-  "mesh": ["(tolerance=None, feature=None, params=None, time=0.0, progress=None, cancel=None, check=False, colors=True)", "Return triangles of the surface: closed, without self-intersections, with sharp edges."],
+  "mesh": ["(tolerance=None, feature=None, params=None, time=0.0, progress=None, cancel=None, check=False, colors=True, \u2026)", "Return triangles of the surface: closed, without self-intersections, with sharp edges."],
   "mirror": ["(normal, offset=0.0)", "Replace the half behind a plane by the mirror image of the half in front of it."],
   "morph": ["(other, t)", "Interpolate between this shape (t = 0) and another (t = 1)."],
   "name": ["", "The name set by the author, else that of the primitive or operator."],

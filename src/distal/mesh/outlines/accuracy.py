@@ -25,7 +25,7 @@ _LINE: Final[list[tuple[str, Type]]] = [("a", VEC2), ("b", VEC2), ("share", FLOA
 
 
 @dataclass(frozen=True, slots=True)
-class Accuracy:
+class OutlineAccuracy:
     """How far an outline and the edge of its shape are apart.
 
     Attributes:
@@ -36,12 +36,12 @@ class Accuracy:
     largest: float
     place: tuple[float, ...]
 
-    def or_worse(self, other: Accuracy) -> Accuracy:
+    def or_worse(self, other: OutlineAccuracy) -> OutlineAccuracy:
         """Return the one with the larger distance."""
         return other if other.largest > self.largest else self
 
 
-def along_lines(kernels: FieldKernels, a: Floats, b: Floats, counts: Integers) -> Accuracy:
+def along_lines(kernels: FieldKernels, a: Floats, b: Floats, counts: Integers) -> OutlineAccuracy:
     """Return the largest distance from lines to the edge of the shape.
 
     Args:
@@ -58,10 +58,10 @@ def along_lines(kernels: FieldKernels, a: Floats, b: Floats, counts: Integers) -
     away = np.where(np.isfinite(away), away, np.inf)
     worst = int(np.argmax(away))
     place = a[rows[worst]] + (b - a)[rows[worst]] * shares[worst]
-    return Accuracy(float(away[worst]), tuple(place.tolist()))
+    return OutlineAccuracy(float(away[worst]), tuple(place.tolist()))
 
 
-def from_points(points: Floats, a: Floats, b: Floats) -> Accuracy:
+def from_points(points: Floats, a: Floats, b: Floats) -> OutlineAccuracy:
     """Return the largest distance from points of the edge to their lines.
 
     Args:
@@ -71,7 +71,7 @@ def from_points(points: Floats, a: Floats, b: Floats) -> Accuracy:
     """
     away = rows_of(distance_to_line, points, a, b)
     worst = int(np.argmax(away))
-    return Accuracy(float(away[worst]), tuple(points[worst].tolist()))
+    return OutlineAccuracy(float(away[worst]), tuple(points[worst].tolist()))
 
 
 def thin_places(kernels: FieldKernels, suspected: Floats, step: float) -> Floats:
@@ -79,7 +79,7 @@ def thin_places(kernels: FieldKernels, suspected: Floats, step: float) -> Floats
 
     Args:
         kernels: The shape.
-        suspected: Lattice points close to an edge that changes no sign near them.
+        suspected: TileLattice points close to an edge that changes no sign near them.
         step: The length of a cell.
     """
     if not len(suspected):

@@ -22,7 +22,7 @@ from distal.mesh.outlines.outlining import (
     shown_place,
 )
 from distal.mesh.outlines.tiles import Floats
-from distal.mesh.outlines.tracing import Nothing
+from distal.mesh.outlines.tracing import NoOutline
 from distal.scene.tree.errors import refuse
 
 if TYPE_CHECKING:
@@ -130,7 +130,7 @@ def _part_of(request: OutlineRequest, index: int, count: int) -> Progress | None
     return None if progress is None else lambda share: progress((index + share) / count)
 
 
-def _thin(place: float, found: Nothing) -> str | None:
+def _thin(place: float, found: NoOutline) -> str | None:
     """Return that a layer is left out although the solid is there, or None."""
     if not len(found.thin):
         return None

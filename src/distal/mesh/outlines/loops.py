@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from distal.mesh.kernels import FieldKernels
-from distal.mesh.outlines.tiles import CORNERS, EdgeCells, Integers, Lattice, values_at
+from distal.mesh.outlines.tiles import CORNERS, EdgeCells, Integers, TileLattice, values_at
 from distal.mesh.problems import MeshProblem
 
 # Where each side of a cell begins, and whether it is vertical: its key in the lattice.
@@ -43,7 +43,7 @@ class Pieces:
     loops: tuple[Integers, ...]
 
 
-def pieces_of(kernels: FieldKernels, lattice: Lattice, found: EdgeCells) -> Pieces:
+def pieces_of(kernels: FieldKernels, lattice: TileLattice, found: EdgeCells) -> Pieces:
     """Return the pieces of the edge, and their loops.
 
     Args:

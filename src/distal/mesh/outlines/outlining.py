@@ -21,8 +21,8 @@ from distal.lang.runtime_access import executor
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.outlines.accuracy import area_and_length
 from distal.mesh.outlines.outline import Outline
-from distal.mesh.outlines.tiles import Extent, Floats, values_at
-from distal.mesh.outlines.tracing import Nothing, TooFine, TracedOutline, traced
+from distal.mesh.outlines.tiles import FlatExtent, Floats, values_at
+from distal.mesh.outlines.tracing import NoOutline, TooManyTiles, TracedOutline, traced
 from distal.mesh.problems import MeshProblem
 from distal.scene.lowering.derived import BoundsOf
 from distal.scene.tree.errors import refuse
@@ -85,14 +85,14 @@ def outline_of(shape: BaseShape, request: OutlineRequest) -> Outline:
     node = shape.node
     kernels = FieldKernels(node, request.params, request.time)
     found = outline_or_none(kernels, request)
-    if isinstance(found, Nothing):
+    if isinstance(found, NoOutline):
         _refuse_nothing(node, found)
     if request.progress is not None:
         request.progress(1.0)
     return found
 
 
-def outline_or_none(kernels: FieldKernels, request: OutlineRequest) -> Outline | Nothing:
+def outline_or_none(kernels: FieldKernels, request: OutlineRequest) -> Outline | NoOutline:
     """Return the outline of a flat shape, or why there is none.
 
     Args:
@@ -113,11 +113,11 @@ def outline_or_none(kernels: FieldKernels, request: OutlineRequest) -> Outline |
         found = traced(kernels, extent, tolerance, watch_of(request))
     except MeshProblem as problem:
         _refuse_problem(node, extent, problem)
-    if isinstance(found, Nothing):
+    if isinstance(found, NoOutline):
         if not found.sampled:
             _refuse_false_slope(kernels, extent)
         return found
-    if isinstance(found, TooFine):
+    if isinstance(found, TooManyTiles):
         refuse(
             f"an outline of '{node.name}' with the tolerance {tolerance:g} needs about "
             f"{float(f'{found.points:.1g}'):,.0f} points",
@@ -159,7 +159,7 @@ def box_of(node: Node, params: Mapping[str, Any], time: float) -> tuple[Any, Flo
     return tuple(float(number) for number in bounds[:2]), low, high
 
 
-def _extent_of(kernels: FieldKernels) -> Extent:
+def _extent_of(kernels: FieldKernels) -> FlatExtent:
     """Return where the shape is.
 
     Raises:
@@ -178,10 +178,10 @@ def _extent_of(kernels: FieldKernels) -> Extent:
     if (low >= high).any():
         refuse(f"'{node.name}' is empty: its box has no area", None, node.place)
     positive = slope if 0.0 < slope < _STEEP else _STEEP
-    return Extent(low, high, positive, divisor if 0.0 < divisor < _STEEP else positive)
+    return FlatExtent(low, high, positive, divisor if 0.0 < divisor < _STEEP else positive)
 
 
-def _refuse_problem(node: Node, extent: Extent, problem: MeshProblem) -> NoReturn:
+def _refuse_problem(node: Node, extent: FlatExtent, problem: MeshProblem) -> NoReturn:
     where = "" if problem.place is None else f" at {shown_place(problem.place)}"
     match problem.kind:
         case "no number":
@@ -204,7 +204,7 @@ def _refuse_problem(node: Node, extent: Extent, problem: MeshProblem) -> NoRetur
             )
 
 
-def _refuse_false_slope(kernels: FieldKernels, extent: Extent) -> None:
+def _refuse_false_slope(kernels: FieldKernels, extent: FlatExtent) -> None:
     """Refuse a shape without an edge whose box has a middle inside: its slope cannot be true."""
     node, middle = kernels.node, (extent.low + extent.high) * 0.5
     if values_at(kernels, middle[None])[0] < 0.0:
@@ -216,7 +216,7 @@ def _refuse_false_slope(kernels: FieldKernels, extent: Extent) -> None:
         )
 
 
-def _refuse_nothing(node: Node, found: Nothing) -> NoReturn:
+def _refuse_nothing(node: Node, found: NoOutline) -> NoReturn:
     if not len(found.thin):
         refuse(f"'{node.name}' has no inside: its values are positive everywhere", None, node.place)
     refuse(
@@ -232,7 +232,9 @@ def shown_place(place: Sequence[float] | Floats) -> str:
     return f"({', '.join(f'{number:.4g}' for number in place)})"
 
 
-def _report(node: Node, extent: Extent, found: TracedOutline, tolerance: float) -> dict[str, Any]:
+def _report(
+    node: Node, extent: FlatExtent, found: TracedOutline, tolerance: float
+) -> dict[str, Any]:
     """Return the report of an outline.
 
     Args:

@@ -32,7 +32,7 @@ from distal.mesh.outlines.tiles import (
     EdgeCells,
     Floats,
     Integers,
-    Lattice,
+    TileLattice,
     keys_of,
     known,
 )
@@ -74,7 +74,9 @@ class Places:
     steepest_at: Floats
 
 
-def places_of(kernels: FieldKernels, lattice: Lattice, found: EdgeCells, pieces: Pieces) -> Places:
+def places_of(
+    kernels: FieldKernels, lattice: TileLattice, found: EdgeCells, pieces: Pieces
+) -> Places:
     """Return the places of pieces.
 
     Args:
@@ -112,7 +114,7 @@ def places_of(kernels: FieldKernels, lattice: Lattice, found: EdgeCells, pieces:
 
 
 def _regions(
-    lattice: Lattice, found: EdgeCells, pieces: Pieces, targets: Floats, on_edge: Bools
+    lattice: TileLattice, found: EdgeCells, pieces: Pieces, targets: Floats, on_edge: Bools
 ) -> tuple[Floats, Floats]:
     """Return the box in which each point must stay: its cell, or also an empty one beside it.
 
@@ -138,7 +140,7 @@ def _regions(
     return lattice.places(low + POINT_MARGIN), lattice.places(high - POINT_MARGIN)
 
 
-def _lines(lattice: Lattice, found: EdgeCells, pieces: Pieces) -> tuple[Floats, Floats]:
+def _lines(lattice: TileLattice, found: EdgeCells, pieces: Pieces) -> tuple[Floats, Floats]:
     """Return the diagonal that ends the region of a piece that cuts off a corner.
 
     Args:
@@ -155,7 +157,7 @@ def _lines(lattice: Lattice, found: EdgeCells, pieces: Pieces) -> tuple[Floats, 
 
 
 def nearby(
-    lattice: Lattice, found: EdgeCells, pieces: Pieces, places: Places, tips: Floats
+    lattice: TileLattice, found: EdgeCells, pieces: Pieces, places: Places, tips: Floats
 ) -> Floats:
     """Return the distance of points to the pieces in the cells around them; infinite without any.
 

@@ -37,7 +37,7 @@ _HALF_DIAGONAL: Final = 0.5 * float(np.sqrt(2.0))
 
 
 @dataclass(frozen=True, slots=True)
-class Extent:
+class FlatExtent:
     """Where a shape is, and how fast its values change.
 
     Attributes:
@@ -59,7 +59,7 @@ class Extent:
 
 
 @dataclass(frozen=True, slots=True)
-class Lattice:
+class TileLattice:
     """A lattice of square cells over a box.
 
     Attributes:
@@ -73,11 +73,11 @@ class Lattice:
     extent: Integers
 
     @staticmethod
-    def over(extent: Extent, step: float) -> Lattice:
+    def over(extent: FlatExtent, step: float) -> TileLattice:
         """Return the lattice over a shape's box."""
         origin = extent.low - BEFORE * step
         cells = (extent.high + BEYOND * step - origin) / step
-        return Lattice(origin, step, np.ceil(cells / TILE).astype(np.int64))
+        return TileLattice(origin, step, np.ceil(cells / TILE).astype(np.int64))
 
     def places(self, points: npt.NDArray[Any]) -> Floats:
         """Return the places of lattice points; shares of a cell are allowed."""
@@ -97,7 +97,7 @@ class EdgeCells:
         cells: Their places, of shape (n, 2), in cells.
         values: The values at their corners, of shape (n, 4).
         sampled: How many tiles were sampled.
-        suspected: Lattice points close to an edge that changes no sign near them, of shape (n, 2).
+        suspected: TileLattice points close to an edge that changes no sign near them, of shape (n, 2).
     """
 
     cells: Integers
@@ -134,7 +134,7 @@ def values_at(kernels: FieldKernels, places: Floats) -> Floats:
 
 
 def edge_cells(
-    kernels: FieldKernels, lattice: Lattice, extent: Extent, most: int, watch: Watch
+    kernels: FieldKernels, lattice: TileLattice, extent: FlatExtent, most: int, watch: Watch
 ) -> EdgeCells:
     """Return the cells that the edge of a shape passes through.
 
@@ -175,7 +175,7 @@ def edge_cells(
 
 
 def _descend(
-    kernels: FieldKernels, lattice: Lattice, extent: Extent, most: int, watch: Watch
+    kernels: FieldKernels, lattice: TileLattice, extent: FlatExtent, most: int, watch: Watch
 ) -> Integers:
     """Return the tiles that the edge can pass through, of shape (n, 2).
 
@@ -209,7 +209,7 @@ def _descend(
     return blocks
 
 
-def _samples(kernels: FieldKernels, lattice: Lattice, tiles: Integers) -> Floats:
+def _samples(kernels: FieldKernels, lattice: TileLattice, tiles: Integers) -> Floats:
     """Return the samples of tiles, of shape (n, 9, 9), indexed by x, then y.
 
     A point that two tiles share has the same place, hence the same value, in both.
@@ -234,7 +234,7 @@ def _neighbours(tiles: Integers, inside: Bools) -> Integers:
 
 
 def _cells(
-    lattice: Lattice, extent: Extent, tiles: Integers, values: Floats
+    lattice: TileLattice, extent: FlatExtent, tiles: Integers, values: Floats
 ) -> tuple[Integers, Floats, Floats]:
     """Return cells with a change of sign, values at their corners, and suspected points."""
     corners = np.stack([values[:, x : x + TILE, y : y + TILE] for x, y in CORNERS], axis=-1)

@@ -14,17 +14,17 @@ from typing import Final
 import numpy as np
 
 from distal.mesh.kernels import FieldKernels
-from distal.mesh.outlines.accuracy import Accuracy, along_lines, from_points, thin_places
+from distal.mesh.outlines.accuracy import OutlineAccuracy, along_lines, from_points, thin_places
 from distal.mesh.outlines.crossings import crossing_lines
 from distal.mesh.outlines.loops import pieces_of
 from distal.mesh.outlines.places import nearby, places_of, polylines
 from distal.mesh.outlines.simplify import kept_points
 from distal.mesh.outlines.tiles import (
     Bools,
-    Extent,
+    FlatExtent,
     Floats,
     Integers,
-    Lattice,
+    TileLattice,
     Watch,
     edge_cells,
 )
@@ -71,7 +71,7 @@ class TracedOutline:
     cells: int
     loops: list[Floats]
     corners: list[Bools]
-    accuracy: Accuracy
+    accuracy: OutlineAccuracy
     cut: float
     cut_at: tuple[float, ...]
     thin: Floats
@@ -80,13 +80,13 @@ class TracedOutline:
     crossings: int = 0
 
     @property
-    def error(self) -> Accuracy:
+    def error(self) -> OutlineAccuracy:
         """The largest distance between outline and edge."""
-        return self.accuracy.or_worse(Accuracy(self.cut, self.cut_at))
+        return self.accuracy.or_worse(OutlineAccuracy(self.cut, self.cut_at))
 
 
 @dataclass(frozen=True, slots=True)
-class Nothing:
+class NoOutline:
     """No outline: no sign changes at this spacing.
 
     Attributes:
@@ -101,7 +101,7 @@ class Nothing:
 
 
 @dataclass(frozen=True, slots=True)
-class TooFine:
+class TooManyTiles:
     """The tolerance needs too many cells.
 
     Attributes:
@@ -114,8 +114,8 @@ class TooFine:
 
 
 def traced(
-    kernels: FieldKernels, extent: Extent, tolerance: float, watch: Watch
-) -> TracedOutline | Nothing | TooFine:
+    kernels: FieldKernels, extent: FlatExtent, tolerance: float, watch: Watch
+) -> TracedOutline | NoOutline | TooManyTiles:
     """Return an outline within the tolerance, or what prevents it.
 
     Args:
@@ -142,19 +142,19 @@ def traced(
         tiles = found.sampled * found.step / following
         if tiles > MOST_TILES and isinstance(found, TracedOutline):
             possible = found.error.largest * found.sampled / MOST_TILES / _TRACED
-            return TooFine(2.0 * possible, 2.0 * found.cells * found.step / following)
+            return TooManyTiles(2.0 * possible, 2.0 * found.cells * found.step / following)
         step = following
-    return found if isinstance(found, Nothing) else _simplified(kernels, extent, found, tolerance)
+    return found if isinstance(found, NoOutline) else _simplified(kernels, extent, found, tolerance)
 
 
 def _at_spacing(
-    kernels: FieldKernels, extent: Extent, step: float, watch: Watch
-) -> TracedOutline | Nothing:
-    lattice = Lattice.over(extent, step)
+    kernels: FieldKernels, extent: FlatExtent, step: float, watch: Watch
+) -> TracedOutline | NoOutline:
+    lattice = TileLattice.over(extent, step)
     cells = edge_cells(kernels, lattice, extent, 2 * MOST_TILES, lambda share: watch(0.5 * share))
     thin = thin_places(kernels, cells.suspected, step)
     if not len(cells.cells):
-        return Nothing(step, cells.sampled, thin)
+        return NoOutline(step, cells.sampled, thin)
     pieces = pieces_of(kernels, lattice, cells)
     places = places_of(kernels, lattice, cells, pieces)
     watch(0.8)
@@ -190,13 +190,13 @@ def _lines(loops: list[Floats]) -> tuple[Floats, Floats]:
     return np.concatenate(loops), np.concatenate(ends)
 
 
-def _next_step(found: TracedOutline | Nothing, tolerance: float) -> float | None:
+def _next_step(found: TracedOutline | NoOutline, tolerance: float) -> float | None:
     """Return the next spacing; None if this outline is as wanted."""
-    if len(found.thin) or isinstance(found, Nothing):
+    if len(found.thin) or isinstance(found, NoOutline):
         finer = 2 * found.sampled <= _TILES_FOR_THIN and found.sampled > 0
         if finer:
             return found.step / 2.0
-    if isinstance(found, Nothing):
+    if isinstance(found, NoOutline):
         return None
     wanted = _TRACED * tolerance
     if max(found.accuracy.largest, found.cut) <= wanted:
@@ -208,7 +208,7 @@ def _next_step(found: TracedOutline | Nothing, tolerance: float) -> float | None
 
 
 def _simplified(
-    kernels: FieldKernels, extent: Extent, found: TracedOutline, tolerance: float
+    kernels: FieldKernels, extent: FlatExtent, found: TracedOutline, tolerance: float
 ) -> TracedOutline:
     """Return the outline with rounded points, without those that are not needed.
 
@@ -237,7 +237,7 @@ def _simplified(
 
 
 def _with(
-    found: TracedOutline, loops: list[Floats], kept: list[Integers], accuracy: Accuracy
+    found: TracedOutline, loops: list[Floats], kept: list[Integers], accuracy: OutlineAccuracy
 ) -> TracedOutline:
     corners = [corner[rows] for corner, rows in zip(found.corners, kept, strict=True)]
     return replace(found, loops=loops, corners=corners, accuracy=accuracy)
@@ -245,7 +245,7 @@ def _with(
 
 def _of_kept(
     kernels: FieldKernels, before: list[Floats], loops: list[Floats], kept: list[Integers]
-) -> Accuracy:
+) -> OutlineAccuracy:
     """Return how far an outline is from the edge, and from all points that were on it.
 
     Args:

@@ -78,7 +78,7 @@ def mesh_node(
         refuse(f"a spacing is above 0, not {step:g}", "leave it out for a 64th of the size", place)
     try:
         importing.checked_unit(unit)
-        wanted = importing.Wanted(step, sign, unit, up)
+        wanted = importing.ImportRequest(step, sign, unit, up)
         found = _imported(source, triangles, wanted, place)
     except LoadError as error:
         refuse(error.message, None, place)
