@@ -79,7 +79,7 @@ def thin_places(kernels: FieldKernels, suspected: Floats, step: float) -> Floats
 
     Args:
         kernels: The shape.
-        suspected: TileLattice points close to an edge that changes no sign near them.
+        suspected: Points close to an edge that changes no sign near them.
         step: The length of a cell.
     """
     if not len(suspected):

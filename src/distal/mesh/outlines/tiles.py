@@ -97,7 +97,7 @@ class EdgeCells:
         cells: Their places, of shape (n, 2), in cells.
         values: The values at their corners, of shape (n, 4).
         sampled: How many tiles were sampled.
-        suspected: Points of the lattice close to an edge that changes no sign near them, of shape (n, 2).
+        suspected: Points close to an edge that changes no sign near them, of shape (n, 2).
     """
 
     cells: Integers
