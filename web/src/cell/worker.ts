@@ -5,7 +5,7 @@
  * from the files; the policy of the cell forbids everything else.
  */
 
-export {};
+import { MOST_MESSAGES } from "./limits";
 
 interface Python {
   globals: { set(name: string, value: unknown): void; get(name: string): unknown };
@@ -73,14 +73,25 @@ async function start(files: Record<string, ArrayBuffer>): Promise<(text: string)
     stderr: () => {},
   });
   python.unpackArchive(files["distal.zip"]!, "zip", { extractDir: FOLDER });
-  python.globals.set("post", (text: string) => postMessage(text));
+  python.globals.set("post", tell);
   python.runPython(START);
   return python.globals.get("answer") as (text: string) => void;
+}
+
+/** Messages since the last request. */
+let count = 0;
+
+/** Passes a message on; a flood is stopped here, because it would bury the order to end the worker. */
+function tell(text: string): void {
+  count += 1;
+  if (count < MOST_MESSAGES) postMessage(text);
+  else if (count === MOST_MESSAGES) postMessage({ failed: "the scene's code sent too many messages" });
 }
 
 let ready: Promise<(text: string) => void> | null = null;
 
 onmessage = async ({ data }: MessageEvent) => {
+  count = 0;
   try {
     if (ready) (await ready)(data as string);
     else await (ready = start((data as { files: Record<string, ArrayBuffer> }).files));

@@ -5,6 +5,7 @@
  * worker that does not answer, as the local studio's server does.
  */
 
+import { MOST_MESSAGES } from "../cell/limits";
 import { make } from "../dom";
 import type { Request, Response } from "../generated/messages";
 import type { Channel } from "./channel";
@@ -17,8 +18,6 @@ const ANSWERS = ["scene", "numbers", "answer", "mistakes", "dropped"];
 /** What comes out of the cell is a stranger's: longer messages are not read. */
 const LONGEST = 64_000_000;
 const KINDS = ["ready", "printed", "progress", ...ANSWERS];
-/** Messages of one request at most; the worker sends three. */
-const MOST = 100;
 
 export class CellChannel implements Channel {
   onMessage: Channel["onMessage"] = () => {};
@@ -92,7 +91,7 @@ export class CellChannel implements Channel {
     }
     const message = messageOf(data);
     if (this.#isEnding && message?.kind !== "ready") return;
-    if (++this.#count > MOST) return this.#restart("the scene's code sent too many messages");
+    if (++this.#count > MOST_MESSAGES) return this.#restart("the scene's code sent too many messages");
     if (!message) return;
     if (message.kind === "ready") this.#begin();
     const isAnswer = ANSWERS.includes(message.kind);
