@@ -137,14 +137,14 @@ export class Player {
       };
       this.inputs = (size) => this.#subject().inputs(...size, true);
       this.timed = async (source, inputs, size, draws) => {
-        const { painter } = this.#renderer;
+        const painter = this.#renderer.painter();
         try {
           return painter && (await gpuMs(painter, await painter.program(source), inputs, size, draws));
         } catch {
           return null; // The driver refuses it.
         }
       };
-      this.forget = (source) => this.#renderer.painter?.forget(source);
+      this.forget = (source) => this.#renderer.painter()?.forget(source);
       this.pauseDrawing = (isPaused) => (this.#renderer.visible = !isPaused);
       this.drawn = (source, number, size, inputs = this.inputs(size)) => {
         const { number: own, ...rest } = inputs;

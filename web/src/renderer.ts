@@ -111,6 +111,9 @@ export class Renderer {
   /** The film of the program in use, if it has one. */
   declare paths?: Paths | null;
 
+  /** What draws, for an editor; null before it starts and after it was lost. */
+  declare painter: () => Painter | null;
+
   constructor(
     readonly subject: Subject,
     public resources: Payload["resources"],
@@ -118,6 +121,7 @@ export class Renderer {
     canvas: HTMLCanvasElement,
   ) {
     this.canvas = canvas;
+    if (EDITED) this.painter = () => this.#painter;
   }
 
   /** Takes a context, on a fresh canvas after an earlier one failed. */
@@ -203,11 +207,6 @@ export class Renderer {
     } catch {
       return null;
     }
-  }
-
-  /** What draws; null before it starts and after it was lost. */
-  get painter(): Painter | null {
-    return this.#painter;
   }
 
   /** A PNG of what is to be seen, at the canvas's full scale, as if nothing covered it. */

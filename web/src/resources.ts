@@ -61,31 +61,26 @@ export class Resources {
   }
 }
 
+/** How WebGL names the numbers of a texture: the end of a sized format, and the type. */
+const STORED = {
+  rgba8: ["8", "UNSIGNED_BYTE"],
+  float16: ["16F", "HALF_FLOAT"],
+  float32: ["32F", "FLOAT"],
+  int32: ["32I", "INT"],
+  uint32: ["32UI", "UNSIGNED_INT"],
+} as const;
+
 /** The sized format, format and type of a texture of so many components. */
 function formats(gl: GL, format: Format, components: number): [number, number, number] {
-  const at = components - 1;
-  const plain = [gl.RED, gl.RG, gl.RGB, gl.RGBA][at]!;
-  const whole = [gl.RED_INTEGER, gl.RG_INTEGER, gl.RGB_INTEGER, gl.RGBA_INTEGER][at]!;
-  switch (format) {
-    case "rgba8":
-      return [[gl.R8, gl.RG8, gl.RGB8, gl.RGBA8][at]!, plain, gl.UNSIGNED_BYTE];
-    case "float16":
-      return [[gl.R16F, gl.RG16F, gl.RGB16F, gl.RGBA16F][at]!, plain, gl.HALF_FLOAT];
-    case "float32":
-      return [[gl.R32F, gl.RG32F, gl.RGB32F, gl.RGBA32F][at]!, plain, gl.FLOAT];
-    case "int32":
-      return [[gl.R32I, gl.RG32I, gl.RGB32I, gl.RGBA32I][at]!, whole, gl.INT];
-    case "uint32":
-      return [[gl.R32UI, gl.RG32UI, gl.RGB32UI, gl.RGBA32UI][at]!, whole, gl.UNSIGNED_INT];
-  }
+  const channels = "RGBA".slice(0, components) as "R" | "RG" | "RGB" | "RGBA";
+  const [end, type] = STORED[format];
+  const whole = format.includes("int") ? "_INTEGER" : "";
+  return [gl[`${channels}${end}`], gl[`${channels === "R" ? "RED" : channels}${whole}`], gl[type]];
 }
 
 function numbersOf({ format, data, grey, components }: Resource): Numbers {
   const stored = new ARRAYS[format](bytesOf(data).buffer);
-  if (!grey) return stored;
-  const numbers = new ARRAYS[format](stored.length * components);
-  for (let i = 0; i < numbers.length; i++) numbers[i] = stored[Math.floor(i / components)]!;
-  return numbers;
+  return grey ? new ARRAYS[format](stored.length * components).map((_, i) => stored[(i / components) | 0]!) : stored;
 }
 
 function newTexture(gl: GL, target: number, filter: number, wrap: number): WebGLTexture {
