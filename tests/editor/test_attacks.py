@@ -249,10 +249,14 @@ def test_what_the_code_has_started_ends_with_it(running, cookie, tmp_path, end):
     ],
     ids=["stops itself", "closes all", "writes to all", "busy in C"],
 )
-def test_a_worker_in_any_state_is_replaced(running, cookie, text):
+def test_a_worker_in_any_state_is_replaced(running, cookie, text, tmp_path):
+    begun = tmp_path / "begun"
     with connected(running, cookie) as socket:
         until(socket, "ready")
-        socket.send(look(1, text))
+        socket.send(look(1, f"open({str(begun)!r}, 'w').close()\n{text}"))
+        # A request that has not begun is dropped when a newer one comes.
+        while not begun.exists():
+            time.sleep(0.01)
         # More than a pipe holds, while nobody reads.
         for number in range(2, 5):
             socket.send(look(number, "#" * 1_000_000 + "\n"))
