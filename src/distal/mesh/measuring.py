@@ -18,7 +18,8 @@ import numpy as np
 from distal.mesh import triangle_arithmetic
 from distal.mesh.extract import Extent, Extracted, Nothing, extracted
 from distal.mesh.kernels import FieldKernels, rows_of
-from distal.mesh.meshing import MeshRequest, extent_of, found_mesh, watch_of
+from distal.mesh.meshing import MeshRequest, extent_of, found_mesh
+from distal.mesh.requests import watch_of
 from distal.mesh.solid import Floats
 from distal.mesh.spacing import MOST_BRICKS
 from distal.scene.tree.errors import refuse, refuse_kind

@@ -8,16 +8,13 @@ from __future__ import annotations
 
 import math
 import time as clock
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import numpy as np
 
-from distal.devices.base import Cancelled, cancel_test
-from distal.fields.guarantees import ended
 from distal.lang.render_options import Cancel, Progress, checked_time
-from distal.lang.runtime_access import executor
 from distal.mesh import simplify
 from distal.mesh.bricks import Slopes
 from distal.mesh.checks import checked
@@ -28,11 +25,11 @@ from distal.mesh.kernels import FieldKernels
 from distal.mesh.palette import MOST as MOST_COLORS
 from distal.mesh.parts import leaves_at, named
 from distal.mesh.problems import MeshProblem
+from distal.mesh.requests import box_of, watch_of
 from distal.mesh.simplify import Simplified
 from distal.mesh.solid import Floats, Integers, Mesh
 from distal.mesh.spacing import BALL_CELLS, TooFine, Wanted, meshed
 from distal.packages import imported
-from distal.scene.lowering.derived import BoundsOf
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
 
@@ -217,31 +214,13 @@ def found_mesh(node: Node, request: MeshRequest) -> tuple[Extracted, Wanted, Fie
     return found, wanted, kernels
 
 
-def watch_of(request: MeshRequest) -> Callable[[float], None]:
-    """Return what is called with the finished share: it reports it, and ends cancelled work."""
-    stopped = cancel_test(request.cancel)
-    shown = 0.0
-
-    def watch(share: float) -> None:
-        nonlocal shown
-        if stopped():
-            raise Cancelled
-        shown = max(shown, share)
-        if request.progress is not None:
-            request.progress(shown)
-
-    return watch
-
-
 def extent_of(node: Node, request: MeshRequest) -> Extent:
     """Return where the shape is.
 
     Raises:
         SceneValueError: It has no end, or it is empty.
     """
-    bounds = executor().call(BoundsOf(node), (), {}, params=request.params, time=request.time)
-    slope, divisor = (float(number) for number in bounds[:2])
-    low, high = (np.array([ended(c) for c in corner]) for corner in bounds[2:4])
+    (slope, divisor), low, high = box_of(node, request.params, request.time)
     endless = [
         axis for axis, a, b in zip("xyz", low, high, strict=True) if not math.isfinite(b - a)
     ]

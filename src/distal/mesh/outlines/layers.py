@@ -17,12 +17,12 @@ from distal.mesh.kernels import FieldKernels
 from distal.mesh.outlines.outline import Outline
 from distal.mesh.outlines.outlining import (
     OutlineRequest,
-    box_of,
     outline_or_none,
     shown_place,
 )
 from distal.mesh.outlines.tiles import Floats
 from distal.mesh.outlines.tracing import NoOutline
+from distal.mesh.requests import box_of
 from distal.scene.tree.errors import refuse
 
 if TYPE_CHECKING:

@@ -8,23 +8,18 @@ from __future__ import annotations
 
 import math
 import time as clock
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
-import numpy as np
-
-from distal.devices.base import Cancelled, cancel_test
-from distal.fields.guarantees import ended
 from distal.lang.render_options import Cancel, Progress, checked_time
-from distal.lang.runtime_access import executor
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.outlines.accuracy import area_and_length
 from distal.mesh.outlines.outline import Outline
 from distal.mesh.outlines.tiles import FlatExtent, Floats, values_at
 from distal.mesh.outlines.tracing import NoOutline, TooManyTiles, TracedOutline, traced
 from distal.mesh.problems import MeshProblem
-from distal.scene.lowering.derived import BoundsOf
+from distal.mesh.requests import box_of, watch_of
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
 
@@ -128,35 +123,6 @@ def outline_or_none(kernels: FieldKernels, request: OutlineRequest) -> Outline |
     report = _report(node, extent, found, tolerance)
     report |= {"area": area, "length": length, "cpu_s": clock.process_time() - begin}
     return Outline(found.loops, area, length, report, node.name)
-
-
-def watch_of(request: OutlineRequest) -> Callable[[float], None]:
-    """Return what is called with the finished share: it reports it, and ends cancelled work."""
-    stopped = cancel_test(request.cancel)
-    shown = 0.0
-
-    def watch(share: float) -> None:
-        nonlocal shown
-        if stopped():
-            raise Cancelled
-        shown = max(shown, share)
-        if request.progress is not None:
-            request.progress(shown)
-
-    return watch
-
-
-def box_of(node: Node, params: Mapping[str, Any], time: float) -> tuple[Any, Floats, Floats]:
-    """Return slope and divisor of a tree, and the corners of its box, which may be infinite.
-
-    Args:
-        node: The tree.
-        params: Values of parameters by name.
-        time: Seconds.
-    """
-    bounds = executor().call(BoundsOf(node), (), {}, params=params, time=time)
-    low, high = (np.array([ended(c) for c in corner]) for corner in bounds[2:4])
-    return tuple(float(number) for number in bounds[:2]), low, high
 
 
 def _extent_of(kernels: FieldKernels) -> FlatExtent:
