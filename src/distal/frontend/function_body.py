@@ -112,6 +112,7 @@ class FunctionBody:
         self.result: Type | None = None
         self.returned: list[tuple[Value, ast.Return]] = []
         self.failed = False
+        self.self_name = ""  # the parameter of a method that holds its struct
         self.whole_starts: dict[
             str, int
         ] = {}  # locals that are ints because they start as a literal

@@ -31,5 +31,7 @@ class FollowupError(Exception):
 
 def did_you_mean(name: str, known: Iterable[str]) -> str | None:
     """Return a hint with the known name most similar to ``name``; None if none is similar."""
-    close = difflib.get_close_matches(name, list(known), n=1, cutoff=0.7)
+    # One letter of three is another one: 'fow' is 'fov'.
+    cutoff = 0.7 if len(name) > 3 else 0.66
+    close = difflib.get_close_matches(name, list(known), n=1, cutoff=cutoff)
     return f"did you mean '{close[0]}'?" if close else None

@@ -17,12 +17,14 @@ from distal.frontend.lowering.builtin_calls import call_builtin
 from distal.frontend.problems import SceneError
 from distal.frontend.types.coercion import vector_type, with_default_type
 from distal.frontend.types.constructors import construct
-from distal.frontend.types.operators import binary, unary
+from distal.frontend.types.operators import binary, compare, unary
 from distal.frontend.types.python_objects import RefusedError, coerce_constant, value_of
+from distal.frontend.types.unification import unify_operands
 from distal.frontend.values import SequenceValue, Static, Value
+from distal.ir.build import negation
 from distal.ir.intrinsics import INTRINSICS
-from distal.ir.nodes import Binary, BinaryOp, Const, Expr, Uniform
-from distal.ir.types import FLOAT, Type
+from distal.ir.nodes import Binary, BinaryOp, Const, Expr, Select, Uniform
+from distal.ir.types import BOOL, FLOAT, INT, Type
 from distal.ir.walk import children
 from distal.lang.expressions import Expression, Symbolic
 from distal.lang.parameter_values import LARGEST_FLOAT
@@ -39,9 +41,22 @@ _BINARY: Final[dict[str, ast.operator]] = {
     "%": ast.Mod(),
     "**": ast.Pow(),
     "@": ast.MatMult(),
+    "&": ast.BitAnd(),
+    "|": ast.BitOr(),
+    "^": ast.BitXor(),
+}
+_COMPARISONS: Final[dict[str, ast.cmpop]] = {
+    "<": ast.Lt(),
+    "<=": ast.LtE(),
+    ">": ast.Gt(),
+    ">=": ast.GtE(),
 }
 _QUICK: Final = {"+": BinaryOp.ADD, "-": BinaryOp.SUB, "*": BinaryOp.MUL}
-_UNARY: Final[dict[str, ast.unaryop]] = {"-x": ast.USub(), "+x": ast.UAdd()}
+_UNARY: Final[dict[str, ast.unaryop]] = {
+    "-x": ast.USub(),
+    "+x": ast.UAdd(),
+    "~x": ast.Invert(),
+}
 _TYPES: Final[dict[str, Type]] = {str(type): type for type in VALUE_CLASSES}
 
 # Hints of scene code and their replacements for Python, where float(...) must return a number.
@@ -171,11 +186,35 @@ class _Parameters:
 def _rule(operation: str) -> Callable[[Sequence[Value]], Value]:
     if operation in _BINARY:
         return lambda v: binary(_OUTSIDE, _BINARY[operation], v[0], v[1], _NOWHERE)
+    if operation == "~x":
+        return _inverted
     if operation in _UNARY:
         return lambda v: unary(_OUTSIDE, _UNARY[operation], v[0], _NOWHERE)
+    if operation in _COMPARISONS:
+        return lambda v: compare(_OUTSIDE, _COMPARISONS[operation], v[0], v[1], _NOWHERE)
+    if operation == "select":
+        return _selected
     if operation in _TYPES:
         return lambda v: construct(_OUTSIDE, _TYPES[operation], v, _NOWHERE)
     return lambda v: call_builtin(_OUTSIDE, INTRINSICS[operation], v, _NOWHERE)
+
+
+def _selected(operands: Sequence[Value]) -> Value:
+    test = with_default_type(_OUTSIDE, operands[0], _NOWHERE)
+    if test.type is not BOOL:
+        hint = "compare it: select(x > 0.0, ...)" if test.type in (INT, FLOAT) else None
+        message = f"the condition of 'select' is a bool, not {test.type}"
+        raise _OUTSIDE.problem(message, _NOWHERE, hint)
+    yes, no = unify_operands(_OUTSIDE, operands[1], operands[2], _NOWHERE, "select")
+    return Select(test, yes, no, yes.type)
+
+
+def _inverted(operands: Sequence[Value]) -> Value:
+    """Return ``~x``; of a condition its negation, because Python's ``not`` cannot be."""
+    value = with_default_type(_OUTSIDE, operands[0], _NOWHERE)
+    if value.type is BOOL:
+        return negation(value)
+    return unary(_OUTSIDE, _UNARY["~x"], operands[0], _NOWHERE)
 
 
 def _may_be_value(operand: Any) -> bool:

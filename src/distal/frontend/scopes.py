@@ -31,7 +31,7 @@ class _BlockUses:
     """Uses of names in one block, without its inner blocks."""
 
     statements: list[ast.stmt]
-    hidden: str | None = None  # the loop variable, which is not a local of this block
+    hidden: frozenset[str] = frozenset()  # the loop variables, which are no locals of this block
     reads: set[str] = field(default_factory=set)
     whole: dict[str, int] = field(default_factory=lambda: defaultdict(int))
     partial: set[str] = field(default_factory=set)
@@ -66,7 +66,7 @@ class ScopeAnalysis:
 def analyse_scopes(statements: list[ast.stmt], parameters: set[str]) -> ScopeAnalysis:
     """Find the locals of a function with this body."""
     captures: dict[str, set[str]] = {}
-    root = _collect(statements, captures, None)
+    root = _collect(statements, captures, frozenset())
     # Assignment to a part does not make a name local: in Python it changes the outer object.
     stored = _stored(root) | (_partly_stored(root) & parameters)
     blocks: dict[int, list[BlockLocal]] = defaultdict(list)
@@ -79,31 +79,31 @@ def analyse_scopes(statements: list[ast.stmt], parameters: set[str]) -> ScopeAna
 
 def _loop_names(block: _BlockUses) -> Iterator[str]:
     for inner in block.inner:
-        if inner.hidden:
-            yield inner.hidden
+        yield from inner.hidden
         yield from _loop_names(inner)
 
 
 def _collect(
-    statements: list[ast.stmt], captures: dict[str, set[str]], hidden: str | None
+    statements: list[ast.stmt], captures: dict[str, set[str]], hidden: frozenset[str]
 ) -> _BlockUses:
     block = _BlockUses(statements, hidden)
     for stmt in statements:
         match stmt:
             case ast.If(test, body, orelse):
                 _uses(test, block, captures)
-                block.inner.append(_collect(body, captures, None))
+                block.inner.append(_collect(body, captures, frozenset()))
                 if orelse:
-                    block.inner.append(_collect(orelse, captures, None))
+                    block.inner.append(_collect(orelse, captures, frozenset()))
             case ast.While(test, body):
                 _uses(test, block, captures)
-                block.inner.append(_collect(body, captures, None))
+                block.inner.append(_collect(body, captures, frozenset()))
             case ast.For(target, iterable, body):
                 _uses(iterable, block, captures)
-                name = target.id if isinstance(target, ast.Name) else None
-                if name is None:
+                plain = list(_flat_targets(target))
+                if not all(isinstance(t, ast.Name) for t in plain):
                     _uses(target, block, captures)
-                block.inner.append(_collect(body, captures, name))
+                names = frozenset(t.id for t in plain if isinstance(t, ast.Name))
+                block.inner.append(_collect(body, captures, names))
             case ast.FunctionDef(name):
                 free = free_names(stmt)
                 captures[name] = free
@@ -162,6 +162,12 @@ def _part(base: ast.expr, block: _BlockUses, captures: dict[str, set[str]]) -> N
         _uses(base, block, captures)
 
 
+def all_parameters(arguments: ast.arguments) -> list[ast.arg]:
+    """Return all parameters of a function."""
+    starred = [a for a in (arguments.vararg, arguments.kwarg) if a is not None]
+    return [*plain_parameters(arguments), *starred]
+
+
 def plain_parameters(arguments: ast.arguments) -> list[ast.arg]:
     """Return all parameters of a function but those with stars."""
     return [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs]
@@ -195,7 +201,7 @@ def free_names(function: ast.FunctionDef | ast.Lambda) -> set[str]:
 def _stored(block: _BlockUses) -> set[str]:
     names = set(block.whole)
     for inner in block.inner:
-        names |= _stored(inner) - ({inner.hidden} if inner.hidden else set())
+        names |= _stored(inner) - inner.hidden
     return names
 
 
@@ -207,7 +213,7 @@ def _partly_stored(block: _BlockUses) -> set[str]:
 
 
 def _mentions(block: _BlockUses, name: str) -> bool:
-    if name == block.hidden:
+    if name in block.hidden:
         return False
     direct = name in block.reads or name in block.whole or name in block.partial
     return direct or any(_mentions(inner, name) for inner in block.inner)
@@ -229,7 +235,7 @@ def _place(block: _BlockUses, name: str, blocks: dict[int, list[BlockLocal]]) ->
 
 def _sites(block: _BlockUses, name: str) -> Iterator[_BlockUses]:
     """Yield the block of each assignment to the whole variable."""
-    if name == block.hidden:
+    if name in block.hidden:
         return
     for _ in range(block.whole.get(name, 0)):
         yield block
@@ -238,7 +244,7 @@ def _sites(block: _BlockUses, name: str) -> Iterator[_BlockUses]:
 
 
 def _partly(block: _BlockUses, name: str) -> bool:
-    if name == block.hidden:
+    if name in block.hidden:
         return False
     return name in block.partial or any(_partly(inner, name) for inner in block.inner)
 

@@ -77,3 +77,7 @@ def smallest(precision: int) -> float:
 def largest_power(precision: int) -> float:
     """Return the upper limit of powers for floats with ``precision`` bits."""
     return LARGEST_POWER if precision == 32 else LARGEST_POWER_64
+
+
+# Seconds between two frames, where nothing else says how many there are.
+FRAME_SECONDS: Final = 1.0 / 60.0

@@ -64,11 +64,28 @@ class Struct(Interned):
     """A value with named fields.
 
     A returned tuple is a struct with ``is_tuple`` set and the fields item0, item1 ...
+
+    Attributes:
+        name: Its name in the module.
+        fields: The names and types of its fields.
+        is_tuple: Whether it is a returned tuple.
+        owner: The class that has its methods; None without methods.
     """
 
     name: str
     fields: tuple[tuple[str, Type], ...]
     is_tuple: bool
+    owner: type | None = None
+
+    def __new__(
+        cls,
+        name: str,
+        fields: tuple[tuple[str, Type], ...],
+        is_tuple: bool,
+        owner: type | None = None,
+    ) -> Struct:
+        """Return the struct; without ``owner`` it has no methods."""
+        return Interned.__new__(cls, name, fields, is_tuple, owner)
 
     def field(self, name: str) -> Type | None:
         """Return the type of a field; None if there is no such field."""
@@ -155,6 +172,9 @@ FRAME: Final = Struct(
         ("mouse", VEC4),
         ("index", INT),
         ("seed", UINT),
+        ("delta", FLOAT),
+        ("date", VEC4),
+        ("buttons", INT),
     ),
     False,
 )

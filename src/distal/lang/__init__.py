@@ -9,7 +9,9 @@ from __future__ import annotations
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.types import Type
 from distal.lang.annotations import Field2, Field3, Floats, Numbers, Vectors, array
-from distal.lang.functions import Func, Image, func, image
+from distal.lang.functions import FrameBuffer, Func, Image, buffer, func, image
+from distal.lang.keys import key_held, key_pressed, key_toggled
+from distal.lang.live_textures import ImageInput, Key, Keys, SoundFile, keyboard, microphone
 from distal.lang.names import (
     LangForm,
     LangFunction,
@@ -36,24 +38,35 @@ __all__ = [
     "Field3",
     "Floats",
     "Frame",
+    "FrameBuffer",
     "Func",
     "Image",
+    "ImageInput",
+    "Key",
+    "Keys",
     "LangForm",
     "LangFunction",
     "Numbers",
     "Parameter",
+    "SoundFile",
     "Texture2D",
     "Texture3D",
     "TextureCube",
     "Type",
     "Vectors",
     "array",
+    "buffer",
     "choice",
     "color",
     "func",
     "gradient",
     "image",
     "integer",
+    "key_held",
+    "key_pressed",
+    "key_toggled",
+    "keyboard",
+    "microphone",
     "point",
     "sample",
     "select",
@@ -66,3 +79,7 @@ __all__ = [
     "value_and_gradient",
 ]
 __all__ += [*map(str, VALUE_CLASSES), *BUILTINS]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

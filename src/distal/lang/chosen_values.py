@@ -13,6 +13,11 @@ from distal.lang.parameter_values import Value
 from distal.lang.parameters import Parameter
 
 
+def by_key(parameters: Iterable[Parameter]) -> dict[str, Parameter]:
+    """Return parameters by all that names them: their labels, and their names."""
+    return {key: p for p in parameters for key in (p.label, p.name)}
+
+
 def checked_values(
     parameters: Iterable[Parameter], chosen: Mapping[str, Any] | None
 ) -> dict[str, Value]:
@@ -30,7 +35,7 @@ def checked_values(
         return {}
     if not isinstance(chosen, Mapping):
         raise TypeError(f"params are values by name, not {type(chosen).__name__}")
-    known = {key: p for p in parameters for key in (p.label, p.name)}
+    known = by_key(parameters)
     values = {}
     for key, value in chosen.items():
         if key not in known:

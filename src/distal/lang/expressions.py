@@ -29,12 +29,11 @@ _LANES: Final = {"r": "x", "g": "y", "b": "z", "a": "w", **{c: c for c in "xyzw"
 UFUNCS: Final[Mapping[str, str]] = {
     **{"add": "+", "subtract": "-", "multiply": "*", "divide": "/", "true_divide": "/"},
     **{"floor_divide": "//", "remainder": "%", "power": "**", "float_power": "**"},
+    **{"less": "<", "less_equal": "<=", "greater": ">", "greater_equal": ">="},
     **{"matmul": "@", "negative": "-x", "positive": "+x"},
     **python_functions("numpy"),
 }
-_COMPARING: Final = frozenset(
-    ("less", "less_equal", "greater", "greater_equal", "equal", "not_equal")
-)
+_COMPARING: Final = frozenset(("equal", "not_equal"))
 
 
 class Symbolic(Immutable):
@@ -67,25 +66,51 @@ class Symbolic(Immutable):
     # The value is known only at render time, so it has no truth value and cannot become a number.
 
     def __bool__(self) -> bool:
-        _unknown("whether it is true", "decide in a @func, with if or select")
+        _unknown("whether it is true", "select(condition, a, b) of distal.lang, or if in a @func")
 
     def __float__(self) -> float:
-        _unknown("its number", "use np.cos, or cos of distal.lang, instead of math.cos and float")
+        _unknown("its number", "np.sin(time), or sin of distal.lang, instead of math.sin and float")
 
     def __int__(self) -> int:
         _unknown("its number", "a count or a choice of a shape is a plain int")
 
-    def __lt__(self, other: object) -> bool:
-        _compared("<")
+    def __index__(self) -> int:
+        _unknown("its number", "range and other counts take a plain int: for i in range(8)")
 
-    def __le__(self, other: object) -> bool:
-        _compared("<=")
+    # Comparisons are conditions: for ``select``, ``shown`` and the switches of shapes
 
-    def __gt__(self, other: object) -> bool:
-        _compared(">")
+    def __lt__(self, other: Any) -> Any:
+        return _operated("<", self, other)
 
-    def __ge__(self, other: object) -> bool:
-        _compared(">=")
+    def __le__(self, other: Any) -> Any:
+        return _operated("<=", self, other)
+
+    def __gt__(self, other: Any) -> Any:
+        return _operated(">", self, other)
+
+    def __ge__(self, other: Any) -> Any:
+        return _operated(">=", self, other)
+
+    def __and__(self, other: Any) -> Any:
+        return _operated("&", self, other)
+
+    def __rand__(self, other: Any) -> Any:
+        return _operated("&", other, self)
+
+    def __or__(self, other: Any) -> Any:
+        return _operated("|", self, other)
+
+    def __ror__(self, other: Any) -> Any:
+        return _operated("|", other, self)
+
+    def __xor__(self, other: Any) -> Any:
+        return _operated("^", self, other)
+
+    def __rxor__(self, other: Any) -> Any:
+        return _operated("^", other, self)
+
+    def __invert__(self) -> Any:
+        return _operated("~x", self)
 
     # Arithmetic
 
@@ -164,7 +189,7 @@ class Symbolic(Immutable):
         """Apply a NumPy function: ``np.cos(time)``, ``np.float64(2) * time``."""
         name: str = ufunc.__name__
         if name in _COMPARING:
-            _compared(name)
+            refuse_comparison(name)
         operation = UFUNCS.get(name)
         if operation is None or method != "__call__" or options:
             called = f"np.{name}" if method == "__call__" else f"np.{name}.{method}"
@@ -220,7 +245,7 @@ class Expression(Symbolic):
             held = other.as_expression()
             return self.node is held.node and self.parameters == held.parameters
         if isinstance(other, int | float):
-            _compared("==")
+            refuse_comparison("==")
         return NotImplemented
 
     def __hash__(self) -> int:
@@ -266,13 +291,29 @@ def _operated(operation: str, *operands: Any) -> Any:
     return NotImplemented if result is None else result
 
 
-def _compared(symbol: str) -> NoReturn:
-    _unknown(f"what '{symbol}' gives", "compare in a @func, or use min, max, clamp or step")
+def refuse_comparison(symbol: str) -> NoReturn:
+    """Raise the error for a comparison of a value that is not known here."""
+    _unknown(f"what '{symbol}' gives", "choose(which, shapes), or compare by <= and >=")
+
+
+class UnknownValue(TypeError):  # noqa: N818 (it names what is wrong)
+    """A value is needed that is known only when a picture is rendered.
+
+    Attributes:
+        hint: What to write instead.
+    """
+
+    def __init__(self, message: str, hint: str) -> None:
+        super().__init__(message)
+        self.hint = hint
+
+    def __str__(self) -> str:
+        return f"{self.args[0]}; {self.hint}"
 
 
 def _unknown(what: str, hint: str) -> NoReturn:
-    raise TypeError(
-        f"a parameter or the time has no value yet, so {what} is not known here; {hint}"
+    raise UnknownValue(
+        f"a parameter or the time has no value yet, so {what} is not known here", hint
     )
 
 

@@ -6,18 +6,25 @@ is parsed and checked later, when the function is compiled or called.
 
 from __future__ import annotations
 
+import itertools
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from types import FunctionType
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from distal.ir.limits import FRAME_SECONDS
+from distal.lang.live_textures import LastFrame
 from distal.lang.presentable import Presentable
 from distal.lang.render_options import Cancel, Progress, RenderOptions
-from distal.lang.runtime_access import executor
+from distal.lang.runtime_access import executor, shown_buffers
 from distal.lang.source import Source, capture
 
 if TYPE_CHECKING:
+    from distributed import Client
+
+    from distal.cluster.pool import WorkerPool
     from distal.images.picture import Picture
     from distal.lang.parameters import Parameter
 
@@ -34,12 +41,16 @@ class Overload:
         enclosing: A copy of the locals of the function that it was defined in: a type that is
             used only in an annotation is not in the closure.
         apart: Whether it is compiled apart from its callers; see ``apart``.
+        struct: The ``@struct`` class that it is a method of; None for a function.
+        takes_self: Whether its first parameter is a value of this struct.
     """
 
     python: FunctionType
     source: Source
     enclosing: Mapping[str, Any]
     apart: bool = False
+    struct: type | None = None
+    takes_self: bool = False
 
 
 def is_library(overload: Overload) -> bool:
@@ -99,8 +110,21 @@ class Func:
         return f"<{type(self).__name__.lower()} {self.__qualname__}>"
 
 
+_numbers = itertools.count()
+
+
 class Image(Func, Presentable):
     """A picture: a function from a Frame to the color of one pixel."""
+
+    @cached_property
+    def last_frame(self) -> LastFrame:
+        """Its latest picture as a texture; scene code reads it by the image's own name."""
+        return LastFrame(self)
+
+    @property
+    def shown(self) -> Image:
+        """The image to render: itself."""
+        return self
 
     def render(
         self,
@@ -112,10 +136,14 @@ class Image(Func, Presentable):
         progress: Progress | None = None,
         cancel: Cancel | None = None,
         mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
-        index: int = 0,
+        index: int | None = None,
         seed: int = 0,
         *,
         samples: int | None = None,
+        cluster: Client | WorkerPool | None = None,
+        keys: Any = (),
+        buttons: int = 0,
+        delta: float = FRAME_SECONDS,
     ) -> Picture:
         """Render the picture.
 
@@ -130,10 +158,18 @@ class Image(Func, Presentable):
             cancel: An event, or a function without arguments, that ends the work early.
             mouse: ``frame.mouse``: x and y in pixels from the lower left, then the click position
                 as in Shadertoy.
-            index: ``frame.index``, the frame number; wraps at 32 bits.
+            index: ``frame.index``, the frame number; wraps at 32 bits. A picture that reads
+                earlier frames is rendered from frame 0 to this one. None: as many frames as
+                ``time`` has steps of ``delta`` for such a picture, else 0.
             seed: ``frame.seed``, the seed of random numbers; wraps at 32 bits.
             samples: Samples in each pixel, which are averaged. None: one of an ``@image``; one of a
                 scene, and eight more where the pixel differs from its neighbours.
+            cluster: A ``dask.distributed.Client`` whose workers render it, with the same bits; None
+                renders it in this process. Needs ``distal[cluster]``.
+            keys: The codes of the keys that are down, or a ``Keys``.
+            buttons: ``frame.buttons``: 1 for the left button of the mouse, 2 for the right one and
+                4 for the middle one, added.
+            delta: ``frame.delta``, the seconds between two frames.
 
         Raises:
             CompileError: The scene code has mistakes.
@@ -153,8 +189,30 @@ class Image(Func, Presentable):
             index=index,
             seed=seed,
             samples=samples,
+            cluster=cluster,
+            keys=keys,
+            buttons=buttons,
+            delta=delta,
         )
-        return executor().render(self, options)
+        return executor().render(self.shown, options)
+
+
+class FrameBuffer(Image):
+    """An image that is drawn in every frame and kept, for itself and other images to read.
+
+    Attributes:
+        number: Buffers with a lower number are drawn before it.
+    """
+
+    def __init__(self, overload: Overload) -> None:
+        super().__init__(overload)
+        self.number = next(_numbers)
+
+    @cached_property
+    def shown(self) -> Image:
+        """The image that shows what it drew; see ``lang.shown_buffers``."""
+        shown: Image = shown_buffers.picture_of(self)
+        return shown
 
 
 def func(function: Callable[..., Any]) -> Func:
@@ -175,6 +233,17 @@ def apart(function: Marked) -> Marked:
 def image(function: Callable[..., Any]) -> Image:
     """Record a function from a Frame to a vec3 or vec4 as a picture."""
     return Image(_record(function, "@image", sys._getframe(1)))
+
+
+def buffer(function: Callable[..., Any]) -> FrameBuffer:
+    """Record an image that is drawn in every frame, before the picture that reads it.
+
+    ``texel(name, place)`` and ``sample(name, uv)`` read what it drew: in this frame for a reader
+    that stands below it in the file, in the last frame for itself and what stands above it. Before
+    the first frame all components are 0. Values are floats of 32 bits, as many as the picture has
+    pixels.
+    """
+    return FrameBuffer(_record(function, "@buffer", sys._getframe(1)))
 
 
 def _record(function: Any, decorator: str, frame: Any) -> Overload:

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from distal.ir.intrinsics import Intrinsic
+from distal.lang.composed import Composed
 from distal.lang.expressions import composed_value, is_symbolic
-from distal.lang.runtime_access import constant_evaluation, executor
+from distal.lang.runtime_access import alternatives, constant_evaluation, executor
 from distal.lang.values import MatrixValue, VectorValue
 
 
@@ -88,14 +89,23 @@ class LangForm:
 
 
 class SelectForm(LangForm):
-    """``select``, which can be evaluated in Python for plain numbers."""
+    """``select``, which can be evaluated in Python for numbers, expressions and shapes."""
 
     def __call__(self, *args: Any) -> Any:
-        """Return one of two numbers; raise ``TypeError`` for other operands."""
-        if len(args) == 3 and isinstance(args[0], bool):
-            condition, *values = args
-            if all(isinstance(v, int | float) for v in values):
-                return values[0] if condition else values[1]
+        """Return one of two numbers or shapes; with a parameter in it, an expression or a shape.
+
+        Raises:
+            TypeError: The condition or the operands are something else.
+        """
+        if len(args) != 3:
+            return LangForm.__call__(self, *args)
+        condition, *values = args
+        if any(isinstance(v, Composed) for v in values):
+            return alternatives.selected(condition, *values)
+        if any(map(is_symbolic, args)):
+            return composed_value(self.name, args)
+        if isinstance(condition, bool) and all(isinstance(v, int | float) for v in values):
+            return values[0] if condition else values[1]
         return LangForm.__call__(self, *args)
 
 

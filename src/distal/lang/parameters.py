@@ -11,12 +11,12 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from enum import Enum
-from typing import assert_never
+from typing import Any, assert_never
 
 from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3, Type
-from distal.lang.expressions import Expression, Symbolic, uniform_of
+from distal.lang.expressions import Expression, Symbolic, refuse_comparison, uniform_of
 from distal.lang.number_text import shown
 from distal.lang.parameter_values import (
     TOGGLE_WORDS,
@@ -75,9 +75,30 @@ class Parameter(Symbolic):
     help: str = ""
     options: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        match self.kind:
+            case ParameterKind.CHOICE if isinstance(self.default, int):
+                shown = f"'{self.options[self.default]}' of {', '.join(self.options)}"
+            case ParameterKind.SLIDER | ParameterKind.INTEGER if self.high is not None:
+                shown = f"{self.default}, {self.low} to {self.high}"
+            case _:
+                shown = f"{self.default}"
+        return f"<{self.kind.value} '{self.label}': {shown}>"
+
     def as_expression(self) -> Expression:
         """Return its value as an expression."""
         return uniform_of(self)
+
+    def __eq__(self, other: object) -> Any:
+        """Return whether it is the same parameter; comparing with a value is an error."""
+        if isinstance(other, Parameter):
+            return self is other or _fields_of(self) == _fields_of(other)
+        if isinstance(other, int | float) or other in self.options:
+            refuse_comparison("==")
+        return NotImplemented
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.label, self.kind))
 
     @property
     def interface(self) -> tuple[tuple[str, object], ...]:
@@ -203,6 +224,10 @@ class Parameter(Symbolic):
                 return f"{axes} (default {joined(self.default)})"
             case _:
                 assert_never(self.kind)
+
+
+def _fields_of(parameter: Parameter) -> tuple[object, ...]:
+    return tuple(getattr(parameter, field.name) for field in fields(parameter))
 
 
 def slider(

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from distal.export.exported import Exported
     from distal.notebook.widget import LiveView
     from distal.scene.steering import Steering
-    from distal.video.recording import FinishedSequence, Progress
+    from distal.video.frame_rendering import Progress
+    from distal.video.recording import FinishedSequence
     from distal.video.store import Tell
 
 
@@ -45,12 +46,16 @@ class ExportOptions(TypedDict, total=False):
     title: str | None
     embed: bool
     panel: bool
-    poster: bool
+    poster: bool | str
     view: str
     views: Sequence[str] | None
     device: str
     mode: str | None
     caustics: bool | None
+    printable: bool
+    inspect: bool
+    unit: str
+    tolerance: float | None
 
 
 class VideoOptions(TypedDict, total=False):
@@ -74,6 +79,7 @@ class VideoOptions(TypedDict, total=False):
     progress: Progress | None
     cancel: Cancel | None
     tell: Tell | None
+    cluster: Any
 
 
 class Presentable:
@@ -99,6 +105,19 @@ class Presentable:
         except Exception as error:
             raise explained(error) or error from None
         return show(self, **options)
+
+    def _repr_mimebundle_(self, **_: object) -> Any:
+        """Return what a notebook's cell shows that ends with this object: its live picture.
+
+        Without the extra ``notebook`` it is a still one.
+        """
+        try:
+            bundle = widget.bundle_of
+        except Exception as error:
+            found = explained(error) or error
+            still = getattr(self, "render")()._repr_png_()  # noqa: B009 (of every subclass)
+            return {"image/png": still, "text/plain": f"{self!r}\n{found}"}
+        return bundle(self)
 
     def export(
         self,
@@ -138,8 +157,8 @@ class Presentable:
             duration: Seconds.
             options: ``fps``, ``size``, ``start``, ``samples``, ``mode``, ``shutter``,
                 ``steering``, ``loop``, ``quality``, ``params``, ``view``, ``device``,
-                ``threads``, ``keep_frames``, ``fresh``, ``progress``, ``cancel``. The
-                devices are those of ``render``.
+                ``threads``, ``keep_frames``, ``fresh``, ``progress``, ``cancel``, ``cluster``.
+                The devices are those of ``render``.
 
         Raises:
             CompileError: The scene code has mistakes.

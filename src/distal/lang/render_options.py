@@ -15,7 +15,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
-from distal.ir.limits import LARGEST_TIME
+from distal.ir.limits import FRAME_SECONDS, LARGEST_TIME
+from distal.lang.live_textures import checked_keys
 
 LARGEST_SIDE_PX: Final = 16384
 MOST_SAMPLES: Final = 65536
@@ -68,13 +69,23 @@ class RenderOptions:
         cancel: An event, or a function without arguments, that ends the work early.
         mouse: ``frame.mouse``: x and y in pixels from the lower left, then the click position
             as in Shadertoy.
-        index: ``frame.index``, the frame number; wraps at 32 bits.
+        index: ``frame.index``, the frame number; wraps at 32 bits. A picture that reads
+            earlier frames is rendered from frame 0 to this one. None: as many frames as ``time``
+            has steps of ``delta`` for such a picture, else 0.
         seed: ``frame.seed``, the seed of random numbers; wraps at 32 bits.
         samples: Samples in each pixel, which are averaged. None: one of an ``@image``; one of a
             scene, and eight more where the pixel differs from its neighbours.
         freeze: Compile all numbers as constants: slower to compile, a little faster to run.
         settings: Values of a scene's numbers by name, for this picture only.
         refinement: When a picture in mode "path" is finished; None: when it has its samples.
+        cluster: A ``dask.distributed.Client`` whose workers render it, with the same bits; None
+            renders it in this process. Needs ``distal[cluster]``.
+        keys: The codes of the keys that are down, or a ``Keys``.
+        buttons: ``frame.buttons``: 1 for the left button of the mouse, 2 for the right one and
+            4 for the middle one, added.
+        delta: ``frame.delta``, the seconds between two frames.
+        date: ``frame.date``; zeros, so that a file can be rendered again.
+        history: Earlier frames to go on from; None: those with the same values as this one.
 
     Raises:
         TypeError: A value has the wrong type.
@@ -89,19 +100,28 @@ class RenderOptions:
     progress: Progress | None = None
     cancel: Cancel | None = None
     mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0)
-    index: int = 0
+    index: int | None = None
     seed: int = 0
     samples: int | None = None
     freeze: bool = False
     settings: Mapping[str, Any] = field(default_factory=dict)
     refinement: Refinement | None = None
+    cluster: Any = None
+    keys: Any = ()
+    buttons: int = 0
+    delta: float = FRAME_SECONDS
+    date: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)
+    history: Any = None
 
     def __post_init__(self) -> None:
         for name, value in (
             ("size", checked_size(self.size)),
             ("time", checked_time(self.time)),
             ("mouse", _checked_mouse(self.mouse)),
-            ("index", _checked_int("index", self.index)),
+            ("index", None if self.index is None else _checked_int("index", self.index)),
+            ("keys", checked_keys(self.keys)),
+            ("buttons", _checked_int("buttons", self.buttons)),
+            ("delta", _checked_delta(self.delta)),
             ("seed", _checked_int("seed", self.seed)),
             ("samples", checked_samples(self.samples)),
         ):
@@ -174,6 +194,14 @@ def checked_samples(samples: object) -> int | None:
     if not isinstance(samples, int) or not 1 <= samples <= MOST_SAMPLES:
         raise ValueError(f"a pixel has 1 to {MOST_SAMPLES} samples, not {samples!r}")
     return samples
+
+
+def _checked_delta(seconds: Any) -> float:
+    """Return the seconds between two frames, checked."""
+    value = checked_time(seconds)
+    if value <= 0.0:
+        raise ValueError(f"delta is the seconds between two frames, more than 0, not {value:g}")
+    return value
 
 
 def _checked_mouse(mouse: Any) -> tuple[float, float, float, float]:

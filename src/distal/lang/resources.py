@@ -27,16 +27,39 @@ from distal.ir.types import (
 from distal.lang.values import VectorValue, uint
 
 WRAPS = ("repeat", "clamp")
+# What the axes of a volume's array are, from the outermost to the innermost: array[z, y, x].
+AXES = "zyx"
 
 
-def _beside(file: str, data: Any) -> Any:
+def checked_axes(axes: object) -> str:
+    """Return an order of the three axes.
+
+    Raises:
+        ValueError: It is none.
+    """
+    if not isinstance(axes, str) or sorted(axes) != ["x", "y", "z"]:
+        raise ValueError(f"axes are 'zyx' or another order of the three, not {axes!r:.40}")
+    return axes
+
+
+def beside(file: str, data: Any) -> Any:
     """Return file names as paths in the folder of ``file``, where such files exist."""
     if isinstance(data, list | tuple) and len(data) == 6:  # the faces of a cube map
-        return [_beside(file, part) if isinstance(part, str | PathLike) else part for part in data]
+        return [beside(file, part) if isinstance(part, str | PathLike) else part for part in data]
     if not isinstance(data, str | PathLike):
         return data
     candidate = os.path.join(os.path.dirname(os.path.abspath(file)), os.fspath(data))
     return candidate if os.path.exists(candidate) else data
+
+
+def _shown(data: Any) -> str:
+    """Return what texels come from: the name of a file, an array's shape, or their count."""
+    if isinstance(data, str | PathLike):
+        return f"'{os.path.basename(os.fspath(data))}'"
+    shape = getattr(data, "shape", None)
+    if shape is not None:
+        return f"an array {tuple(shape)}"
+    return f"{len(data)} rows" if isinstance(data, Sequence) else "texels"
 
 
 class TextureValue:
@@ -55,8 +78,11 @@ class TextureValue:
         if wrap not in WRAPS:
             raise ValueError(f"wrap is 'repeat' or 'clamp', not {wrap!r}")
         declared_in = sys._getframe(1).f_globals.get("__file__")
-        self.data = _beside(declared_in, data) if isinstance(declared_in, str) else data
+        self.data = beside(declared_in, data) if isinstance(declared_in, str) else data
         self.wrap = wrap
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} of {_shown(self.data)}, wrap='{self.wrap}'>"
 
 
 class Texture2D(TextureValue):
@@ -72,9 +98,21 @@ class TextureCube(TextureValue):
 
 
 class Texture3D(TextureValue):
-    """A volume, sampled by a vec3 from (0, 0, 0) to (1, 1, 1)."""
+    """A volume, sampled by a vec3 from (0, 0, 0) to (1, 1, 1).
+
+    Args:
+        data: An array, or nested lists of numbers.
+        wrap: "repeat", or "clamp" to repeat the edge texels.
+        axes: What the axes of ``data`` are, from the outermost to the innermost. "zyx": a value is
+            ``data[z, y, x]``, as a stack of pictures is stored; "xyz": ``data[x, y, z]``, as
+            ``numpy.meshgrid(..., indexing="ij")`` makes it. Channels, if any, are the fourth axis.
+    """
 
     __distal_type__ = TEXTURE_3D
+
+    def __init__(self, data: Any, wrap: str = "repeat", *, axes: str = AXES) -> None:
+        super().__init__(data, wrap)
+        self.axes = checked_axes(axes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +133,9 @@ class Buffer:
     def __init__(self, data: Any) -> None:
         self.data = data
         self.element = _element(data)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} of {len(self.data)} {self.element}>"
 
     def __class_getitem__(cls, item: Any) -> BufferAnnotation:
         """Return the annotation for a buffer parameter."""

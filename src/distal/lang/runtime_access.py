@@ -14,21 +14,28 @@ from distal.lang.lazy_module import LazyModule
 from distal.packages import is_installed
 
 if TYPE_CHECKING:
+    from distal.cluster import kernels as cluster_kernels
     from distal.compiler import constant_evaluation
     from distal.export import registry as exports
     from distal.frontend import python_expressions
+    from distal.lang import shown_buffers
     from distal.mesh import measuring, meshing, scene_parts
     from distal.mesh.outlines import outlining
-    from distal.notebook import widget
+    from distal.notebook import mesh_cell, widget
     from distal.runtime import executor as runtime_executor
     from distal.runtime import heights as ray_views
     from distal.runtime import standard_executor
     from distal.runtime.executor import PythonExecutor
+    from distal.scene.objects import alternatives
+    from distal.scene.viewing import viewable as viewing
     from distal.video import recording
 else:
+    cluster_kernels = LazyModule("distal.cluster.kernels")
+    alternatives = LazyModule("distal.scene.objects.alternatives")
     constant_evaluation = LazyModule("distal.compiler.constant_evaluation")
     exports = LazyModule("distal.export.registry")
     measuring = LazyModule("distal.mesh.measuring")
+    mesh_cell = LazyModule("distal.notebook.mesh_cell")
     meshing = LazyModule("distal.mesh.meshing")
     outlining = LazyModule("distal.mesh.outlines.outlining")
     python_expressions = LazyModule("distal.frontend.python_expressions")
@@ -36,7 +43,9 @@ else:
     recording = LazyModule("distal.video.recording")
     runtime_executor = LazyModule("distal.runtime.executor")
     scene_parts = LazyModule("distal.mesh.scene_parts")
+    shown_buffers = LazyModule("distal.lang.shown_buffers")
     standard_executor = LazyModule("distal.runtime.standard_executor")
+    viewing = LazyModule("distal.scene.viewing.viewable")
     widget = LazyModule("distal.notebook.widget")
 
 
@@ -52,15 +61,20 @@ def executor() -> PythonExecutor:
 
 
 __all__ = [
+    "alternatives",
+    "cluster_kernels",
     "constant_evaluation",
     "executor",
     "exports",
     "measuring",
+    "mesh_cell",
     "meshing",
     "outlining",
     "python_expressions",
     "ray_views",
     "recording",
     "scene_parts",
+    "shown_buffers",
+    "viewing",
     "widget",
 ]

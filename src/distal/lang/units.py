@@ -1,4 +1,4 @@
-"""Lengths in millimetres: write ``8 * inch`` and ``2 * cm`` in a scene whose unit is 1 mm.
+"""Units of length: ``8 * inch`` and ``2 * cm`` in a scene whose unit is 1 mm; units of files.
 
 Input: nothing. Output: numbers. A scene has no unit of its own; parts for printing use millimetres,
 as the sizes of ``Bolt``, ``Nut`` and ``MetricThread`` do.
@@ -8,8 +8,19 @@ from __future__ import annotations
 
 from typing import Final
 
-mm: Final = 1.0
-cm: Final = 10.0
-metre: Final = 1000.0
-inch: Final = 25.4
-foot: Final = 304.8
+# Meters in one unit, by the names that commands, files and methods know.
+UNITS: Final = {
+    "um": 1e-6,
+    "mm": 1e-3,
+    "cm": 1e-2,
+    "m": 1.0,
+    "inch": 0.0254,
+    "ft": 0.3048,
+}
+MILLIMETER: Final = UNITS["mm"]
+
+mm: Final = UNITS["mm"] / MILLIMETER
+cm: Final = UNITS["cm"] / MILLIMETER
+metre: Final = UNITS["m"] / MILLIMETER
+inch: Final = UNITS["inch"] / MILLIMETER
+foot: Final = UNITS["ft"] / MILLIMETER

@@ -233,7 +233,12 @@ class MatrixValue:
 
 
 class Frame:
-    """The argument of an image: coord, resolution, time, mouse, index and seed."""
+    """The argument of an image.
+
+    Its values: coord (in pixels, from the lower left), resolution (pixels), time and delta
+    (seconds), index (the number of the frame, from 0), mouse (as in Shadertoy), buttons
+    (bits), date (year, month from 0, day, seconds of the day; 0 in files) and seed.
+    """
 
     __distal_type__: ClassVar[Type] = FRAME
 

@@ -22,6 +22,7 @@ from distal.diagnostics import CompileError, Span
 from distal.ir import nodes
 from distal.ir.build import number, subtract
 from distal.ir.kept import kept
+from distal.ir.limits import FRAME_SECONDS
 from distal.ir.nodes import (
     Apply,
     Call,
@@ -55,6 +56,9 @@ _DEFAULTS: Final = {
     "mouse": (0.0, 0.0, 0.0, 0.0),
     "index": 0,
     "seed": 0,
+    "delta": FRAME_SECONDS,
+    "date": (0.0, 0.0, 0.0, 0.0),
+    "buttons": 0,
 }
 _FRAME_UNIFORMS: Final = {
     name: UniformDeclaration(name, type, Origin.FRAME, _DEFAULTS[name])

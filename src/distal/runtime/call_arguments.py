@@ -18,7 +18,7 @@ from distal.ir.types import Type
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.names import LangFunction
-from distal.runtime.call_values import bind, choose_types, rows_of
+from distal.runtime.call_values import bind, choose_types, collected, rows_of
 
 
 def call_arguments(
@@ -61,12 +61,12 @@ def call_arguments(
     else:
         mistake: TypeError | None = None
         for overload in function.overloads:
-            declared = read_signature(overload)
+            declared = read_signature(overload).collecting(len(args))
             if declared.problems:
                 lower(function)  # raises with the author's lines
             try:
                 defaults = {slot.name: slot.default for slot in declared.parameters}
-                values = bind(declared.name, defaults, args, kwargs)
+                values = bind(declared.name, defaults, collected(declared, args), kwargs)
             except TypeError as error:
                 mistake = error
                 continue
@@ -77,6 +77,8 @@ def call_arguments(
         if mistake is not None and len(function.overloads) == 1:
             raise mistake
     given = ", ".join(map(_described, [*args, *kwargs.values()]))
+    if _name(function) == "atan" and len(args) == 2:
+        raise TypeError(f"atan() does not take ({given}); atan2(y, x) does")
     raise TypeError(f"{_name(function)}() does not take ({given}); {_takes(function)}")
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
-from distal.frontend.signatures.signatures import MISSING, FunctionSignature
+from distal.frontend.signatures.signatures import MISSING, FunctionSignature, element_annotation
 from distal.ir.types import (
     FLOAT,
     VEC2,
@@ -38,6 +38,25 @@ from distal.ir.types import (
 from distal.lang.values import VALUE_CLASSES, MatrixValue, VectorValue
 
 _KINDS = {Kind.FLOAT: "fiub", Kind.INT: "iu", Kind.UINT: "iu", Kind.BOOL: "b"}
+
+
+class Collected(tuple[Any, ...]):
+    """The arguments that a parameter ``*values`` collects: each a value, or one per point."""
+
+    __slots__ = ()
+
+
+def collected(signature: FunctionSignature, args: Sequence[Any]) -> Sequence[Any]:
+    """Return positional arguments with those that ``*values`` collects joined to one.
+
+    Args:
+        signature: The signature, for so many arguments (``FunctionSignature.collecting``).
+        args: Values by position.
+    """
+    first = sum(p.positional for p in signature.parameters)
+    if len(args) <= first or not any(p.collects for p in signature.parameters):
+        return args
+    return [*args[:first], Collected(args[first:])]
 
 
 def bind(
@@ -83,8 +102,9 @@ def choose_types(
     """
     variables: list[TypeVar] = []
     for slot in header.parameters:
-        if isinstance(slot.annotation, TypeVar) and slot.annotation not in variables:
-            variables.append(slot.annotation)
+        variable = element_annotation(slot)
+        if isinstance(variable, TypeVar) and variable not in variables:
+            variables.append(variable)
     constraints = [v.__constraints__ or (FLOAT, VEC2, VEC3, VEC4) for v in variables]
     for choice in product(*constraints):
         bindings = {v: to_type(c) for v, c in zip(variables, choice, strict=True)}
@@ -194,7 +214,7 @@ def _converted(array: NDArray[Any], kind: Kind, dtype: np.dtype[Any]) -> NDArray
 
 
 def _array(value: Any, element: Type, length: int, dtype: np.dtype[Any]) -> Any:
-    if isinstance(element, Scalar | Vector):
+    if isinstance(element, Scalar | Vector) and not isinstance(value, Collected):
         shape = (length,) if isinstance(element, Scalar) else (length, element.size)
         if isinstance(value, list | tuple):
             value = [tuple(v) if isinstance(v, VectorValue) else v for v in value]
@@ -255,6 +275,8 @@ def is_many(value: Any, type: Type) -> bool:
             else:
                 parts = [getattr(value, n) for n, _ in fields]
             return any(is_many(v, t) for v, (_, t) in zip(parts, fields, strict=True))
+        case Array(element, _) if isinstance(value, Collected):
+            return any(is_many(v, element) for v in value)
         case Array(Scalar() | Vector() as element, _):
             if isinstance(value, list | tuple):
                 value = [tuple(v) if isinstance(v, VectorValue) else v for v in value]

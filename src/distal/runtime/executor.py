@@ -31,31 +31,36 @@ from distal.lang.render_options import (
     RenderOptions,
     checked_time,
 )
+from distal.lang.runtime_access import cluster_kernels
 from distal.loading import loaded_from
 from distal.render import film
 from distal.runtime import accumulation, glow, sampling
 from distal.runtime.call_arguments import call_arguments
 from distal.runtime.call_values import count, empty, is_double, is_many, single, with_names
 from distal.runtime.device_names import AUTO, CPU, GPU_FRAGMENT, REFERENCE
+from distal.runtime.earlier_frames import EarlierFrames
+from distal.runtime.frame_history import LiveFrames
 from distal.runtime.kernels import KernelCache, automatic_device, is_software
 from distal.runtime.lowered import Lowered
 from distal.runtime.moving import moved_resources
 from distal.runtime.passes import Passes, over_picture
 from distal.runtime.photons import PhotonPasses, PhotonProgram
 from distal.runtime.standard_executor import StandardExecutor, ValueOf, all_values
-from distal.runtime.uniform_values import DeclaredUniforms, frame_values
+from distal.runtime.uniform_values import DeclaredUniforms, chosen_uniforms
 
 if TYPE_CHECKING:
     from distal.devices.cpu import CpuKernel
     from distal.devices.gpu import GpuKernel
     from distal.images.height_map import HeightMap
     from distal.runtime import fills, function_tapes, heights, sweeps
-    from distal.tape import proofs
+    from distal.tape import box_tape, proofs
+    from distal.tape.interval_rules import Ends
     from distal.tape.proofs import Proof, Refutation
 else:
     fills = LazyModule("distal.runtime.fills")
     function_tapes = LazyModule("distal.runtime.function_tapes")
     heights = LazyModule("distal.runtime.heights")
+    box_tape = LazyModule("distal.tape.box_tape")
     proofs = LazyModule("distal.tape.proofs")
     sweeps = LazyModule("distal.runtime.sweeps")
 
@@ -85,6 +90,7 @@ class PythonExecutor(StandardExecutor):
     def __init__(self) -> None:
         super().__init__()
         self.kernels = KernelCache()
+        self.frames = EarlierFrames(self)
 
     @cached_property
     def tapes(self) -> function_tapes.FunctionTapes:
@@ -97,6 +103,10 @@ class PythonExecutor(StandardExecutor):
         Raises:
             DeviceError: The device is missing or was lost; never with "auto", which then warns.
         """
+        if options.cluster is not None and options.device not in (AUTO, CPU):
+            raise ValueError(f"workers render on their CPU, not on '{options.device}'")
+        if options.cluster is not None:
+            return self._render_on(CPU, image, options)
         if options.device != AUTO:
             return self._render_on(options.device, image, options)
         found = automatic_device()
@@ -110,12 +120,11 @@ class PythonExecutor(StandardExecutor):
 
     def _render_on(self, device: str, image: Image | Composed, options: RenderOptions) -> Picture:
         begin = time.perf_counter()
-        if isinstance(image, Image) and options.samples is not None and options.samples > 1:
-            image = sampling.sampled(image)
-            options = replace(options, settings={film.SAMPLES: options.samples})
+        options = replace(options, device=device)
+        image, options = self.as_rendered(image, options)
         adaptive = isinstance(image, Composed) and image.adaptive
         refined = isinstance(image, Composed) and image.refined
-        passes = self.passes(image, replace(options, device=device))
+        passes = self.passes(image, options)
         parts, kernels = passes.parts, passes.kernels
         values, others = passes.values
         contrast = self._contrast(device) if adaptive else None
@@ -143,28 +152,70 @@ class PythonExecutor(StandardExecutor):
             step = partial(self._step, device, options)
             linear += np.float32(image.glow) * glow.halo(linear, step)
             pixels = passes.shown(linear)
-        stats = {"device": device, **kernels[0].stats, "compile_s": compiled - begin}
-        stats["render_s"] = time.perf_counter() - compiled
+        stats = {
+            "device": device,
+            **kernels[0].stats,
+            "compile_s": compiled - begin - passes.earlier_s,
+        }
+        stats["render_s"] = time.perf_counter() - compiled + passes.earlier_s
         stats["lost"] = passes.lost.shares
         if exposed is not None:
             stats |= exposed.figures()
         elif contrast is not None:
             stats["samples"] = samples
+        origin = self.origin(image, options, (values, others), _samples(options, adaptive, exposed))
+        return Picture(pixels, origin, stats, linear, {} if exposed is None else _layers(exposed))
+
+    def origin(
+        self,
+        image: Image | Composed,
+        options: RenderOptions,
+        values: tuple[Mapping[str, Any], Mapping[str, Any]],
+        samples: int | None,
+    ) -> Provenance:
+        """Return what a picture's file says of how it was rendered.
+
+        Args:
+            image: What was rendered.
+            options: Its options.
+            values: The values of ``chosen_uniforms``.
+            samples: The samples in each pixel; None for adaptive sampling.
+        """
         known = loaded_from(image)
-        origin = Provenance(
+        parameters, others = values
+        return Provenance(
             source=image.name if known is None else known.source,
-            source_hash=parts[0].source_hash if known is None else known.digest,
+            source_hash=self.parts(image).parts[0].source_hash if known is None else known.digest,
             neighbours=() if known is None else known.neighbours,
-            parameters=values,
+            parameters=parameters,
             time=options.time,
             index=others["index"],
             seed=others["seed"],
             mouse=others["mouse"],
+            buttons=options.buttons,
+            keys=options.keys,
+            delta=options.delta,
+            date=options.date,
+            live=isinstance(options.history, LiveFrames) and bool(self.parts(image).read.all),
             freeze=options.freeze,
-            samples=_samples(options, adaptive, exposed),
-            device=device,
+            samples=samples,
+            device=options.device,
         )
-        return Picture(pixels, origin, stats, linear, {} if exposed is None else _layers(exposed))
+
+    def as_rendered(
+        self, image: Image | Composed, options: RenderOptions
+    ) -> tuple[Image | Composed, RenderOptions]:
+        """Return the program that is rendered, and its options: for samples of an ``@image``.
+
+        Raises:
+            DeviceError: Workers of a cluster cannot render it.
+        """
+        if options.cluster is not None and self.parts(image).frames:
+            raise DeviceError(f"'{image.name}' reads its last frames: one machine renders it")
+        if isinstance(image, Image) and options.samples is not None and options.samples > 1:
+            settings = {film.SAMPLES: options.samples}
+            return sampling.sampled(image), replace(options, settings=settings)
+        return image, options
 
     def passes(self, image: Image | Composed, options: RenderOptions) -> Passes:
         """Return the compiled kernels of a picture, which renders its passes one by one.
@@ -180,31 +231,54 @@ class PythonExecutor(StandardExecutor):
         with paused_collection():
             run = self.parts(image)
             parts = run.parts
-            values, others = _uniforms(run.declared, options)
+            options = self.frames.numbered(run, options)
+            values, others = chosen_uniforms(run.declared, options)
             if options.freeze:
                 numbers = run.declared.number_values(options.settings)
                 kept = film.PASS_NUMBERS if is_in_passes else ()
                 parts = tuple(part.frozen(numbers, kept) for part in parts)
-            kernels = [self.kernels.kernel(part, options.device, 32) for part in parts]
+            if options.cluster is None:
+                kernels = [self.kernels.kernel(part, options.device, 32) for part in parts]
+            else:
+                # What follows the first program is fast: it is not worth sending pixels there.
+                kernels = [cast("Kernel", cluster_kernels.kernel(options.cluster, parts[0]))]
+                kernels += [self.kernels.kernel(part, CPU, 32) for part in parts[1:]]
         moved = moved_resources(parts[0].resources, values, options.time)
+        begin = time.perf_counter()
+        moved |= self.frames.texels(run, options)
+        earlier_s = time.perf_counter() - begin
         photons = None
         if isinstance(image, Composed) and image.photons is not None:
             photons = self._photons(image.photons, options.device, options)
         found = (values, others)
-        return Passes(kernels, parts, run.declared, found, options, moved, photons=photons)
+        return Passes(
+            kernels,
+            parts,
+            run.declared,
+            found,
+            options,
+            moved,
+            photons=photons,
+            earlier_s=earlier_s,
+        )
 
     def _photons(
         self, programs: tuple[Composed, Composed], device: str, options: RenderOptions
     ) -> PhotonPasses:
         """Return the photons of a picture.
 
-        They are traced on its device; drivers in software compile them too slowly (llvmpipe: 15 s).
+        They are traced on its device, or by the workers of its cluster; drivers in software compile
+        them too slowly (llvmpipe: 15 s).
         """
         plan, deposits = (self.lower(program, None) for program in programs)
-        on = CPU if is_software(device) else device
+        if options.cluster is None:
+            on = CPU if is_software(device) else device
+            kernel = self.kernels.kernel(deposits, on, 32)
+        else:
+            kernel = cast("Kernel", cluster_kernels.kernel(options.cluster, deposits))
         return PhotonPasses(
             PhotonProgram(self.kernels.kernel(plan, REFERENCE, 32), plan, options),
-            PhotonProgram(self.kernels.kernel(deposits, on, 32), deposits, options),
+            PhotonProgram(kernel, deposits, options),
         )
 
     def _contrast(self, device: str) -> tuple[Kernel, Mapping[str, Any]]:
@@ -245,8 +319,10 @@ class PythonExecutor(StandardExecutor):
         """
         run = self.parts(image)
         assert len(run.parts) == 1, "a window shows display values"
-        values, others = _uniforms(run.declared, options)
+        options = self.frames.numbered(run, options)
+        values, others = chosen_uniforms(run.declared, options)
         uniforms = run.declared.for_kernel(0, values, others)
+        resources = moved_resources(run.parts[0].resources, values, options.time)
         device = GPU_FRAGMENT if target.adapter is None else f"{GPU_FRAGMENT}:{target.adapter}"
         kernel = cast("GpuKernel", self.kernels.kernel(run.parts[0], device, 32))
         kernel.draw(
@@ -254,7 +330,7 @@ class PythonExecutor(StandardExecutor):
             target.format,
             *options.size,
             uniforms,
-            moved_resources(run.parts[0].resources, values, options.time),
+            resources | self.frames.texels(run, replace(options, device=device)),
             samples=(options.settings or {}).get(film.SAMPLES, 1),
             progress=options.progress,
             cancel=options.cancel,
@@ -329,9 +405,7 @@ class PythonExecutor(StandardExecutor):
         few = len(columns) > 0 and len(columns[0]) < _ROWS_OF_A_THREAD
         return kernel.evaluate(columns, values, lowered.resources, here=few)
 
-    def sweep(
-        self, function: Composed, columns: Sequence[NDArray[np.float64]]
-    ) -> list[sweeps.Ends]:
+    def sweep(self, function: Composed, columns: Sequence[sweeps.Column]) -> list[Ends]:
         """Return the ends of each float of a function's result at all times.
 
         They hold for all values of parameters in their declared ranges, too; an end that is not
@@ -339,7 +413,7 @@ class PythonExecutor(StandardExecutor):
 
         Args:
             function: The function.
-            columns: The values of each of its parameters, one row each.
+            columns: The values of each of its parameters, one row each; or the two ends of these.
         """
         return sweeps.sweep(self.lower(function, None), columns)
 
@@ -409,6 +483,23 @@ class PythonExecutor(StandardExecutor):
         tape = function_tapes.tape_for(self.lowered(function), params, time)
         return proofs.prove(tape, low, high, most)
 
+    def box_tape(
+        self, function: Composed, params: Mapping[str, Any] | None = None, time: float = 0.0
+    ) -> box_tape.BoxTape:
+        """Return a function of a point as a tape that is evaluated over boxes, in 64 bits.
+
+        Args:
+            function: The function; its numbers have their defaults.
+            params: Values of parameters by name; the others have their defaults.
+            time: The time in seconds.
+
+        Raises:
+            TapeError: The function cannot be a tape; the message says why.
+        """
+        lowered = self.lowered(function)
+        tape = function_tapes.tape_for(lowered, params or {}, time, precision=64)
+        return box_tape.BoxTape.of(tape)
+
     def refute(
         self,
         function: Composed,
@@ -457,7 +548,7 @@ class PythonExecutor(StandardExecutor):
         """
         lowered = self.lower(function, None)
         declared = DeclaredUniforms([lowered.module])
-        uniforms = declared.for_kernel(0, *_uniforms(declared, options))
+        uniforms = declared.for_kernel(0, *chosen_uniforms(declared, options))
         kernel = self.kernels.kernel(lowered, REFERENCE, 32)
         at = np.array([place], np.float32)
         result = kernel.evaluate([at], uniforms, lowered.resources)
@@ -507,11 +598,3 @@ def _samples(
     if exposed is not None:
         return int(exposed.samples.max())
     return None if adaptive else options.samples or 1
-
-
-def _uniforms(
-    declared: DeclaredUniforms, options: RenderOptions
-) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the values of the parameters, and those of the frame and of the scene's numbers."""
-    values = declared.parameter_values(options.params)
-    return values, {**declared.number_values(options.settings), **frame_values(options)}

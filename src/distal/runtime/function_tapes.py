@@ -93,13 +93,13 @@ class FunctionTapes:
             return known.program
 
 
-def _tape(known: _Known, uniforms: Mapping[str, Any]) -> Tape:
+def _tape(known: _Known, uniforms: Mapping[str, Any], precision: int = 32) -> Tape:
     assert known.lowered is not None
     if known.module is None:
         target = get_target("llvm")
         known.module = run_passes(known.lowered.module, target, PRECISION, after=LAST_PASS)
     assert isinstance(known.module, Module)
-    return tape_of(known.module, uniforms, buffers_of(known.module))
+    return tape_of(known.module, uniforms, buffers_of(known.module), precision)
 
 
 def buffers_of(module: Module) -> dict[str, Any]:
@@ -169,7 +169,12 @@ class Drawing:
         )
 
 
-def tape_for(lowered: Lowered, params: Mapping[str, Any] | None = None, time: float = 0.0) -> Tape:
+def tape_for(
+    lowered: Lowered,
+    params: Mapping[str, Any] | None = None,
+    time: float = 0.0,
+    precision: int = 32,
+) -> Tape:
     """Return the tape of a function.
 
     Args:
@@ -177,6 +182,7 @@ def tape_for(lowered: Lowered, params: Mapping[str, Any] | None = None, time: fl
         params: Values of parameters by name; the others have their defaults. None: the function may
             read neither parameters nor the time.
         time: The time in seconds.
+        precision: The bits of its constants, 32 or 64.
 
     Raises:
         TapeError: The function cannot be a tape, or depends on parameters or the time.
@@ -184,8 +190,8 @@ def tape_for(lowered: Lowered, params: Mapping[str, Any] | None = None, time: fl
     if params is None:
         if any(uniform.origin is not Origin.NUMBER for uniform in lowered.module.uniforms):
             raise TapeError("it depends on parameters or the time")
-        return _tape(_Known(lowered, None, {}), {})
-    return _tape(_Known(lowered, None, {}), uniforms_of(lowered, params, time)[0])
+        return _tape(_Known(lowered, None, {}), {}, precision)
+    return _tape(_Known(lowered, None, {}), uniforms_of(lowered, params, time)[0], precision)
 
 
 def uniforms_of(

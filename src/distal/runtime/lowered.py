@@ -48,6 +48,11 @@ class Lowered:
         texts = sorted({"".join(o.source.lines) for o in captured.overloads})
         return Lowered(module, _hash(print_identity(module)), _hash("\0".join(texts)), captured)
 
+    @staticmethod
+    def elsewhere(module: Module, digest: str, source_hash: str) -> Lowered:
+        """Return what another process has lowered, with the hashes that it has computed."""
+        return Lowered(module, digest, source_hash, Captured(()))
+
     def frozen(self, numbers: Mapping[str, Any], kept: Collection[str] = ()) -> Lowered:
         """Return a copy with these values of the scene's numbers as constants, but not ``kept``."""
         uniforms = tuple(

@@ -80,6 +80,7 @@ class Passes:
     resources: Mapping[str, Any]
     lost: LostRays = field(default_factory=LostRays)
     photons: PhotonPasses | None = None
+    earlier_s: float = 0.0  # what earlier frames took that the picture reads
 
     def light(
         self,

@@ -151,7 +151,7 @@ class PhotonPasses:
             film.FIRST_SAMPLE: first,
             film.PICTURE_SIZE: tuple(map(float, options.size)),
             photons.SEED: _signed(options.seed),
-            photons.FRAME_INDEX: _signed(options.index),
+            photons.FRAME_INDEX: _signed(options.index or 0),
         }
         place, arrival, power, slot = (
             part.reshape(count, of_map, *part.shape[1:])

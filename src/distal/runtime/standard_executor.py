@@ -10,7 +10,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 from weakref import WeakKeyDictionary
 
 from distal.backends import get_target
@@ -22,22 +22,40 @@ from distal.ir.walk import expressions_in, map_expressions, substitute
 from distal.lang.composed import Composed
 from distal.lang.expressions import Expression
 from distal.lang.functions import Func, Image
+from distal.lang.live_textures import ImageInput, Keyboard, LiveTexture, SoundFile
 from distal.lang.names import LangFunction
 from distal.lang.parameters import Parameter
+from distal.lang.places import places_in
 from distal.lang.render_options import checked_time
 from distal.lang.values import VALUE_CLASSES
 from distal.packages import imported
 from distal.passes.numbers import constant
+from distal.runtime.images_read import ImagesRead, images_read
 from distal.runtime.lowered import Lowered, Types
+from distal.runtime.received import Received
 from distal.runtime.uniform_values import DeclaredUniforms
+
+# The values of the frame that are others in the next one. Dragging the mouse is no movement.
+_MOVING: Final = frozenset({"time", "index", "date"})
+# Those that a page has only if its player keeps frames.
+_OF_FRAMES: Final = frozenset({"delta", "date", "buttons"})
 
 
 @dataclass(frozen=True, slots=True)
 class Parts:
-    """A function and, if there is one, the function that encodes its pixels for display."""
+    """What is run for a function.
+
+    Attributes:
+        parts: The function and, if there is one, the function that encodes its pixels for display.
+        declared: The uniforms of these and of the images whose frames it reads.
+        read: The images whose frames it reads.
+        frames: Those images, lowered.
+    """
 
     parts: tuple[Lowered, ...]
     declared: DeclaredUniforms
+    read: ImagesRead
+    frames: tuple[Lowered, ...]
 
 
 class StandardExecutor:
@@ -57,7 +75,30 @@ class StandardExecutor:
 
     def reads_time(self, image: Image | Composed) -> bool:
         """Return whether the picture depends on the time."""
-        return any(reads_time(part.module) for part in self.parts(image).parts)
+        run = self.parts(image)
+        return bool(run.frames) or any(reads_time(part.module) for part in run.parts)
+
+    def keeps_frames(self, image: Image | Composed) -> bool:
+        """Return whether the picture reads what only a host that draws frame after frame knows.
+
+        That is earlier frames, the keyboard, the buttons of the mouse, the date, the seconds
+        between frames.
+        """
+        return isinstance(image, Image) and any(
+            keeps_frames(part.module) for part in self.parts(image).parts
+        )
+
+    def reads_keyboard(self, image: Image | Composed) -> bool:
+        """Return whether the picture, or an image whose frames it reads, reads the keyboard."""
+        run = self.parts(image)
+        resources = (r for part in (*run.parts, *run.frames) for r in part.module.resources)
+        return any(isinstance(r.source, Keyboard) for r in resources)
+
+    def sound(self, image: Image | Composed) -> SoundFile | None:
+        """Return the sound that the picture, or an image whose frames it reads, reads first."""
+        run = self.parts(image)
+        resources = (r for part in (*run.parts, *run.frames) for r in part.module.resources)
+        return next((r.source for r in resources if isinstance(r.source, SoundFile)), None)
 
     def follows_time(self, function: Func | Composed) -> bool:
         """Return whether a function that is no picture depends on the time."""
@@ -111,16 +152,22 @@ class StandardExecutor:
             first = self.lower(function, None)
             display = function.display if isinstance(function, Composed) else None
             parts = (first,) if display is None else (first, self.lower(display, (VEC4,)))
+            read = images_read(
+                first.resources.values(), lambda image: self.lower(image, None).resources.values()
+            )
+            frames = tuple(self.lower(image, None) for image in read.all)
             known = self._together.get(function)
-            if known is None or known.parts != parts:
-                declared = DeclaredUniforms([p.module for p in parts])
-                known = self._together[function] = Parts(parts, declared)
+            if known is None or (known.parts, known.frames) != (parts, frames):
+                declared = DeclaredUniforms([p.module for p in (*parts, *frames)])
+                known = self._together[function] = Parts(parts, declared, read, frames)
             return known
 
     def lower(self, function: Func | Composed | LangFunction, types: Types) -> Lowered:
         """Lower the function; the result is cached while the captured constants are unchanged."""
         if isinstance(function, LangFunction):
             return Lowered.of(function, types)
+        if isinstance(function, Received):
+            return function.lowered
         with self._lock:
             known = self._lowered.setdefault(function, {})
             lowered = known.get(types)
@@ -133,6 +180,13 @@ class ValueOf(Composed):
     """A function without parameters that returns the value of an expression."""
 
     def __init__(self, expression: Expression) -> None:
+        """Keep the expression.
+
+        Raises:
+            TypeError: It depends on the cell or on the place.
+        """
+        if places_in(expression):
+            raise TypeError("the cell and the place are known only where a shape is evaluated")
         self._expression = expression
         self.name, self.signature, self.result = "value", (), expression.type
 
@@ -144,9 +198,19 @@ class ValueOf(Composed):
 
 
 def reads_time(module: Module) -> bool:
-    """Return whether a picture's module, before the passes, reads the time."""
+    """Return whether a picture's module, before the passes, reads what changes with time."""
+    if any(isinstance(r.source, LiveTexture) for r in module.resources):
+        return True
     entered = run_passes(module, get_target("glsl-es300"), after="entry")
-    return any(u.origin is Origin.FRAME and u.name == "time" for u in entered.uniforms)
+    return any(u.origin is Origin.FRAME and u.name in _MOVING for u in entered.uniforms)
+
+
+def keeps_frames(module: Module) -> bool:
+    """Return whether a picture's module, before the passes, reads what changes with each frame."""
+    if any(isinstance(r.source, LiveTexture | ImageInput) for r in module.resources):
+        return True
+    entered = run_passes(module, get_target("glsl-es300"), after="entry")
+    return any(u.origin is Origin.FRAME and u.name in _OF_FRAMES for u in entered.uniforms)
 
 
 def all_values(

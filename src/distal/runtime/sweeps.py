@@ -3,15 +3,12 @@
 Input: a function, and values of its arguments, many rows at once. Output: two ends for each float
 of the result, one row for each row of arguments. They hold for every time and for the declared
 ranges of parameters; where nothing is known, they are infinite. The follower of ``tape.from_ir``
-computes with intervals in place of operations of a tape.
-
-Source: R. E. Moore, R. B. Kearfott, M. J. Cloud, "Introduction to Interval Analysis" (2009).
+computes with intervals (``tape.interval_rules``) in place of operations of a tape.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias
 
@@ -21,22 +18,23 @@ from numpy.typing import NDArray
 from distal.backends import get_target
 from distal.backends.llvm.lanes import leaf_count
 from distal.compiler.driver import run_passes
-from distal.ir.intrinsics import INTRINSICS, Trend
+from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import Origin, UniformDeclaration
 from distal.ir.types import FLOAT, INT, Kind, component_count
 from distal.runtime.function_tapes import buffers_of
 from distal.runtime.lowered import Lowered
 from distal.tape.from_ir import PRECISION, followed
+from distal.tape.interval_rules import Ends, interval_of, is_elementary
 from distal.tape.scalars import Scalar, Scalars, Varying
 from distal.tape.tape import TapeError
 
-Ends: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64]]
+# The values of a parameter, (n,) or (n, components); or their lower and their upper ends.
+Column: TypeAlias = "NDArray[np.float64] | tuple[NDArray[np.float64], NDArray[np.float64]]"
 
 # Before common functions are put into their callers, which makes expressions longer.
 _LAST_PASS: Final = "specialise-prelude"
 # What elementary functions may differ from exact results, for each unit of the result and in all.
 _WIDER: Final = 1e-5
-_TURN: Final = 2.0 * math.pi
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,8 +72,7 @@ class _IntervalScalars(Scalars):
             return known
         ends = [_ends(operand) for operand in operands]
         with np.errstate(all="ignore"):
-            rule = _RULES.get(name)
-            low, high = rule(*ends) if rule else _elementary(name, *ends)
+            low, high = _elementary(name, ends) if is_elementary(name) else interval_of(name, *ends)
         return swept(low, high, name, operands)
 
     def cast(self, a: Scalar, source: Kind, target: Kind) -> Scalar:
@@ -126,129 +123,31 @@ def _same(a: Scalar, b: Scalar) -> bool:
     return a is b or (not isinstance(a, Varying) and a == b)
 
 
-# Rules of operations: the ends of the operands, and those of the result.
-
-
-def _product(a: Any, b: Any) -> Any:
-    """Return a product of ends; numbers are finite, so 0 times an infinite end is 0."""
-    return np.where((a == 0.0) | (b == 0.0), 0.0, a * b)
-
-
-def _multiplied(a: Ends, b: Ends) -> Ends:
-    corners = [_product(x, y) for x in a for y in b]
-    return np.minimum.reduce(corners), np.maximum.reduce(corners)
-
-
-def _divided(a: Ends, b: Ends) -> Ends:
-    crosses = (b[0] <= 0.0) & (b[1] >= 0.0)
-    inverse = np.where(crosses, -np.inf, 1.0 / b[1]), np.where(crosses, np.inf, 1.0 / b[0])
-    return _multiplied(a, inverse)
-
-
-def _magnitude(a: Ends) -> Ends:
-    least = np.maximum(np.maximum(a[0], -a[1]), 0.0)
-    return least, np.maximum(np.abs(a[0]), np.abs(a[1]))
-
-
-def _squared(a: Ends) -> Ends:
-    low, high = _magnitude(a)
-    return low * low, high * high
-
-
-def _selected(condition: Ends, yes: Ends, no: Ends) -> Ends:
-    never, always = condition[1] <= 0.0, condition[0] > 0.0
-    low = np.where(always, yes[0], np.where(never, no[0], np.minimum(yes[0], no[0])))
-    high = np.where(always, yes[1], np.where(never, no[1], np.maximum(yes[1], no[1])))
-    return low, high
-
-
-def _powered(a: Ends, b: Ends) -> Ends:
-    corners = [np.power(x, y) for x in a for y in b]
-    known = a[0] > 0.0
-    low = np.where(known, np.minimum.reduce(corners), -np.inf)
-    return _widened(low, np.where(known, np.maximum.reduce(corners), np.inf))
-
-
-def _each(function: Callable[[Any], Any]) -> Callable[[Ends], Ends]:
-    return lambda a: (function(a[0]), function(a[1]))
-
-
-_RULES: Final[dict[str, Callable[..., Ends]]] = {
-    "add": lambda a, b: (a[0] + b[0], a[1] + b[1]),
-    "sub": lambda a, b: (a[0] - b[1], a[1] - b[0]),
-    "mul": _multiplied,
-    "div": _divided,
-    "min": lambda a, b: (np.minimum(a[0], b[0]), np.minimum(a[1], b[1])),
-    "max": lambda a, b: (np.maximum(a[0], b[0]), np.maximum(a[1], b[1])),
-    "neg": lambda a: (-a[1], -a[0]),
-    "abs": _magnitude,
-    "square": _squared,
-    "sqrt": _each(lambda end: np.sqrt(np.maximum(end, 0.0))),
-    "floor": _each(np.floor),
-    "ceil": _each(np.ceil),
-    "round": _each(np.rint),
-    "trunc": _each(np.trunc),
-    "less": lambda a, b: (a[1] < b[0], a[0] < b[1]),
-    "less_equal": lambda a, b: (a[1] <= b[0], a[0] <= b[1]),
-    "equal": lambda a, b: (
-        (a[0] == a[1]) & (b[0] == b[1]) & (a[0] == b[0]),
-        (a[0] <= b[1]) & (b[0] <= a[1]),
-    ),
-    "select": _selected,
-    "pow": _powered,
-    "atan2": lambda y, x: (-np.full_like(y[0] + x[0], 3.15), np.full_like(y[0] + x[0], 3.15)),
-}
-
-
-def _elementary(name: str, *operands: Ends) -> Ends:
-    """Return the interval of an elementary function, by its trend."""
-    trend = INTRINSICS[name].trend if name in INTRINSICS else Trend.UNKNOWN
-    (low, high), *_ = operands
-    if trend is Trend.WAVE:
-        return _wave(low, high, 0.5 * math.pi if name == "sin" else 0.0)
-    if trend is Trend.EVEN:
-        low, high = _magnitude((low, high))
-        trend = Trend.RISING
+def _elementary(name: str, operands: Sequence[Ends]) -> Ends:
+    """Return the interval of an elementary function, as exact as on any target."""
     row = INTRINSICS.get(name)
-    if row is None or row.meaning is None or trend not in (Trend.RISING, Trend.FALLING):
-        return np.full_like(low, -np.inf), np.full_like(low, np.inf)
-    if row.held is not None:
-        low, high = (np.clip(end, row.held.low, row.held.high) for end in (low, high))
-    ends = row.meaning(np, low), row.meaning(np, high)
-    return _widened(*(ends if trend is Trend.RISING else ends[::-1]), row.rtol + row.atol)
+    if row is not None and row.held is not None:
+        ((low, high),) = operands
+        least, most = row.held.limits(32)
+        operands = ((np.clip(low, least, most), np.clip(high, least, most)),)
+    low, high = interval_of(name, *operands)
+    return _widened(low, high, _WIDER if row is None else max(_WIDER, row.rtol + row.atol))
 
 
-def _wave(low: Any, high: Any, peak: float) -> Ends:
-    """Return the interval of a sine with a peak of 1 at ``peak``."""
-    ends = np.cos(low - peak), np.cos(high - peak)
-    known = np.isfinite(low) & np.isfinite(high)
-
-    def contains(place: float) -> Any:
-        turns = np.ceil((low - place) / _TURN - _WIDER) <= np.floor((high - place) / _TURN + _WIDER)
-        return turns | ~known
-
-    least, most = np.minimum(*ends), np.maximum(*ends)
-    least = np.where(contains(peak + math.pi), -1.0, least)
-    return _widened(least, np.where(contains(peak), 1.0, most))
-
-
-def _widened(low: Any, high: Any, by: float = _WIDER) -> Ends:
+def _widened(low: Any, high: Any, by: float) -> Ends:
     return low - by * (1.0 + np.abs(low)), high + by * (1.0 + np.abs(high))
 
 
-def sweep(lowered: Lowered, columns: Sequence[NDArray[np.float64]]) -> list[Ends]:
+def sweep(lowered: Lowered, columns: Sequence[Column]) -> list[Ends]:
     """Return the two ends of each float of a function's result.
 
     Args:
         lowered: The function.
-        columns: The values of each parameter: (n,) or (n, components).
+        columns: The values of each parameter, or their ends.
     """
     module = run_passes(lowered.module, get_target("llvm"), PRECISION, after=_LAST_PASS)
     entry = module.function(module.entry)
-    args = [
-        tuple(swept(part, part) for part in (column.T if column.ndim > 1 else (column,)))
-        for column in columns
-    ]
+    args = [_of_column(column) for column in columns]
     uniforms = {u.name: _of_uniform(u) for u in module.uniforms if u.origin is not Origin.NUMBER}
     try:
         found = followed(module, args, uniforms, buffers_of(module), _IntervalScalars())
@@ -256,6 +155,14 @@ def sweep(lowered: Lowered, columns: Sequence[NDArray[np.float64]]) -> list[Ends
         # It has something without an interval.
         return [(np.array(-np.inf), np.array(np.inf))] * leaf_count(entry.result)
     return [_ends(scalar) for scalar in found]
+
+
+def _of_column(column: Column) -> tuple[Scalar, ...]:
+    """Return the scalars of a parameter, one for each component."""
+    low, high = column if isinstance(column, tuple) else (column, column)
+    if low.ndim == 1:
+        return (swept(low, high),)
+    return tuple(map(swept, low.T, high.T))
 
 
 def _of_uniform(uniform: UniformDeclaration) -> tuple[Scalar, ...]:

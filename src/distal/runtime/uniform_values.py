@@ -97,6 +97,17 @@ def frame_values(options: RenderOptions) -> dict[str, Any]:
         "resolution": (float(width), float(height)),
         "time": options.time,
         "mouse": options.mouse,
-        "index": (options.index + 2**31) % 2**32 - 2**31,
+        "index": ((options.index or 0) + 2**31) % 2**32 - 2**31,
         "seed": options.seed & 0xFFFFFFFF,
+        "delta": options.delta,
+        "date": options.date,
+        "buttons": options.buttons,
     }
+
+
+def chosen_uniforms(
+    declared: DeclaredUniforms, options: RenderOptions
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the values of the parameters, and those of the frame and of the scene's numbers."""
+    values = declared.parameter_values(options.params)
+    return values, {**declared.number_values(options.settings), **frame_values(options)}

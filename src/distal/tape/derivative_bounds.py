@@ -93,7 +93,7 @@ def _largest(interval: Doubles) -> Doubles:
     return found
 
 
-def _power(base: Doubles, exponent: Doubles, slope: Doubles) -> tuple[Doubles, Doubles]:
+def power_factors(base: Doubles, exponent: Doubles, slope: Doubles) -> tuple[Doubles, Doubles]:
     """Return the derivatives of ``pow`` along both arguments; NaN where one is not bounded.
 
     Args:
@@ -116,7 +116,7 @@ def _power(base: Doubles, exponent: Doubles, slope: Doubles) -> tuple[Doubles, D
     return along_base, np.where(slope == 0.0, 0.0, along_exponent)
 
 
-def _angle(y: Doubles, x: Doubles) -> tuple[Doubles, Doubles]:
+def angle_factors(y: Doubles, x: Doubles) -> tuple[Doubles, Doubles]:
     """Return the derivatives of ``atan2``; NaN where it jumps from -pi to pi, and at (0, 0)."""
     smooth = (x[0] > 0.0) | (y[0] > 0.0) | (y[1] < 0.0)
     squares = np.where(smooth, _square(x) + _square(y), np.nan)
@@ -127,6 +127,53 @@ def _angle(y: Doubles, x: Doubles) -> tuple[Doubles, Doubles]:
     # No component is larger than one over the distance.
     most = 1.0 / np.sqrt(squares[0])
     return np.clip(along_y, -most, most), np.clip(along_x, -most, most)
+
+
+def factor_of(name: str, value: Doubles, result: Doubles) -> Doubles:
+    """Return the interval of the derivative of a function of one number; NaN if none is known.
+
+    Args:
+        name: The function.
+        value: The interval of its operand.
+        result: The interval of its result.
+    """
+    ones = np.ones_like(value)
+    match name:
+        case "neg":
+            return -ones
+        case "abs":
+            low = np.where(value[0] > 0.0, 1.0, -1.0)
+            return np.stack([low, np.where(value[1] < 0.0, -1.0, 1.0)])
+        case "square":
+            return 2.0 * value
+        case "sin":
+            return _cosine(value)
+        case "cos":
+            return _cosine(value + 0.5 * np.pi)
+        case "exp":
+            return result
+        case "exp2":
+            return _LOG_2 * result
+        case "log" | "log2":
+            inverse = np.where(value[0] > 0.0, _inverse(value), np.nan)
+            return inverse / _LOG_2 if name == "log2" else inverse
+        case "asin" | "acos":
+            rest = 1.0 - np.minimum(_square(value), 1.0)[::-1]
+            slope = 1.0 / np.sqrt(rest[::-1])
+            return slope if name == "asin" else -slope[::-1]
+        case "atan":
+            return 1.0 / (1.0 + _square(value)[::-1])
+        case "tan":
+            return 1.0 + _square(result)
+        case "sinh":
+            nearest = np.maximum(np.maximum(value[0], -value[1]), 0.0)
+            return np.stack([np.cosh(nearest), np.cosh(_largest(value))])
+        case "cosh":
+            return np.stack([np.sinh(value[0]), np.sinh(value[1])])
+        case "tanh":
+            return np.clip(1.0 - _square(result)[::-1], 0.0, 1.0)
+        case _:
+            return np.full_like(value, np.nan)
 
 
 class Derivatives:
@@ -180,7 +227,7 @@ class Derivatives:
                 terms = self._terms(self._clamped(a), _INVERSE[name])
                 if terms is not None:
                     return self._mean(terms)
-            factor = self._factor(name, self._values[a], self._values[index])
+            factor = factor_of(name, self._values[a], self._values[index])
             if name in _HELD:  # beyond its limit, the function is constant
                 beyond = _largest(self._values[a]) >= _HELD[name]
                 factor = np.where(beyond, _hull(factor, 0.0 * factor), factor)
@@ -208,51 +255,11 @@ class Derivatives:
                 length = np.where(first, la, np.where(second, lb, np.maximum(la, lb)))
                 return interval, length
             case "pow" | "atan2":
-                factors = _power(va, vb, lb) if name == "pow" else _angle(va, vb)
+                factors = power_factors(va, vb, lb) if name == "pow" else angle_factors(va, vb)
                 interval = _times(factors[0], da) + _times(factors[1], db)
                 return interval, _largest(factors[0]) * la + _largest(factors[1]) * lb
             case _:
                 return np.full(shape, np.nan), np.full(shape[-1], np.nan)
-
-    def _factor(self, name: str, value: Doubles, result: Doubles) -> Doubles:
-        """Return the interval of the derivative of a function of one number."""
-        ones = np.ones_like(value)
-        match name:
-            case "neg":
-                return -ones
-            case "abs":
-                low = np.where(value[0] > 0.0, 1.0, -1.0)
-                return np.stack([low, np.where(value[1] < 0.0, -1.0, 1.0)])
-            case "square":
-                return 2.0 * value
-            case "sin":
-                return _cosine(value)
-            case "cos":
-                return _cosine(value + 0.5 * np.pi)
-            case "exp":
-                return result
-            case "exp2":
-                return _LOG_2 * result
-            case "log" | "log2":
-                inverse = np.where(value[0] > 0.0, _inverse(value), np.nan)
-                return inverse / _LOG_2 if name == "log2" else inverse
-            case "asin" | "acos":
-                rest = 1.0 - np.minimum(_square(value), 1.0)[::-1]
-                slope = 1.0 / np.sqrt(rest[::-1])
-                return slope if name == "asin" else -slope[::-1]
-            case "atan":
-                return 1.0 / (1.0 + _square(value)[::-1])
-            case "tan":
-                return 1.0 + _square(result)
-            case "sinh":
-                nearest = np.maximum(np.maximum(value[0], -value[1]), 0.0)
-                return np.stack([np.cosh(nearest), np.cosh(_largest(value))])
-            case "cosh":
-                return np.stack([np.sinh(value[0]), np.sinh(value[1])])
-            case "tanh":
-                return np.clip(1.0 - _square(result)[::-1], 0.0, 1.0)
-            case _:
-                return np.full_like(value, np.nan)
 
     def _mean(self, terms: list[int]) -> tuple[Doubles, Doubles]:
         """Return the derivative of ``log(exp(a) + exp(b) + …)``, a smooth union.

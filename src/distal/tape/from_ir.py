@@ -50,6 +50,7 @@ def tape_of(
     module: Module,
     uniforms: Mapping[str, Any] | None = None,
     resources: Mapping[str, Any] | None = None,
+    precision: int = 32,
 ) -> Tape:
     """Return the tape of a function of a point.
 
@@ -57,12 +58,14 @@ def tape_of(
         module: The module; its entry takes a vec2 or vec3 and returns a float.
         uniforms: Values of uniforms by name; the others have their defaults.
         resources: Buffers by name: arrays with one row for each element.
+        precision: The bits of constants: 32, or 64 for ``box_tape``.
 
     Raises:
         TapeError: The function cannot be a tape: it has loops whose length differs from point to
             point, textures, whole numbers that differ from point to point, or is too long.
     """
-    walker = _CallFollower(module, uniforms or {}, resources or {})
+    scalars = Scalars(precision)
+    walker = _CallFollower(module, uniforms or {}, resources or {}, scalars)
     entry = module.function(module.entry)
     size = component_count(entry.params[0].type)
     point = tuple(walker.scalars.operation(axis) for axis in "xyz"[:size])

@@ -13,7 +13,7 @@ from typing import Final, NoReturn, TypeAlias
 from distal.ir.constant_arithmetic import COMPARE, ConstantArithmetic, NotFoldableError, Number
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.intrinsics.folding import ConstantCall
-from distal.ir.limits import SMALLEST
+from distal.ir.limits import Held, smallest
 from distal.ir.nodes import BinaryOp, CompareOp, UnaryOp
 from distal.ir.types import Kind
 from distal.tape.operations import ELEMENTARY
@@ -51,11 +51,15 @@ _OTHER_NAMES: Final = {"raw_power": "pow", "raw_atan2": "atan2"}
 
 
 class Scalars:
-    """Computes constants, and collects the operations of a tape."""
+    """Computes constants, and collects the operations of a tape.
 
-    def __init__(self) -> None:
+    Args:
+        precision: The bits of a float, 32 or 64.
+    """
+
+    def __init__(self, precision: int = 32) -> None:
         self.builder = TapeBuilder()
-        self._constants = ConstantArithmetic(32)
+        self._constants = ConstantArithmetic(precision)
 
     def value(self, scalar: Scalar) -> int:
         """Return the number of a scalar's value on the tape."""
@@ -215,7 +219,9 @@ class Scalars:
             negative = self.select(self.compare(CompareOp.LT, args[0], 0.0), -1.0, 0.0)
             return self.select(self.compare(CompareOp.GT, args[0], 0.0), 1.0, negative)
         if name == "inversesqrt":
-            root = self.operation("sqrt", self.operation("max", args[0], SMALLEST))
+            root = self.operation(
+                "sqrt", self.operation("max", args[0], smallest(self._constants.precision))
+            )
             return self.operation("div", 1.0, root)
         raise TapeError(f"'{name}' is no operation of a tape")
 
@@ -225,8 +231,8 @@ class Scalars:
         if len(constants) != len(args):
             return None
         rule = INTRINSICS[name]
-        held = rule.held
-        numbers: list[Number] = [min(max(a, held.low), held.high) if held else a for a in constants]
+        least, most = (rule.held or Held()).limits(self._constants.precision)
+        numbers: list[Number] = [min(max(a, least), most) if rule.held else a for a in constants]
         call = ConstantCall(tuple((n,) for n in numbers), kind, kind, self._constants)
         try:
             return rule.fold(call)[0]

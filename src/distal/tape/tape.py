@@ -40,10 +40,12 @@ class Tape:
         operations: One row for each operation, as ``layout.OPERATION_FIELDS``; operation i writes
             value i, and its operands are values before it. The last one is the result.
         constants: The constants.
+        numbers: The constants before they were rounded to 32 bits.
     """
 
     operations: NDArray[np.uint16]
     constants: NDArray[np.float32]
+    numbers: NDArray[np.float64]
 
     def __len__(self) -> int:
         return len(self.operations)
@@ -139,7 +141,7 @@ class TapeBuilder:
         operations = np.array(table, np.uint16).reshape(-1, len(OPERATION_FIELDS))
         with np.errstate(over="ignore"):
             numbers = np.array([self._numbers[i] for i in constants], np.float64)
-            return Tape(operations, numbers.astype(np.float32))
+            return Tape(operations, numbers.astype(np.float32), numbers)
 
 
 _OPERANDS: Final = [row.operands for row in OPERATIONS]

@@ -20,7 +20,7 @@ from distal.backends.clike.code import Code
 from distal.backends.clike.keywords import isf_picture_names
 from distal.backends.clike.module_names import ModuleNames
 from distal.backends.clike.names import Namer, Reserved
-from distal.backends.glsl.targets import ISF_MOUSE
+from distal.backends.glsl.targets import ISF_MOUSE, refuse_live_textures
 from distal.backends.glsl.writer import Glsl100Writer
 from distal.diagnostics import CompileError
 from distal.ir.nodes import Module, Origin, Resource, ResourceDeclaration, UniformDeclaration
@@ -74,6 +74,7 @@ class IsfHeader:
             "INPUTS": inputs,
         }
         resources = {r.name: namer.name(r.name) for r in module.resources}
+        refuse_live_textures(module.resources, "ISF")
         if resources:
             paths = {resources[r.name]: {"PATH": _file_name(r)} for r in module.resources}
             described["IMPORTED"] = paths

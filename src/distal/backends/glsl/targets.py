@@ -25,6 +25,7 @@ from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import ResourceDeclaration
 from distal.ir.target import LARGEST_TABLE, FramePlace
 from distal.ir.types import Buffer, Texture, TextureShape
+from distal.lang.live_textures import LiveTexture
 
 ISF_MOUSE: Final = "mouse"
 SHADERTOY_CHANNELS: Final = 4
@@ -115,12 +116,28 @@ def shadertoy_channels(resources: Resources) -> dict[str, str]:
     return {resource.name: f"iChannel{i}" for i, resource in enumerate(resources)}
 
 
+def refuse_live_textures(resources: Resources, host: str) -> None:
+    """Check that a picture reads nothing that changes with each frame.
+
+    Raises:
+        CompileError: It does, and the host cannot provide it.
+    """
+    for resource in resources:
+        if isinstance(resource.source, LiveTexture):
+            raise CompileError.at(
+                f"{host} has no {resource.source.shown}, and the picture reads '{resource.name}'",
+                None,
+                "Shadertoy and a page have it",
+            )
+
+
 def canvas_textures(resources: Resources) -> dict[str, str]:
     """Return glslCanvas's name for each resource: the textures of ``data-textures``, in order.
 
     Raises:
         CompileError: There is a resource that is not a flat texture.
     """
+    refuse_live_textures(resources, "glslCanvas")
     for resource in resources:
         if not isinstance(resource.type, Texture) or resource.type.shape is not TextureShape.FLAT:
             raise CompileError.at(
@@ -157,6 +174,9 @@ _SHADERTOY = GlslTarget(
         "time": "iTime",
         "mouse": "iMouse",
         "index": "iFrame",
+        "delta": "iTimeDelta",
+        "date": "iDate",
+        "buttons": "(iMouse.z > 0.0 ? 1 : 0)",
     },
     host_names=SHADERTOY_NAMES,
     host_macros=SHADERTOY_MACROS,
@@ -185,6 +205,9 @@ _WEBGL_1 = GlslTarget(
         # The host provides the mouse's position, but not its buttons.
         "mouse": "vec4(u_mouse, 0.0, 0.0)",
         "index": "u_frame",
+        "delta": "u_delta",
+        "date": "u_date",
+        "buttons": "u_buttons",
     },
     host_names=GLSL_CANVAS_NAMES,
 )
@@ -219,6 +242,9 @@ _ISF = replace(
         # The host has no mouse: an additional input is its position, as a fraction of the picture.
         "mouse": f"vec4({ISF_MOUSE} * RENDERSIZE, 0.0, 0.0)",
         "index": "FRAMEINDEX",
+        "delta": "TIMEDELTA",
+        "date": "DATE",
+        "buttons": "0",
     },
     host_names=ISF_NAMES,
     host_prefixes=ISF_PREFIXES,

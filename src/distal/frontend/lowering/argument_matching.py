@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from distal.frontend.function_body import FunctionBody
@@ -20,7 +20,12 @@ from distal.frontend.signatures.annotations import (
     choices,
     to_type,
 )
-from distal.frontend.signatures.signatures import MISSING, FunctionSignature, SignatureParameter
+from distal.frontend.signatures.signatures import (
+    MISSING,
+    FunctionSignature,
+    SignatureParameter,
+    element_annotation,
+)
 from distal.frontend.types.coercion import (
     callable_hint,
     coerce,
@@ -32,18 +37,25 @@ from distal.frontend.types.coercion import (
     vector_type,
 )
 from distal.frontend.types.python_objects import RefusedError, value_of
-from distal.frontend.values import Closure, Static, Value, Whole
+from distal.frontend.values import Closure, SequenceValue, Static, Value, Whole
 from distal.ir.build import splat
-from distal.ir.nodes import Expr
-from distal.ir.types import FLOAT, INT, FunctionType, Scalar, Type, Vector
+from distal.ir.nodes import Construct, Expr
+from distal.ir.types import FLOAT, INT, Array, FunctionType, Scalar, Type, Vector
 
 
 @dataclass(frozen=True, slots=True)
 class Argument:
-    """An argument's value and its source node; a default has the node of the call."""
+    """An argument.
+
+    Attributes:
+        value: Its value.
+        node: Its source node; a default has the node of the call.
+        parts: The arguments that a parameter ``*values`` collects.
+    """
 
     value: Value
     node: ast.expr
+    parts: tuple[Argument, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,10 +89,15 @@ def pair(
     name = signature.name
     positional = [p for p in signature.parameters if p.positional]
     hint = signature.text()
-    if len(args) > len(positional):
+    collecting = next((p for p in signature.parameters if p.collects), None)
+    if len(args) > len(positional) and collecting is None:
         count = f"{len(positional)} argument{'' if len(positional) == 1 else 's'}"
         raise body.problem(f"'{name}' takes {count}, got {len(args)}", node, hint)
     given = {p.name: a for p, a in zip(positional, args, strict=False)}
+    if collecting is not None and len(args) > len(positional):
+        rest = args[len(positional) :]
+        values = SequenceValue(tuple(a.value for a in rest), is_list=True)
+        given[collecting.name] = Argument(values, rest[0].node, tuple(rest))
     known = {p.name for p in signature.parameters if p.by_keyword}
     for keyword, argument in keywords.items():
         if keyword not in known:
@@ -160,6 +177,10 @@ def _coerce_argument(
     type: Type,
     argument: Argument,
 ) -> Expr:
+    if argument.parts and isinstance(type, Array):
+        one = replace(parameter, annotation=element_annotation(parameter), collects=False)
+        parts = [_coerce_argument(body, signature, one, type.element, a) for a in argument.parts]
+        return Construct(tuple(parts), type)
     value, node = argument.value, argument.node
     if isinstance(parameter.annotation, TypeVar) and isinstance(type, Vector):
         scalar = Scalar(type.kind)
@@ -184,8 +205,9 @@ def _bind(
     bindings: dict[TypeVar, Type] = {}
     groups: dict[TypeVar, list[Argument]] = {}
     for parameter, argument in zip(signature.parameters, args, strict=True):
-        if isinstance(parameter.annotation, TypeVar):
-            groups.setdefault(parameter.annotation, []).append(argument)
+        annotation = element_annotation(parameter)
+        if isinstance(annotation, TypeVar):
+            groups.setdefault(annotation, []).extend(argument.parts or (argument,))
     for variable, group in groups.items():
         bindings[variable] = _bound(body, signature, variable, group)
     return bindings
@@ -249,6 +271,11 @@ def _parameter_closeness(
     bindings: dict[TypeVar, Type],
 ) -> int | None:
     type = parameter_type(body, parameter, bindings)
+    if argument.parts and isinstance(type, Array):
+        one = replace(parameter, annotation=element_annotation(parameter), collects=False)
+        scores = [_parameter_closeness(body, one, a, bindings) for a in argument.parts]
+        known = [s for s in scores if s is not None]
+        return min(known) if len(known) == len(scores) else None
     value = argument.value
     if isinstance(type, FunctionType):
         return 2 if is_callable(value) else None

@@ -6,14 +6,14 @@ import ast
 
 from distal.frontend.function_body import FunctionBody, Variable
 from distal.frontend.lowering.expressions import element, member
+from distal.frontend.lowering.lowered_nodes import parts_of
 from distal.frontend.problems import FollowupError, SceneError
 from distal.frontend.source import Node
 from distal.frontend.types.coercion import coerce, conversion_hint, shown_type, with_default_type
 from distal.frontend.types.operators import binary
 from distal.frontend.values import Closure, SequenceValue, Static, Value, Whole
-from distal.ir.build import integer
-from distal.ir.nodes import Assign, Const, Expr, Field, Index, Read, Swizzle, Uniform
-from distal.ir.types import FLOAT, INT, Array, Scalar, Struct, Type, Vector, is_static
+from distal.ir.nodes import Assign, Const, Expr, Field, Read, Swizzle, Uniform
+from distal.ir.types import FLOAT, INT, Type, is_static
 from distal.ir.walk import nodes_in
 
 
@@ -142,6 +142,10 @@ def _root(body: FunctionBody, target: ast.Name) -> Expr:
         message = f"'{target.id}' belongs to the module or to an outer function and cannot change"
         raise body.problem(message, target, f"copy it first: local = {target.id}")
     local(body, target)
+    if target.id == body.self_name:
+        message = f"'{target.id}' is a copy of the struct, which a method cannot change"
+        hint = f"copy it first, result = {target.id}, and return the copy"
+        raise body.problem(message, target, hint)
     if variable.failed:
         raise FollowupError
     if variable.static is not None:
@@ -154,7 +158,7 @@ def _root(body: FunctionBody, target: ast.Name) -> Expr:
 def _unpack(
     body: FunctionBody, target: ast.expr, elements: list[ast.expr], value: Value, stmt: ast.stmt
 ) -> None:
-    items = _items(body, value, len(elements), target, stmt)
+    items = unpacked_items(body, value, len(elements), target, value_node(stmt))
     if len(items) > 1 and _depend(body, items, elements):
         # Copy all values before the first target changes: a, b = b, a.
         items = [_held(body, i) for i in items]
@@ -190,31 +194,32 @@ def _reads(value: Value, names: set[str]) -> bool:
             return any(isinstance(e, Read) and e.name in names for e in nodes_in(value))
 
 
-def _items(
-    body: FunctionBody, value: Value, count: int, target: ast.expr, stmt: ast.stmt
+def unpacked_items(
+    body: FunctionBody, value: Value, count: int, target: ast.expr, node: Node
 ) -> list[Value]:
+    """Return the values for several targets.
+
+    Args:
+        body: The function being lowered.
+        value: The value to unpack.
+        count: The number of targets.
+        target: The targets, for errors.
+        node: The node of the value, for errors.
+
+    Raises:
+        SceneError: The value has another number of parts, or none.
+    """
     if isinstance(value, SequenceValue):
         items = list(value.items)
     else:
-        items = _parts(body, with_default_type(body, value, value_node(stmt)), stmt)
+        expr = with_default_type(body, value, node)
+        parts = parts_of(body, expr)
+        if parts is None:
+            raise body.problem(f"{expr.type} does not unpack", node)
+        items = parts
     if len(items) != count:
         raise body.problem(f"{count} names cannot take {len(items)} values", target)
     return items
-
-
-def _parts(body: FunctionBody, value: Expr, stmt: ast.stmt) -> list[Value]:
-    match value.type:
-        case Struct(_, fields, True):
-            held = body.bind("values", value)
-            return [Field(held, name, type) for name, type in fields]
-        case Vector(kind, size):
-            held = body.bind("values", value)
-            return [Swizzle(held, lane, Scalar(kind)) for lane in "xyzw"[:size]]
-        case Array(element_type, length):
-            held = body.bind("values", value)
-            return [Index(held, integer(i), element_type) for i in range(length)]
-        case _:
-            raise body.problem(f"{value.type} does not unpack", value_node(stmt))
 
 
 def augment(body: FunctionBody, stmt: ast.AugAssign) -> None:

@@ -91,7 +91,9 @@ def call_builtin(
         message = (
             f"'{intrinsic.name}' takes {_counted(len(intrinsic.args), 'argument')}, got {len(args)}"
         )
-        raise body.problem(message, node, signature_text(intrinsic))
+        two_of_atan = intrinsic.name == "atan" and len(args) == 2
+        hint = "atan2(y, x)" if two_of_atan else signature_text(intrinsic)
+        raise body.problem(message, node, hint)
     if intrinsic.name == "pow" and not isinstance(args[1], SequenceValue | Static | Closure):
         return power(body, args[0], args[1], node)
     types = tuple(None if isinstance(a, Whole) else default_type(a) for a in args)

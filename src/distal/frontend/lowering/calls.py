@@ -12,9 +12,16 @@ from typing import Any, Final
 
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.lowering.builtin_calls import PYTHON_FUNCTIONS, call_builtin
+from distal.frontend.lowering.lowered_nodes import LoweredNode, methods_of, unstarred
+from distal.frontend.other_languages import COUNTERPARTS
 from distal.frontend.problems import SceneError
 from distal.frontend.signatures.annotations import AnnotationError, to_type
-from distal.frontend.types.coercion import coerce_or_raise, shown_type, with_default_type
+from distal.frontend.types.coercion import (
+    coerce_or_raise,
+    last_frame,
+    shown_type,
+    with_default_type,
+)
 from distal.frontend.types.constructors import construct, construct_struct, length_of
 from distal.frontend.types.unification import unify_operands
 from distal.frontend.values import Closure, SequenceValue, Static, Value, Whole
@@ -33,6 +40,7 @@ from distal.ir.types import (
     FunctionType,
     Kind,
     Scalar,
+    Struct,
     Texture,
     TextureShape,
     Type,
@@ -57,8 +65,8 @@ _HINTS: Final[dict[Any, str]] = {
     builtins.print: "nothing is printed per pixel; return the value as a color to see it",
     builtins.sum: "add in a loop: for x in values: total += x",
     builtins.range: "range belongs in a for loop: for i in range(n)",
-    builtins.enumerate: "write for i in range(len(values))",
-    builtins.zip: "write for i in range(len(values))",
+    builtins.enumerate: "enumerate belongs in a for loop: for i, value in enumerate(values)",
+    builtins.zip: "zip belongs in a for loop: for a, b in zip(starts, ends)",
     builtins.sorted: "arrays have a fixed order here",
     builtins.map: "write a loop",
     builtins.divmod: "write a // b and a % b",
@@ -71,6 +79,9 @@ def lower_call(body: FunctionBody, node: ast.Call) -> Value:
     Raises:
         SceneError: The called value is not a function, or does not take these arguments.
     """
+    node = unstarred(body, node)
+    if isinstance(node.func, ast.Attribute):
+        node = _of_value(body, node, node.func)
     called = body.expression(node.func)
     match called:
         case Static(obj, text):
@@ -85,15 +96,26 @@ def lower_call(body: FunctionBody, node: ast.Call) -> Value:
             raise body.problem(f"{called.type} is not a function", node.func)
 
 
-def arguments(body: FunctionBody, node: ast.Call) -> list[Value]:
-    """Lower the positional arguments of a call.
+def _of_value(body: FunctionBody, node: ast.Call, func: ast.Attribute) -> ast.Call:
+    """Return ``ray.at(t)`` as a call of the method with ``ray`` as its first argument.
 
-    Raises:
-        SceneError: An argument is starred.
+    A call of anything else is returned with what stands before the dot lowered.
     """
-    for arg in node.args:
-        if isinstance(arg, ast.Starred):
-            raise body.problem("'*' in a call is not part of scene code", arg)
+    base = body.expression(func.value)
+    held: ast.expr = LoweredNode(base, func.value)
+    type = getattr(base, "type", None)
+    method = methods_of(type).get(func.attr)
+    if method is not None and not (isinstance(type, Struct) and type.field(func.attr)):
+        called = LoweredNode(Static(method, func.attr), func)
+        return ast.copy_location(ast.Call(called, [held, *node.args], node.keywords), node)
+    if isinstance(base, Static):
+        return node
+    attribute = ast.copy_location(ast.Attribute(held, func.attr, func.ctx), func)
+    return ast.copy_location(ast.Call(attribute, node.args, node.keywords), node)
+
+
+def arguments(body: FunctionBody, node: ast.Call) -> list[Value]:
+    """Lower the positional arguments of a call."""
     return [body.expression(a) for a in node.args]
 
 
@@ -168,6 +190,8 @@ def _not_scene_code(body: FunctionBody, obj: Any, text: str, node: ast.Call) -> 
             hint = f"make it outside of the function, shape = {text}(…), and call shape(p) here"
         elif isinstance(obj, type) and hasattr(obj, "__annotations__"):
             hint = "write @struct above the class"
+        elif isinstance(name, str):
+            hint = COUNTERPARTS.get(name)
     if not callable(obj):
         noun = "a module" if isinstance(obj, ModuleType) else f"a {type(obj).__name__}"
         return body.problem(f"'{text}' is {noun}, not a function", node.func, hint)
@@ -241,7 +265,7 @@ def _gradient(body: FunctionBody, args: list[Value], node: ast.Call, *, with_val
 def _texture(
     body: FunctionBody, value: Value, name: str, node: ast.Call
 ) -> tuple[Expr, TextureShape]:
-    texture = with_default_type(body, value, node.args[0])
+    texture = last_frame(body, value) or with_default_type(body, value, node.args[0])
     if not isinstance(texture.type, Texture):
         raise body.problem(f"'{name}' takes a texture, not {texture.type}", node.args[0])
     return texture, texture.type.shape
@@ -262,7 +286,7 @@ def _texel(body: FunctionBody, args: list[Value], node: ast.Call) -> Value:
 
 
 def _size(body: FunctionBody, args: list[Value], node: ast.Call) -> Value:
-    resource = with_default_type(body, args[0], node.args[0])
+    resource = last_frame(body, args[0]) or with_default_type(body, args[0], node.args[0])
     match resource.type:
         case Texture(shape):
             return Size(resource, IVEC3 if shape is TextureShape.VOLUME else IVEC2)

@@ -192,9 +192,9 @@ class Compilation:
     def adopt(self, type: Type) -> Type:
         """Return the type; a struct is renamed if another struct of the program has its name."""
         match type:
-            case Struct(name, fields, is_tuple):
+            case Struct(name, fields, is_tuple, owner):
                 inner = tuple((n, self.adopt(t)) for n, t in fields)
-                renamed = type if inner == fields else Struct(name, inner, is_tuple)
+                renamed = type if inner == fields else Struct(name, inner, is_tuple, owner)
                 return renamed if is_tuple else self._adopt_struct(renamed)
             case Array(element, length):
                 return Array(self.adopt(element), length)
@@ -210,7 +210,8 @@ class Compilation:
         position = same_name.index(struct)
         adopted = struct
         if position > 0:
-            adopted = Struct(f"{struct.name}_{position + 1}", struct.fields, False)
+            name = f"{struct.name}_{position + 1}"
+            adopted = Struct(name, struct.fields, False, struct.owner)
         self.record("struct", (struct,), adopted)
         return adopted
 

@@ -13,8 +13,8 @@ from distal.frontend.signatures.annotations import (
     admits,
     to_type,
 )
-from distal.frontend.signatures.signatures import MISSING, FunctionSignature
-from distal.ir.types import Type
+from distal.frontend.signatures.signatures import MISSING, FunctionSignature, element_annotation
+from distal.ir.types import Array, Type
 from distal.lang.functions import Func
 
 if TYPE_CHECKING:
@@ -34,12 +34,23 @@ def exact_instance(compilation: Compilation, func: Func, types: tuple[Type, ...]
     """
     signatures = [compilation.signature(o) for o in func.overloads]
     for signature in signatures:
+        signature = signature.collecting(_given(signature, types))
         bindings = exact_bindings(compilation, signature, types)
         if bindings is not None:
             return instantiate(compilation, signature, types, bindings, None)
     given = ", ".join(map(str, types)) or "nothing"
     hint = " or ".join(s.text() for s in signatures)
     raise SceneError(f"'{func.name}' does not take {given}", signatures[0].span, hint)
+
+
+def _given(signature: FunctionSignature, types: tuple[Type, ...]) -> int:
+    """Return how many positional arguments a call with these types of parameters had."""
+    count = 0
+    for parameter, type in zip(signature.parameters, types, strict=False):
+        if parameter.collects and isinstance(type, Array):
+            count += type.length
+        count += parameter.positional
+    return count
 
 
 def exact_bindings(
@@ -59,9 +70,11 @@ def exact_bindings(
         return None
     bindings: dict[TypeVar, Type] = {}
     for parameter, type in zip(signature.parameters, types, strict=True):
-        if isinstance(parameter.annotation, TypeVar) and (
-            not admits(parameter.annotation, type)
-            or bindings.setdefault(parameter.annotation, type) != type
+        variable = element_annotation(parameter)
+        if parameter.collects and isinstance(type, Array):
+            type = type.element
+        if isinstance(variable, TypeVar) and (
+            not admits(variable, type) or bindings.setdefault(variable, type) != type
         ):
             return None
     for parameter, type in zip(signature.parameters, types, strict=True):

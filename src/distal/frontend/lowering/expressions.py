@@ -13,7 +13,14 @@ from typing import Any, Final
 
 from distal.frontend.function_body import FunctionBody, Variable
 from distal.frontend.lowering.calls import arguments, lower_call
+from distal.frontend.lowering.lowered_nodes import (
+    LoweredNode,
+    lowered_value,
+    methods_of,
+    without_stars,
+)
 from distal.frontend.lowering.refusals import refusal
+from distal.frontend.other_languages import hint_for
 from distal.frontend.problems import did_you_mean
 from distal.frontend.types.coercion import coerce, constant_int, with_default_type
 from distal.frontend.types.constructors import repeated
@@ -94,7 +101,7 @@ def _name(body: FunctionBody, node: ast.Name) -> Value:
         return body.read(found, node)
     exists, obj = found
     if not exists:
-        hint = did_you_mean(node.id, body.names.known() | body.scopes.names)
+        hint = hint_for(node.id, body.names.known() | body.scopes.names)
         raise body.problem(f"'{node.id}' is not defined", node, hint)
     return object_value(body, obj, node.id, node)
 
@@ -167,6 +174,10 @@ def member(body: FunctionBody, value: Expr, name: str, node: ast.expr) -> Expr:
             close = did_you_mean(name, names)
             listed = f"fields: {', '.join(names)}"
             hint = f"{close} {listed}" if close else listed
+            if name in methods_of(value.type):
+                hint = f"it is a method: call it, {name}(...)"
+            elif callable(getattr(value.type.owner, name, None)):
+                hint = f"write @func above the def of '{name}'"
             raise body.problem(f"{value.type} has no field '{name}'", node, hint)
         case _:
             hint = ""
@@ -420,10 +431,7 @@ def _list(body: FunctionBody, node: ast.List) -> Value:
 
 
 def _items(body: FunctionBody, nodes: list[ast.expr]) -> tuple[Value, ...]:
-    for node in nodes:
-        if isinstance(node, ast.Starred):
-            raise body.problem("'*' is not part of scene code", node)
-    return tuple(body.expression(n) for n in nodes)
+    return tuple(body.expression(n) for n in without_stars(body, nodes))
 
 
 def _lambda(body: FunctionBody, node: ast.Lambda) -> Value:
@@ -478,4 +486,5 @@ _RULES: Final[dict[type[ast.expr], Callable[[FunctionBody, Any], Value]]] = {
     ast.Tuple: _tuple,
     ast.List: _list,
     ast.Lambda: _lambda,
+    LoweredNode: lowered_value,
 }

@@ -88,6 +88,10 @@ def _signature_value(
     parameters = [p for p in signature.parameters if p.positional]
     count = len(type.params)
     extra = signature.parameters[count:]
+    collecting = next((p for p in signature.parameters if p.collects), None)
+    if collecting is not None:
+        message = f"'{signature.name}' collects '*{collecting.name}', and is no function value"
+        raise body.problem(message, node, "pass a lambda that calls it")
     if len(parameters) < count or any(p.default is MISSING for p in extra):
         message = f"'{signature.name}' takes {len(parameters)} arguments where {type} is wanted"
         raise body.problem(message, node)

@@ -47,7 +47,8 @@ def call(
     """
     positional = [Argument(v, n) for v, n in zip(args, node.args, strict=True)]
     keywords = keyword_arguments(body, node)
-    signatures = [body.compilation.signature(o) for o in function.overloads]
+    count = len(positional)
+    signatures = [body.compilation.signature(o).collecting(count) for o in function.overloads]
     signature, paired = _choose(body, function, signatures, positional, keywords, node)
     if signature.problems:
         raise FollowupError
@@ -178,6 +179,8 @@ def lower_function(
     scopes = signature.definition.scopes
     body = FunctionBody(compilation, signature.name, signature.source, signature.names, scopes)
     body.bindings = bindings
+    if signature.overload.takes_self and signature.parameters:
+        body.self_name = signature.parameters[0].name
     params = []
     for parameter, type in zip(signature.parameters, instance.params, strict=True):
         failed = parameter.annotation is MISSING

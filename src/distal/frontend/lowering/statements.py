@@ -7,27 +7,21 @@ sees all errors of a function at once.
 from __future__ import annotations
 
 import ast
-import builtins
 from collections.abc import Callable
 from typing import Any, Final
 
 from distal.frontend.function_body import FunctionBody, OpenLoop, Variable
-from distal.frontend.lowering.assignment import assign, augment, value_node
-from distal.frontend.lowering.expressions import arguments_of_range, array_name, make_closure
+from distal.frontend.lowering.assignment import assign, augment, unpacked_items, value_node
+from distal.frontend.lowering.expressions import make_closure
+from distal.frontend.lowering.iterations import Iteration, iteration
 from distal.frontend.lowering.refusals import refusal
 from distal.frontend.problems import FollowupError, SceneError
-from distal.frontend.types.coercion import (
-    coerce_or_raise,
-    constant_int,
-    default_type,
-    with_default_type,
-)
+from distal.frontend.types.coercion import coerce_or_raise, default_type, with_default_type
 from distal.frontend.types.operators import condition
 from distal.frontend.values import TRUE, Closure, SequenceValue, Static, Value, Whole
-from distal.ir.build import index as element_at
-from distal.ir.build import integer, negation
+from distal.ir.build import negation
 from distal.ir.nodes import Break, Continue, Expr, For, If, Let, Read, Return, Stmt, While
-from distal.ir.types import INT, Array, Type, is_static
+from distal.ir.types import INT, Type, is_static
 
 # From this number of nested calls on, a RecursionError is attributed to the calls.
 DEEP_CALLS: Final = 20
@@ -182,86 +176,82 @@ def _while(body: FunctionBody, stmt: ast.While) -> None:
 def _for(body: FunctionBody, stmt: ast.For) -> None:
     if stmt.orelse:
         raise body.problem("'else' of a loop is not part of scene code", stmt.orelse[0])
-    if not isinstance(stmt.target, ast.Name):
-        raise body.problem("a loop has one loop variable", stmt.target, "unpack it in the body")
-    name = stmt.target.id
-    shadowed = body.lookup(name)
-    if shadowed is not None and not (name == "_" and shadowed.loop):
-        message = f"'{name}' is a local already"
-        raise body.problem(message, stmt.target, "give the loop variable a name of its own")
+    names = _loop_names(body, stmt.target)
+    shadowed = [v for n in names if (v := body.lookup(n.id)) is not None]
+    for name in names:
+        known = body.lookup(name.id)
+        if known is not None and not (name.id == "_" and known.loop):
+            message = f"'{name.id}' is a local already"
+            raise body.problem(message, name, "give the loop variable a name of its own")
+    found = None
     try:
-        bounds, array = _iteration(body, stmt)
+        found = iteration(body, stmt.iter)
     except SceneError as problem:
         body.report(problem.diagnostic)
-        bounds, array = None, None
     except FollowupError:
         body.failed = True
-        bounds, array = None, None
-    variable = Variable(name, body, False, loop=True, failed=bounds is None)
-    counter = body.fresh((name.strip("_") or "i") if array is None else f"{name}_index")
-    _loop_body(body, stmt, variable, counter, bounds, array)
-    if shadowed is not None:  # nested loops over _: in Python the inner loop's value remains
-        body.assigned.discard(shadowed)
+    _loop_body(body, stmt, names, found)
+    # Nested loops over _: in Python the inner loop's value remains.
+    body.assigned.difference_update(shadowed)
+
+
+def _loop_names(body: FunctionBody, target: ast.expr) -> list[ast.Name]:
+    """Return the loop variables: one name, or as many as the values have parts."""
+    match target:
+        case ast.Name():
+            return [target]
+        case ast.Tuple(elements) | ast.List(elements) if elements:
+            return [name for e in elements for name in _loop_names(body, e)]
+        case _:
+            raise body.problem("a loop variable is a name", target, "unpack it in the body")
 
 
 def _loop_body(
-    body: FunctionBody,
-    stmt: ast.For,
-    variable: Variable,
-    counter: str,
-    bounds: tuple[Expr, Expr, int] | None,
-    array: Expr | None,
+    body: FunctionBody, stmt: ast.For, names: list[ast.Name], found: Iteration | None
 ) -> None:
     before, reachable, span = set(body.assigned), body.reachable, body.span(stmt)
+    first = names[0].id.strip("_") or "i"
+    counter = body.fresh(first if _counts(stmt.target, found) else f"{first}_index")
     body.loops.append(OpenLoop())
     with body.block(stmt.body) as block:
-        block.variables[variable.name] = variable
-        body.assigned.add(variable)
-        variable.ir_name, variable.type = counter, INT
-        if array is not None:
-            value = element_at(array, Read(counter, INT))
-            variable.ir_name, variable.type = body.fresh(variable.name), value.type
-            body.emit(Let(variable.ir_name, value, span=span))
+        for name in names:
+            failed = found is None
+            variable = Variable(name.id, body, False, loop=True, failed=failed)
+            block.variables[name.id] = variable
+            body.assigned.add(variable)
+        if found is not None:
+            _set_loop_variables(body, stmt.target, found.element(Read(counter, INT)))
         lower_statements(body, stmt.body)
     body.loops.pop()
     body.assigned, body.reachable = before, reachable
-    if bounds is not None:
-        start, stop, step = bounds
+    if found is not None:
+        start, stop, step = found.bounds
         body.emit(For(counter, start, stop, step, tuple(block.statements), span=span))
 
 
-def _iteration(body: FunctionBody, stmt: ast.For) -> tuple[tuple[Expr, Expr, int], Expr | None]:
-    """Return (start, stop, step) and, for a loop over an array, the array."""
-    node = stmt.iter
-    if isinstance(node, ast.Call):
-        called = body.expression(node.func)
-        if isinstance(called, Static) and called.object is builtins.range:
-            return _range(body, node), None
-    value = with_default_type(body, body.expression(node), node)
-    if not isinstance(value.type, Array):
-        hint = "write for i in range(n)" if value.type is INT else None
-        raise body.problem(f"a loop goes over range(...) or an array, not {value.type}", node, hint)
-    array = body.hold(array_name(node), value)
-    return (integer(0), integer(value.type.length), 1), array
+def _counts(target: ast.expr, found: Iteration | None) -> bool:
+    """Return whether the first loop variable is the counter itself."""
+    if isinstance(target, ast.Name):
+        return found is None or found.is_counter
+    assert isinstance(target, ast.Tuple | ast.List)
+    return found is not None and found.first_is_counter and isinstance(target.elts[0], ast.Name)
 
 
-def _range(body: FunctionBody, node: ast.Call) -> tuple[Expr, Expr, int]:
-    args = arguments_of_range(body, node)
-    step = constant_int(args[2]) if len(args) == 3 else 1
-    if step is None:
-        raise body.problem("the step of a range is a whole number known now", node.args[2])
-    if step == 0:
-        raise body.problem("the step of a range is not 0", node.args[2])
-    bounds = args[:2] if len(args) > 1 else [Whole(0), *args]
-    nodes = node.args[:2] if len(args) > 1 else [node.args[0], node.args[0]]
-    whole = [_bound(body, b, at) for b, at in zip(bounds, nodes, strict=True)]
-    if step not in range(-(2**31), 2**31):
-        raise body.problem(f"{step} is out of the range of int", node.args[2])
-    return whole[0], whole[1], step
-
-
-def _bound(body: FunctionBody, value: Value, node: ast.expr) -> Expr:
-    return coerce_or_raise(body, value, INT, node, "a bound of a range")
+def _set_loop_variables(body: FunctionBody, target: ast.expr, value: Value) -> None:
+    if isinstance(target, ast.Name):
+        variable = body.lookup(target.id)
+        assert variable is not None
+        expr = with_default_type(body, value, target)
+        if isinstance(expr, Read) and expr.type is INT:
+            variable.ir_name, variable.type = expr.name, INT
+        else:
+            variable.ir_name, variable.type = body.fresh(target.id), expr.type
+            body.emit(Let(variable.ir_name, expr, span=body.span(target)))
+        return
+    assert isinstance(target, ast.Tuple | ast.List)
+    items = unpacked_items(body, value, len(target.elts), target, target)
+    for element, item in zip(target.elts, items, strict=True):
+        _set_loop_variables(body, element, item)
 
 
 def _break(body: FunctionBody, stmt: ast.Break) -> None:

@@ -33,7 +33,7 @@ from distal.ir.types import (
 )
 from distal.lang.annotations import ArrayAnnotation
 from distal.lang.resources import BufferAnnotation
-from distal.lang.structs import StructNames
+from distal.lang.structs import METHODS, StructNames
 
 Bindings: TypeAlias = Mapping[TypeVar, Type]
 NO_BINDINGS: Bindings = {}
@@ -183,7 +183,8 @@ def struct_type(cls: type) -> Struct:
         _STRUCTS_IN_PROGRESS.pop()
     if not fields:
         raise AnnotationError(f"the struct '{cls.__name__}' has no fields")
-    made = Struct(cls.__name__, fields, False)
+    owner = cls if METHODS in vars(cls) else None
+    made = Struct(cls.__name__, fields, False, owner)
     cls.__distal_struct_type__ = made  # type: ignore[attr-defined]
     return made
 

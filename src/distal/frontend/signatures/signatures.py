@@ -7,7 +7,7 @@ and defaults, and the lookup of its names.
 from __future__ import annotations
 
 import ast
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from types import FunctionType
 from typing import Any, Final
@@ -17,8 +17,9 @@ from distal.diagnostics import CompileError, Diagnostic, Span
 from distal.frontend.name_lookup import NameLookup, names_of
 from distal.frontend.parsing import TREES_KEPT
 from distal.frontend.problems import SceneError
-from distal.frontend.scopes import ScopeAnalysis, analyse_scopes, plain_parameters
+from distal.frontend.scopes import ScopeAnalysis, all_parameters, analyse_scopes
 from distal.frontend.source import SourceMap, parse_definition
+from distal.lang.annotations import ArrayAnnotation
 from distal.lang.functions import Overload, is_fixed
 from distal.lang.source import capture
 
@@ -36,6 +37,8 @@ class SignatureParameter:
         span: Its source span.
         positional: Whether a positional argument can set it.
         by_keyword: Whether a keyword argument can set it.
+        collects: Whether it is an array of the remaining positional arguments (``*values``); then
+            ``annotation`` is the type of one of them.
     """
 
     name: str
@@ -44,6 +47,15 @@ class SignatureParameter:
     span: Span
     positional: bool = True
     by_keyword: bool = True
+    collects: bool = False
+
+
+def element_annotation(parameter: SignatureParameter) -> Any:
+    """Return a parameter's annotation; of ``*values``, the annotation of one value."""
+    annotation = parameter.annotation
+    if parameter.collects and isinstance(annotation, ArrayAnnotation):
+        return annotation.element
+    return annotation
 
 
 class Definition:
@@ -67,7 +79,7 @@ class Definition:
 # Equal texts have one tree: it is analysed once, also where the file is loaded again.
 @lru_cache(maxsize=TREES_KEPT)
 def _scopes_of(node: ast.FunctionDef) -> ScopeAnalysis:
-    return analyse_scopes(node.body, {a.arg for a in plain_parameters(node.args)})
+    return analyse_scopes(node.body, {a.arg for a in all_parameters(node.args)})
 
 
 _definitions: WeakKeyDictionary[Overload, Definition] = WeakKeyDictionary()
@@ -125,14 +137,31 @@ class FunctionSignature:
         """The span of the function's name."""
         return self.source.name_span(self.node)
 
+    def collecting(self, count: int) -> FunctionSignature:
+        """Return the signature for a call with ``count`` positional arguments.
+
+        A parameter ``*values: float`` becomes one of the type ``array[float, n]`` for the n
+        arguments that the parameters before it leave; it stays as it is if none are left.
+        """
+        left = count - sum(p.positional for p in self.parameters)
+        if left < 1 or not any(p.collects for p in self.parameters):
+            return self
+        parameters = tuple(
+            replace(p, annotation=ArrayAnnotation(p.annotation, left))
+            if p.collects and p.annotation is not MISSING
+            else p
+            for p in self.parameters
+        )
+        return replace(self, parameters=parameters)
+
     def text(self) -> str:
         """Return ``name(p: vec3, r: float) -> float`` as the author wrote it, for hints."""
-        written = {a.arg: a.annotation for a in plain_parameters(self.node.args)}
+        written = {a.arg: a.annotation for a in all_parameters(self.node.args)}
         parts = []
         for parameter in self.parameters:
             annotation = written.get(parameter.name)
             suffix = "" if annotation is None else f": {ast.unparse(annotation)}"
-            parts.append(f"{parameter.name}{suffix}")
+            parts.append(f"{'*' if parameter.collects else ''}{parameter.name}{suffix}")
         returns = self.node.returns
         result = "" if returns is None else f" -> {ast.unparse(returns)}"
         return f"{self.name}({', '.join(parts)}){result}"
@@ -158,9 +187,10 @@ def _read(overload: Overload) -> FunctionSignature:
     definition = definition_of(overload)
     names = names_of(python, overload.enclosing)
     signature = FunctionSignature(python.__name__, definition, names, (), MISSING, overload)
-    if _is_method(python):
-        message = f"'{python.__qualname__}' is a method; scene code is plain functions"
-        signature.problems.append(Diagnostic(message, signature.span, "move it out of the class"))
+    if overload.struct is None and _is_method(python):
+        message = f"'{python.__qualname__}' is a method, and its class is not a struct"
+        hint = "write @struct above the class, or move it out of the class"
+        signature.problems.append(Diagnostic(message, signature.span, hint))
         signature.unusable = True
         return signature
     if hasattr(python, "__wrapped__"):
@@ -194,37 +224,50 @@ def _is_method(python: FunctionType) -> bool:
 
 def _parameters_of(signature: FunctionSignature, python: FunctionType) -> list[SignatureParameter]:
     a = signature.node.args
-    for star, starred in (("*", a.vararg), ("**", a.kwarg)):
-        if starred is not None:
-            message = f"'{star}{starred.arg}' is not part of scene code"
-            hint = "name each parameter"
-            signature.problems.append(Diagnostic(message, signature.source.span(starred), hint))
+    if a.kwarg is not None:
+        message = f"'**{a.kwarg.arg}' is not part of scene code"
+        hint = "name each parameter"
+        signature.problems.append(Diagnostic(message, signature.source.span(a.kwarg), hint))
     positional = [*a.posonlyargs, *a.args]
     given = python.__defaults__ or ()
     defaults: dict[str, Any] = dict(
         zip((p.arg for p in positional[len(positional) - len(given) :]), given, strict=True)
     )
     defaults.update(python.__kwdefaults__ or {})
+    owner = signature.overload.struct if signature.overload.takes_self else None
+    if owner is not None and not positional:
+        message = f"the method '{signature.name}' has no parameter for its struct"
+        hint = f"write def {signature.name}(self), or @staticmethod above @func"
+        signature.problems.append(Diagnostic(message, signature.span, hint))
+        signature.unusable = True
+    starred = [] if a.vararg is None else [a.vararg]
     parameters = []
-    for arg in (*positional, *a.kwonlyargs):
-        annotation: Any = MISSING
-        if arg.annotation is not None:
-            annotation = _evaluated(signature, arg.annotation)
+    for position, arg in enumerate((*positional, *starred, *a.kwonlyargs)):
+        if position == 0 and owner is not None and arg.annotation is None:
+            annotation: Any = owner
         else:
-            message = f"parameter '{arg.arg}' has no type"
-            hint = f"write {arg.arg}: vec3, or {arg.arg}: float"
-            signature.problems.append(Diagnostic(message, signature.source.span(arg), hint))
+            annotation = _annotation_of(signature, arg)
         parameters.append(
             SignatureParameter(
                 arg.arg,
                 annotation,
                 defaults.get(arg.arg, MISSING),
                 signature.source.span(arg),
-                arg not in a.kwonlyargs,
-                arg not in a.posonlyargs,
+                arg not in (*a.kwonlyargs, *starred),
+                arg not in (*a.posonlyargs, *starred),
+                arg in starred,
             )
         )
     return parameters
+
+
+def _annotation_of(signature: FunctionSignature, arg: ast.arg) -> Any:
+    if arg.annotation is not None:
+        return _evaluated(signature, arg.annotation)
+    message = f"parameter '{arg.arg}' has no type"
+    hint = f"write {arg.arg}: vec3, or {arg.arg}: float"
+    signature.problems.append(Diagnostic(message, signature.source.span(arg), hint))
+    return MISSING
 
 
 def _evaluated(signature: FunctionSignature, node: ast.expr) -> Any:

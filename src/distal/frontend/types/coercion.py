@@ -18,6 +18,7 @@ from distal.ir.nodes import Compose, Const, Construct, Expr
 from distal.ir.types import (
     FLOAT,
     INT,
+    TEXTURE_2D,
     Array,
     FunctionType,
     Kind,
@@ -28,7 +29,7 @@ from distal.ir.types import (
     is_static,
     tuple_type,
 )
-from distal.lang.functions import Func
+from distal.lang.functions import Func, Image
 from distal.lang.names import LangForm, LangFunction
 
 
@@ -65,9 +66,17 @@ def coerce(body: FunctionBody, value: Value, type: Type, node: Node) -> Expr | N
         case Static() | Closure():
             if isinstance(type, FunctionType) and is_callable(value):
                 return body.compilation.function_value(body, value, type, node)
-            return None
+            return last_frame(body, value) if type is TEXTURE_2D else None
         case _:
             return value if value.type is type else None
+
+
+def last_frame(body: FunctionBody, value: Value) -> Expr | None:
+    """Return the texture of the latest picture of an image that scene code names, or None."""
+    if not isinstance(value, Static) or not isinstance(value.object, Image):
+        return None
+    texture = value.object.last_frame
+    return body.compilation.resource(texture, value.text, texture.__distal_type__)
 
 
 def _coerce_whole(body: FunctionBody, number: int, type: Type, node: Node) -> Expr | None:

@@ -47,7 +47,7 @@ def finished(
     chosen = frame_values.chosen(wanted, limit)
     entries = frame_values.entries(wanted)
     values = {name: value for name, _, value in entries}
-    renamed, frame_functions = _frame_functions(before, pixels, values)
+    renamed, frame_functions = _frame_functions(before, pixels, values, precision)
     values = {name: _with_callees(value, renamed) for name, value in values.items()}
     pixels = tuple(_with_steps(f, values, chosen) for f in pixels)
     placed = {f.name for f in frame_functions}
@@ -89,12 +89,13 @@ def _without_unread_params(
 
 
 def _frame_functions(
-    before: Module, pixels: tuple[Function, ...], values: Mapping[str, Expr]
+    before: Module, pixels: tuple[Function, ...], values: Mapping[str, Expr], precision: int
 ) -> tuple[dict[str, str], list[Function]]:
     """Return the functions that per-frame values call, and the new names of some of them.
 
     A function that pixels run in changed form gets a new name: its pixel version may have fewer
-    parameters, or read per-frame values that are not computed yet.
+    parameters, read per-frame values that are not computed yet, or contain a constant that pixels
+    pass at every call, and the frame does not.
     """
     needed = closure(before.functions, called_in(*values.values()))
     pixel = {f.name: f for f in pixels}
@@ -106,7 +107,7 @@ def _frame_functions(
             continue
         twin = pixel.get(function.name)
         if twin is not None and twin.params == function.params:
-            is_same = not per_frame_reads_in((twin,))
+            is_same = twin.body == fold_function(function, precision).body
             if is_same and not callees(function) & renamed.keys():
                 result.append(twin)
                 continue
