@@ -2,7 +2,7 @@
 
 Input: the progress, from 0 to 1, and the easing (a choice fixed when the scene is compiled).
 Output: the eased progress, from 0 to 1, and the largest derivative, which the slopes of operators
-depend on. All easings increase monotonically.
+depend on. All but the bounce increase monotonically.
 """
 
 from __future__ import annotations
@@ -17,8 +17,38 @@ SINE = 3
 SLOW_START = 4
 SLOW_END = 5
 CUBIC = 6  # slow at both ends, fast in the middle
+QUARTIC = 7
+QUINTIC = 8
+BOUNCE = 9  # falls to 1 and bounces three times
 
-EASES = ("linear", "smooth", "smoother", "sine", "slow start", "slow end", "cubic")
+EASES = (
+    "linear",
+    "smooth",
+    "smoother",
+    "sine",
+    "slow start",
+    "slow end",
+    "cubic",
+    "quartic",
+    "quintic",
+    "bounce",
+)
+# The bounce is made of parabolas of one steepness, each from one landing to the next, in units of
+# 1 / BOUNCES; source: Robert Penner, "Motion, tweening, and easing" (2002).
+BOUNCES = 2.75
+
+
+@func
+def bounced(x: float) -> float:
+    """Return the height of a ball that falls from 0 to 1 and bounces three times."""
+    t = x * BOUNCES
+    if t < 1.0:
+        return t * t
+    if t < 2.0:
+        return (t - 1.5) * (t - 1.5) + 0.75
+    if t < 2.5:
+        return (t - 2.25) * (t - 2.25) + 0.9375
+    return (t - 2.625) * (t - 2.625) + 0.984375
 
 
 @func
@@ -38,6 +68,14 @@ def eased(t: float, ease: int) -> float:
     if ease == CUBIC:
         rest = 1.0 - x
         return 4.0 * x * x * x if x < 0.5 else 1.0 - 4.0 * rest * rest * rest
+    if ease == QUARTIC:
+        rest = 1.0 - x
+        return 8.0 * x**4 if x < 0.5 else 1.0 - 8.0 * rest**4
+    if ease == QUINTIC:
+        rest = 1.0 - x
+        return 16.0 * x**5 if x < 0.5 else 1.0 - 16.0 * rest**5
+    if ease == BOUNCE:
+        return bounced(x)
     return x
 
 
@@ -54,6 +92,12 @@ def ease_slope(ease: int) -> float:
         return 2.0
     if ease == CUBIC:
         return 3.0
+    if ease == QUARTIC:
+        return 4.0
+    if ease == QUINTIC:
+        return 5.0
+    if ease == BOUNCE:
+        return 2.0 * BOUNCES
     return 1.0
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TypeVar
 
 from distal.fields.guarantees import ENDLESS, UNBOUNDED, Bounds, Bounds2
-from distal.lang import Vectors, abs, func, length, mat2, mat3, max, min, select, vec2, vec3
+from distal.lang import Vectors, abs, func, length, mat2, mat3, max, min, select, step, vec2, vec3
 
 # The least that remains of infinity after a rotation with rounding; no shape is that large.
 LEAK = 1e9
@@ -126,9 +126,16 @@ def unless_endless(size: float, slope: float) -> float:
 
 
 @func
+def product(factor: Vectors, limit: float) -> Vectors:
+    """Return a product; 0 for an infinite side that only the rounding of a turn lets through."""
+    made = factor * limit
+    return made if abs(limit) < ENDLESS else made * step(LEAK, abs(made))
+
+
+@func
 def least_product(factor: Vectors, low: float, high: float) -> Vectors:
     """Return the least values of ``factor`` times any number between two limits."""
-    return min(factor * low, factor * high)
+    return min(product(factor, low), product(factor, high))
 
 
 @func

@@ -10,8 +10,8 @@ that of a line, ``d`` a distance, ``a`` and ``b`` two distances, ``field`` a fun
 Lipschitz bounds (bounds on |gradient|), ``bounds``/``bounds_a``/``bounds_b`` boxes, ``growth`` and
 ``side_growth`` (with ``_a``, ``_b``; without a suffix on two children: the larger) how fast the box
 grows with the level.
-Every other parameter is a number of the shape, or a choice (int, bool) that is fixed when the scene
-is compiled.
+Every other parameter is a number of the shape, or a choice (int, bool): a plain one is fixed when
+the scene is compiled, a parameter of the scene may change it later (but not ``FIXED_CHOICES``).
 
 Growth. A box contains the surface and the inside: all points where the field is 0 or less. An
 operator that moves the surface outwards by r (rounding, offsets, blends) needs a box around all
@@ -47,6 +47,9 @@ BOUNDS_OF_CHILD: Final = ("slope", "bounds", "growth", "side_growth")
 BOUNDS_OF_CHILDREN: Final = frozenset(
     f"{name}{of}" for name in BOUNDS_OF_CHILD for of in ("", "_a", "_b")
 )
+
+# Choices by name that decide which code there is, so that no parameter can change them.
+FIXED_CHOICES: Final = frozenset(("neighbours",))
 
 
 @struct
@@ -209,6 +212,7 @@ class Primitive:
         chord: For a convex solid: ``(p, direction, *numbers) -> vec2``, the distances at which the
             line through p in a unit direction enters and leaves it (``fields.chords``), in closed
             form; x > y if the line misses it. None if it is not known.
+        endless: The names of sizes whose components may be infinite: they are ``UNBOUNDED`` then.
     """
 
     name: str
@@ -229,6 +233,7 @@ class Primitive:
     normalize: Func | None = None
     proved: Proven | None = None
     chord: Func | None = None
+    endless: tuple[str, ...] = ()
 
     @property
     def flat(self) -> bool:
@@ -248,13 +253,16 @@ class Operator:
     * ``combine(a, b[, p], …) -> float``: for two children; ``mix`` takes the same parameters and
       returns the share of b's material, 0 to 1 (None: that of the nearer child, by ``b < a``).
     * ``around(field, p, …) -> float``: evaluates the child at several points. ``site(field, p, …)``
-      returns the place (vec3 or ``Site``) whose material is shown at p.
+      returns the place (vec3 or ``Site``) whose material is shown at p. If it is a ``Site``,
+      ``field`` is a function of the point and the cell.
 
     All of these may also take the parameters that the rules take: the ``bounds`` and the ``slope``
     of the child (``bounds_a``, ``slope_b`` …), computed once per frame.
 
     Attributes:
         name: The name in messages: "twist".
+        cells: For a repetition: ``(*numbers) -> Bounds``, the least and the largest index of the
+            cells, all of which are whole. None: it has no cells, or they have no end.
         copies: ``(*numbers) -> struct``: a value that depends on the numbers alone and that the
             other functions take by the name ``copies``: the copies of a repetition.
         fixed: Values of parameters of the other functions that are not numbers of the operator.
@@ -283,6 +291,7 @@ class Operator:
     """
 
     name: str
+    cells: Func | None = None
     copies: Func | None = None
     point: Func | None = None
     finish: Func | None = None
@@ -341,7 +350,7 @@ class Operator:
         ``lies`` says whether its result lies in the plane.
         """
         if self.around is not None:
-            return bool(get_args(signature_types(self.around)["field"])[0] == [vec2])
+            return bool(get_args(signature_types(self.around)["field"])[0][0] is vec2)
         if self.point is not None:
             return signature_types(self.point)["return"] in (vec2, Site2)
         return lies
@@ -387,6 +396,7 @@ def primitive(
     measured: Mapping[str, str] | None = None,
     approximates: Approximation | None = None,
     chord: Func | None = None,
+    endless: tuple[str, ...] = (),
 ) -> Callable[[F], F]:
     """Declare the ``@func`` below as a shape of the library; see ``Primitive`` for the attributes.
 
@@ -406,6 +416,7 @@ def primitive(
         measured: The numbers that are measured from the shape's data.
         approximates: What the shape replaces by simpler pieces.
         chord: The function of the part of a line inside of a convex solid.
+        endless: The names of sizes that may be infinite.
     """
 
     def declare(distance: F) -> F:
@@ -427,6 +438,7 @@ def primitive(
             measured or {},
             approximates,
             chord=chord,
+            endless=endless,
         )
         return distance
 

@@ -13,13 +13,15 @@ from typing import Final
 import numpy as np
 
 from distal.ir.types import FLOAT, VEC3
-from distal.mesh import arithmetic, triangle_arithmetic
+from distal.mesh import arithmetic, face_arithmetic, triangle_arithmetic
 from distal.mesh.kernels import FieldKernels, rows_of
-from distal.mesh.lattice import Lattice, keys_of, position
+from distal.mesh.lattice import Lattice, keys_of
+from distal.mesh.pieces import distances
 from distal.mesh.places import Roots
 from distal.mesh.solid import Floats, Integers
 from distal.mesh.topology import Topology
 from distal.mesh.triangulate import Triangles
+from distal.polygons.whole_numbers import sorted_keys
 
 SAMPLES: Final = 7  # points of each triangle, besides its corners
 _AT_ONCE: Final = 1 << 16
@@ -29,7 +31,8 @@ _MOST_FOLLOWED: Final = 1 << 14
 # The most roots that are compared with more triangles than those around their own edge.
 _MOST_SEARCHED: Final = 1 << 12
 _RINGS: Final = 2
-_AROUND: Final = 2  # cells; a lost place that is farther from all cells of the mesh is a lost part
+# A lost place that is farther than so many cells from all cells of the mesh is a lost part.
+CELLS_AROUND: Final = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +58,21 @@ class Accuracy:
 
 
 @dataclass(frozen=True, slots=True)
+class Misses:
+    """The same distances one by one: they say which cells are too large.
+
+    Attributes:
+        triangles: The largest distance of each triangle from the surface.
+        points: The distance of each point.
+        roots: The distance of each root to the triangles around its edge.
+    """
+
+    triangles: Floats
+    points: Floats
+    roots: Floats
+
+
+@dataclass(frozen=True, slots=True)
 class CutCorner:
     """A corner of the surface that the mesh cuts.
 
@@ -69,8 +87,8 @@ class CutCorner:
 
 def measured(
     kernels: FieldKernels, made: Triangles, roots: Roots, topology: Topology, step: float
-) -> tuple[Accuracy, Floats]:
-    """Return the accuracy of a mesh, and the normals at its points.
+) -> tuple[Accuracy, Floats, Misses]:
+    """Return the accuracy of a mesh, the normals at its points, and each distance.
 
     Args:
         kernels: The shape.
@@ -85,30 +103,27 @@ def measured(
         np.full(len(made.points), step),
         types=[("p", VEC3), ("step", FLOAT)],
     )
-    corners = made.points[made.triangles]
-    largest, total, place = 0.0, 0.0, made.points[int(np.argmax(at_points))]
-    back = np.empty(len(corners))
-    for start in range(0, len(corners), _AT_ONCE):
+    # Those of joined cells are measured in pieces as long as undivided cells.
+    counts = np.maximum(topology.edges.size[made.edge] // topology.unit, 1)
+    found = distances(kernels, made.points, made.triangles, counts)
+    misses, largest, place = found.largest, float(found.largest.max()), found.place
+    back = np.empty(len(misses))
+    for start in range(0, len(misses), _AT_ONCE):
         rows = slice(start, start + _AT_ONCE)
-        a, b, c = (corners[rows, i] for i in range(3))
-        found = kernels.call(
-            arithmetic.largest_miss, a, b, c, types=[(name, VEC3) for name in "abc"]
-        )
-        worst = int(np.argmax(found[:, 0]))
-        total += float(found[:, 1].sum())
-        if found[worst, 0] > largest:
-            largest, place = float(found[worst, 0]), corners[start + worst].mean(axis=0)
+        a, b, c = (made.points[made.triangles[rows, i]] for i in range(3))
         root = roots.places[made.edge[rows]]
         back[rows] = rows_of(triangle_arithmetic.distance_to_triangle, root, a, b, c)
-    own = np.minimum.reduceat(back, first_of_runs(made))
+    own = np.zeros(len(roots.places))
+    runs_of = first_of_runs(made)
+    own[made.edge[runs_of]] = np.minimum.reduceat(back, runs_of)
     from_surface = _from_surface(made, roots, topology, own, max(largest, float(at_points.max())))
     worst_point = float(at_points.max())
     if worst_point > largest:
-        largest, place = worst_point, made.points[int(np.argmax(at_points))]
-    x, y, z = (float(number) for number in place)
-    mean = total / len(corners)
+        x, y, z = made.points[int(np.argmax(at_points))].tolist()
+        largest, place = worst_point, (x, y, z)
     cut = int((at_points > _CUT * step).sum())
-    return Accuracy(largest, mean, (x, y, z), from_surface, worst_point, cut), normals
+    accuracy = Accuracy(largest, found.mean, place, from_surface, worst_point, cut)
+    return accuracy, normals, Misses(misses, at_points, own)
 
 
 def _from_surface(
@@ -131,8 +146,8 @@ def _from_surface(
     rest = float(own[far[_MOST_SEARCHED]]) if len(far) > _MOST_SEARCHED else known
     nearest = own.copy()
     far = far[:_MOST_SEARCHED]
-    first = first_of_runs(made)
-    count = np.diff(first, append=len(made.edge))
+    count = np.bincount(made.edge, minlength=len(own))
+    first = np.cumsum(count) - count
     root, edge = far, far
     for _ in range(_RINGS):
         if not len(root):
@@ -162,7 +177,7 @@ def _with_neighbours(
     around = topology.edges.around[edge].reshape(-1)
     owner, row = runs(np.repeat(root, 4), points.first[around], uses[around])
     count = len(topology.edges.around)
-    pairs = np.unique(owner * count + points.edges[row])
+    pairs = sorted_keys(owner * count + points.edges[row])
     return pairs // count, pairs % count
 
 
@@ -197,16 +212,16 @@ def lost_places(kernels: FieldKernels, suspicious: Floats, step: float) -> Float
     some = suspicious[:: -(-len(suspicious) // _MOST_FOLLOWED)]
     reach = np.full(len(some), step)
     found, places = kernels.call(
-        arithmetic.lost_surface, some, reach, types=[("p", VEC3), ("reach", FLOAT)]
+        face_arithmetic.lost_surface, some, reach, types=[("p", VEC3), ("reach", FLOAT)]
     )
     lost: Floats = places[found]
     return lost
 
 
 def split_lost(
-    lattice: Lattice, topology: Topology, places: Floats, lost: Floats
-) -> tuple[Floats, CutCorner]:
-    """Return the lost places that are apart from the mesh, and the worst of the others.
+    lattice: Lattice, topology: Topology, places: Floats, lost: Floats, surface: Integers
+) -> tuple[Floats, Floats]:
+    """Return the lost places that are apart from the mesh, and how far the others are from it.
 
     A corner that ends between lattice points is close to the mesh: it is cut, but no part is lost.
 
@@ -215,22 +230,61 @@ def split_lost(
         topology: The points of its cells.
         places: Where they are.
         lost: Points of the surface that the mesh does not have.
+        surface: The undivided cells that the surface passes through, in the order of their keys.
+
+    Returns:
+        The places that are apart, of shape (n, 3), and the distance of every place to the nearest
+        point of the mesh, or what it can be at most; infinite for those that are apart.
     """
     if not len(lost):
-        return lost, CutCorner(0.0, (0.0, 0.0, 0.0))
-    keys, row = np.unique(keys_of(topology.points.cell), return_index=True)
-    home = np.floor((lost - lattice.origin) / lattice.step).astype(np.int64)
+        return lost, np.empty(0)
+    unit = topology.unit
+    side = lattice.step * unit
+    home = np.floor((lost - lattice.origin) / side).astype(np.int64)
+    cells = topology.points.cell // unit
+    large = np.flatnonzero(topology.points.size > unit)
+    cells[large] = np.floor((places[large] - lattice.origin) / side).astype(np.int64)
+    keys = keys_of(cells)
+    order = np.argsort(keys, kind="stable")
+    of, row = _around(home, keys[order])
+    row = order[row]
     nearest = np.full(len(lost), np.inf)
-    around = range(-_AROUND, _AROUND + 1)
-    for step in product(around, repeat=3):
-        at = position(keys_of(home + np.array(step)), keys)
-        found = np.flatnonzero(at >= 0)
-        if len(found):
-            ends = lost[found], places[row[at[found]]]
-            distance = rows_of(triangle_arithmetic.between, *ends)
-            nearest[found] = np.minimum(nearest[found], distance)
-    apart = np.isinf(nearest)
-    nearest[apart] = 0.0
+    for start in range(0, len(of), _AT_ONCE):
+        some = slice(start, start + _AT_ONCE)
+        distance = rows_of(triangle_arithmetic.between, lost[of[some]], places[row[some]])
+        np.minimum.at(nearest, of[some], distance)
+    far = np.flatnonzero(np.isinf(nearest))
+    if len(large) and len(far):
+        # The mesh is close, but its points are far away: they are of larger cells.
+        of, _ = _around(home[far], keys_of(surface))
+        nearest[far[of]] = (
+            float(topology.points.size.max() + CELLS_AROUND * unit) * 2.0 * lattice.step
+        )
+    return lost[np.isinf(nearest)], nearest
+
+
+def _around(home: Integers, keys: Integers) -> tuple[Integers, Integers]:
+    """Return the pairs of cells and rows of other cells that are close to them.
+
+    Args:
+        home: The cells, of shape (n, 3).
+        keys: The keys of the others, sorted.
+    """
+    found = []
+    around = range(-CELLS_AROUND, CELLS_AROUND + 1)
+    for x, y in product(around, repeat=2):
+        # Cells along z have keys in a row.
+        first = np.searchsorted(keys, keys_of(home + np.array((x, y, -CELLS_AROUND))))
+        last = np.searchsorted(keys, keys_of(home + np.array((x, y, CELLS_AROUND))), side="right")
+        found.append(runs(np.arange(len(home)), first, last - first))
+    return np.concatenate([of for of, _ in found]), np.concatenate([row for _, row in found])
+
+
+def worst_corner(lost: Floats, nearest: Floats) -> CutCorner:
+    """Return the cut corner that is farthest from the mesh."""
+    nearest = np.where(np.isinf(nearest), 0.0, nearest)
+    if not nearest.any():
+        return CutCorner(0.0, (0.0, 0.0, 0.0))
     worst = int(np.argmax(nearest))
     x, y, z = lost[worst].tolist()
-    return lost[apart], CutCorner(float(nearest[worst]), (x, y, z))
+    return CutCorner(float(nearest[worst]), (x, y, z))

@@ -1,8 +1,8 @@
-"""The arithmetic of meshing, as scene code: roots on edges, points of cells and of faces.
+"""The arithmetic of meshing, as scene code: roots on edges, points of cells.
 
-Input: a field, and numbers of one edge, cell, face or triangle. Output: its numbers. Compiled as
-vector code of the CPU, in 64 bits; one row for each edge, cell, face or triangle. Does not depend
-on topology: which rows belong together is decided by the caller.
+Input: a field, and numbers of one edge or cell. Output: its numbers. Compiled as vector code of the
+CPU, in 64 bits; one row for each edge or cell. Does not depend on topology: which rows belong
+together is decided by the caller.
 
 Source: Tao Ju, Frank Losasso, Scott Schaefer, Joe Warren, "Dual Contouring of Hermite Data" (2002),
     for points at creases by a quadric.
@@ -37,6 +37,8 @@ OFF_SURFACE = 1e-5
 QUADRIC_STEPS = 16
 # How often the solution of a quadric is clamped to its cell and solved again.
 CLAMPS = 4
+# Points on faces that are farther from the surface than this, in cells, may reach beyond the face.
+OFF_FACE = 1e-3
 # Below this cosine between a normal and the mean normal of its cell, the cell has a crease.
 CREASE_COSINE = 0.95
 
@@ -71,7 +73,12 @@ def distance_value(field: Field3, p: vec3) -> float:
 
 @func
 def root_on_edge(
-    field: Field3, start: vec3, way: vec3, first: float, second: float
+    field: Field3,
+    start: vec3,
+    way: vec3,
+    first: float,
+    second: float,
+    off: float = OFF_SURFACE,
 ) -> tuple[float, vec3]:
     """Return where the field is 0 on an edge, as a share of the edge, and the gradient there.
 
@@ -84,6 +91,7 @@ def root_on_edge(
         way: From the first end to the second.
         first: The value at the first end.
         second: The value at the second end; its sign differs.
+        off: How far off the surface the gradient is taken, as a share of the edge.
     """
     a = 0.0
     b = 1.0
@@ -108,7 +116,7 @@ def root_on_edge(
             b = t
             at_b = value
             side = -1
-    outside = OFF_SURFACE if first < 0.0 else -OFF_SURFACE
+    outside = off if first < 0.0 else -off
     slope = gradient(field, start + way * (t + outside))
     return t, slope
 
@@ -238,6 +246,7 @@ def crease_point(
     middle: vec3,
     low: vec3,
     high: vec3,
+    off: float = OFF_SURFACE,
 ) -> vec3:
     """Return the point of a cell at a crease, a corner or a tip of the surface.
 
@@ -252,6 +261,7 @@ def crease_point(
         middle: The mean of the roots.
         low: The lowest corner that the point may have.
         high: The highest.
+        off: How far off the surface gradients are taken, as a share of the way from a root.
     """
     normals = slopes
     for i in range(12):
@@ -267,7 +277,7 @@ def crease_point(
             near_weights[i] = 0.0
             if weights[i] > 0.0:
                 way = (points[i] - found) * share
-                q = found + way + normals[i] * (OFF_SURFACE * length(way))
+                q = found + way + normals[i] * (off * length(way))
                 value, slope = value_and_gradient(field, q)
                 near[i] = q + step_to_surface(value, slope)
                 near_normals[i] = unit_or_zero(slope)
@@ -309,198 +319,3 @@ def kept_in_region(
         if speed > 0.0 and speed * share > room * (1.0 - margin):
             share = max(room, 0.0) * (1.0 - margin) / speed
     return inner + (target - inner) * share
-
-
-@func
-def passes_face(p: vec3, q: vec3, low: vec3, high: vec3) -> bool:
-    """Return whether a line from the cell below a face to the one above passes through the face.
-
-    Args:
-        p: The point below, in units of the cell, relative to the face's lowest corner; the first
-            coordinate is that along the face's normal.
-        q: The point above.
-        low: The lowest place at which it may pass; the first coordinate is not used.
-        high: The highest.
-    """
-    t = -p.x / max(q.x - p.x, 1e-30)
-    y = p.y + (q.y - p.y) * t
-    z = p.z + (q.z - p.z) * t
-    return y > low.y and y < high.y and z > low.z and z < high.z
-
-
-@func
-def middle_distance(field: Field3, p: vec3, q: vec3) -> float:
-    """Return how far the middle of a line is from the surface, to first order."""
-    value, slope = value_and_gradient(field, (p + q) * 0.5)
-    return first_order_distance(value, slope)
-
-
-@func
-def face_point(
-    field: Field3,
-    a: vec3,
-    b: vec3,
-    slope_a: vec3,
-    slope_b: vec3,
-    normal: vec3,
-    low: vec3,
-    high: vec3,
-) -> vec3:
-    """Return the point of a face at which the surface crosses it, at its crease if it has one.
-
-    Args:
-        field: The field.
-        a: The root on one edge of the face.
-        b: The root on the other edge that the surface crosses.
-        slope_a: The gradient at the first root.
-        slope_b: The gradient at the second root.
-        normal: The unit vector perpendicular to the face.
-        low: The lowest corner that the point may have.
-        high: The highest.
-    """
-    middle = (a + b) * 0.5
-    normal_a = unit_or_zero(slope_a - normal * dot(slope_a, normal))
-    normal_b = unit_or_zero(slope_b - normal * dot(slope_b, normal))
-    found = meeting_in_face(a, b, normal_a, normal_b, normal, middle, low, high)
-    share = 0.15
-    for _step in range(2):
-        way = (a - found) * share
-        near_a = found + way + normal_a * (OFF_SURFACE * length(way))
-        value, slope = value_and_gradient(field, near_a)
-        side = slope - normal * dot(slope, normal)
-        near_a += step_to_surface(value, side)
-        near_normal_a = unit_or_zero(side)
-        way = (b - found) * share
-        near_b = found + way + normal_b * (OFF_SURFACE * length(way))
-        value, slope = value_and_gradient(field, near_b)
-        side = slope - normal * dot(slope, normal)
-        near_b += step_to_surface(value, side)
-        near_normal_b = unit_or_zero(side)
-        if dot(near_normal_a, normal_a) > 0.7 and dot(near_normal_b, normal_b) > 0.7:
-            found = meeting_in_face(
-                near_a, near_b, near_normal_a, near_normal_b, normal, found, low, high
-            )
-        share = share * 0.2
-    value, slope = value_and_gradient(field, found)
-    at_found = first_order_distance(value, slope)
-    value, slope = value_and_gradient(field, middle)
-    at_middle = first_order_distance(value, slope)
-    # Where the sides meet far away, as on a smooth surface, a Newton step in the face is better.
-    side = slope - normal * dot(slope, normal)
-    stepped = clamp(middle + step_to_surface(value, side), low, high)
-    value, slope = value_and_gradient(field, stepped)
-    at_stepped = first_order_distance(value, slope)
-    if at_stepped < at_found:
-        found = stepped
-        at_found = at_stepped
-    return found if at_found < at_middle else middle
-
-
-@func
-def meeting_in_face(
-    a: vec3,
-    b: vec3,
-    normal_a: vec3,
-    normal_b: vec3,
-    normal: vec3,
-    otherwise: vec3,
-    low: vec3,
-    high: vec3,
-) -> vec3:
-    """Return where two lines of a face meet; ``otherwise`` if they are nearly parallel.
-
-    Args:
-        a: A point of the first line.
-        b: A point of the second line.
-        normal_a: The first line's normal within the face.
-        normal_b: The second line's normal within the face.
-        normal: The face's normal.
-        otherwise: The result for lines that are nearly parallel.
-        low: The lowest corner that the point may have.
-        high: The highest.
-    """
-    turn = dot(normal, cross(normal_a, normal_b))
-    if abs(turn) < 0.05:
-        return otherwise
-    along_a = dot(normal_a, a - otherwise)
-    along_b = dot(normal_b, b - otherwise)
-    way = cross(normal_b, normal) * along_a + cross(normal, normal_a) * along_b
-    return clamp(otherwise + way / turn, low, high)
-
-
-@func
-def meets_triangle(p: vec3, q: vec3, third: vec3, margin: float) -> bool:
-    """Return whether a diagonal of four points around an edge meets the triangle of edge and point.
-
-    Args:
-        p: The first end of the diagonal, in units of the cell; the edge goes from (0, 0, 0) to
-            (1, 0, 0).
-        q: The second end.
-        third: One of the other two points.
-        margin: How far from the triangle's sides it must pass.
-    """
-    way = q - p
-    turn = way.y * third.z - way.z * third.y
-    if abs(turn) < 1e-12:
-        return False
-    t = -(p.y * third.z - p.z * third.y) / turn
-    x = p + way * t
-    s = (x.y * third.y + x.z * third.z) / max(third.y * third.y + third.z * third.z, 1e-30)
-    low = third.x * s
-    high = 1.0 + (third.x - 1.0) * s
-    inside = x.x > low + margin and x.x < high - margin
-    return t > 0.0 and t < 1.0 and s > 0.0 and s < 1.0 and inside
-
-
-@func
-def diagonal_fits(p: vec3, q: vec3, third: vec3, fourth: vec3, margin: float) -> bool:
-    """Return whether a diagonal meets one of the two triangles of the edge and a third point."""
-    return meets_triangle(p, q, third, margin) or meets_triangle(p, q, fourth, margin)
-
-
-@func
-def largest_miss(field: Field3, a: vec3, b: vec3, c: vec3) -> vec3:
-    """Return the largest and the mean distance of seven points of a triangle from the surface.
-
-    The points are the middle, the middles of the sides, and those between the middle and the
-    corners. The third number is 1 if one of the values is not a number, else 0.
-    """
-    largest = 0.0
-    total = 0.0
-    invalid = 0.0
-    middle = (a + b + c) / 3.0
-    points = [
-        middle,
-        (a + b) * 0.5,
-        (b + c) * 0.5,
-        (c + a) * 0.5,
-        (a + middle) * 0.5,
-        (b + middle) * 0.5,
-        (c + middle) * 0.5,
-    ]
-    for i in range(7):
-        value, slope = value_and_gradient(field, points[i])
-        miss = first_order_distance(value, slope)
-        if not miss >= 0.0:
-            invalid = 1.0
-        largest = max(largest, miss)
-        total += miss
-    return vec3(largest, total / 7.0, invalid)
-
-
-@func
-def lost_surface(field: Field3, p: vec3, reach: float) -> tuple[bool, vec3]:
-    """Return whether there is a surface closer to a point than ``reach``, and a point of it.
-
-    Args:
-        field: The field.
-        p: The point.
-        reach: How far the surface may be.
-    """
-    q = p
-    value = 0.0
-    for _step in range(6):
-        value, slope = value_and_gradient(field, q)
-        q = clamp(q + step_to_surface(value, slope), p - reach, p + reach)
-    value, slope = value_and_gradient(field, q)
-    return first_order_distance(value, slope) < 1e-6 * reach, q

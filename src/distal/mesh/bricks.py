@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from distal.ir.types import FLOAT, VEC3
 from distal.mesh.arithmetic import distance_value, samples_along_x
+from distal.mesh.joining import Blocks, separate_blocks
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import BRICK, Lattice, keys_of, position
 from distal.mesh.problems import MeshProblem
@@ -27,8 +28,12 @@ from distal.mesh.tables import CORNERS
 
 BRICKS_AT_ONCE: Final = 512
 _POINTS_AT_ONCE: Final = 1 << 19
+# Lattice points whose values say that the surface is closer than this, in cells, must be near a
+# cell with a change of sign.
+SUSPICIOUS: Final = 0.9
 # Half of a cube's diagonal, for each unit of its side.
 _HALF_DIAGONAL: Final = 0.5 * float(np.sqrt(3.0))
+_NO_BLOCKS: Final[Blocks] = (np.empty(0, np.int64),) * 3
 Watch = Callable[[float], None]
 
 
@@ -59,6 +64,8 @@ class SurfaceBricks:
         edges: The edges with a change of sign along each axis.
         sampled: How many bricks were sampled.
         lost: Lattice points next to a surface that changes no sign near them, of shape (n, 3).
+        separate: The keys of blocks of 8, 4 and 2 cells a side that are more than one cell, if
+            cells are joined.
     """
 
     bricks: Integers
@@ -66,6 +73,7 @@ class SurfaceBricks:
     edges: tuple[Edges, Edges, Edges]
     sampled: int
     lost: Floats
+    separate: Blocks
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +140,12 @@ def check_numbers(values: Floats, places: Floats) -> None:
 
 
 def surface_bricks(
-    kernels: FieldKernels, lattice: Lattice, slopes: Slopes, most: int, watch: Watch
+    kernels: FieldKernels,
+    lattice: Lattice,
+    slopes: Slopes,
+    most: int,
+    watch: Watch,
+    joined: float | None = None,
 ) -> SurfaceBricks:
     """Return the bricks that the surface passes through.
 
@@ -142,6 +155,7 @@ def surface_bricks(
         slopes: How fast values change.
         most: The most bricks.
         watch: Called with the share of the bricks that are sampled.
+        joined: The tolerance within which cells are joined; None for equal cells.
 
     Raises:
         MeshProblem: There are more; a value is not a number; or the surface leaves the lattice.
@@ -152,7 +166,8 @@ def surface_bricks(
     while len(waiting):
         wanted = []
         for start in range(0, len(waiting), BRICKS_AT_ONCE):
-            part = _sampled(kernels, lattice, slopes, waiting[start : start + BRICKS_AT_ONCE])
+            some = waiting[start : start + BRICKS_AT_ONCE]
+            part = _sampled(kernels, lattice, slopes, some, joined)
             wanted.append(part.neighbours)
             parts.append(part)
             watch(min(1.0, (start + BRICKS_AT_ONCE) / len(waiting)))
@@ -177,10 +192,15 @@ class _SampledBricks:
     edges: tuple[Edges, Edges, Edges]
     neighbours: Integers
     lost: Floats
+    separate: Blocks
 
 
 def _sampled(
-    kernels: FieldKernels, lattice: Lattice, slopes: Slopes, bricks: Integers
+    kernels: FieldKernels,
+    lattice: Lattice,
+    slopes: Slopes,
+    bricks: Integers,
+    joined: float | None,
 ) -> _SampledBricks:
     values = _values(kernels, lattice, bricks)
     inside = values < 0.0
@@ -188,9 +208,12 @@ def _sampled(
     masks = _masks(inside)
     lost = _suspicious(lattice, slopes, bricks, values, masks)
     some = ((masks != 0) & (masks != 255)).any(axis=(1, 2, 3))
-    values, inside = values[some], inside[some]
+    values, inside, bricks, masks = values[some], inside[some], bricks[some], masks[some]
     edges = (_edges(values, inside, 0), _edges(values, inside, 1), _edges(values, inside, 2))
-    return _SampledBricks(bricks[some], masks[some], edges, neighbours, lost)
+    separate = _NO_BLOCKS
+    if joined is not None:
+        separate = separate_blocks(bricks, values, masks, lattice.step, joined)
+    return _SampledBricks(bricks, masks, edges, neighbours, lost, separate)
 
 
 def _values(kernels: FieldKernels, lattice: Lattice, bricks: Integers) -> Floats:
@@ -259,7 +282,7 @@ def _suspicious(
     Only points within a brick are looked at: cells around the others are in several bricks.
     """
     inner = slice(1, BRICK)
-    near = np.abs(values[:, inner, inner, inner]) < 0.9 * lattice.step * slopes.slope
+    near = np.abs(values[:, inner, inner, inner]) < SUSPICIOUS * lattice.step * slopes.slope
     if not near.any():
         return np.empty((0, 3))
     crossed = (masks != 0) & (masks != 255)
@@ -295,11 +318,15 @@ def _joined(parts: list[_SampledBricks], sampled: int) -> SurfaceBricks:
         )
     masks = np.concatenate([part.masks for part in parts])[order]
     lost = np.concatenate([part.lost for part in parts])
-    return SurfaceBricks(bricks[order], masks, (edges[0], edges[1], edges[2]), sampled, lost)
+    x, y, z = edges
+    large, middle, small = (
+        np.concatenate(keys) for keys in zip(*(part.separate for part in parts), strict=True)
+    )
+    return SurfaceBricks(bricks[order], masks, (x, y, z), sampled, lost, (large, middle, small))
 
 
 def _empty() -> _SampledBricks:
     none = Edges(np.empty(0, np.int64), np.empty((0, 3), np.int64), np.empty(0), np.empty(0))
     places = np.empty((0, 3), np.int64)
     masks = np.empty((0, BRICK, BRICK, BRICK), np.uint8)
-    return _SampledBricks(places, masks, (none, none, none), places, np.empty((0, 3)))
+    return _SampledBricks(places, masks, (none, none, none), places, np.empty((0, 3)), _NO_BLOCKS)

@@ -15,6 +15,7 @@ from distal.mesh import triangle_arithmetic
 from distal.mesh.exact import intersect
 from distal.mesh.kernels import rows_of
 from distal.mesh.solid import Floats, Integers
+from distal.polygons.whole_numbers import sorted_keys
 
 _PAIRS_AT_ONCE: Final = 1 << 18
 
@@ -67,7 +68,7 @@ def pinched_points(triangles: Integers, count: int) -> int:
         if (lower == smallest).all():
             break
         smallest = lower
-    rings = np.unique(corner * np.int64(len(corner)) + smallest) // len(corner)
+    rings = sorted_keys(corner * np.int64(len(corner)) + smallest) // len(corner)
     return int((np.bincount(rings, minlength=count) > 1).sum())
 
 

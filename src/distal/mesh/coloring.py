@@ -1,7 +1,7 @@
 """The colors of a mesh, from the materials of its shape.
 
-Input: a tree with materials, points and triangles. Output: linear colors. Where materials meet,
-colors change from one triangle to the next.
+Input: a tree with materials, and places. Output: linear colors and finishes. ``borders`` cuts
+triangles where these change abruptly.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from distal.frontend import Assembly
-from distal.ir.nodes import Param, Read, Return
+from distal.ir.nodes import Expr, Param, Read, Return
 from distal.ir.types import VEC3, VEC4, Type
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
@@ -20,7 +20,7 @@ from distal.lang.runtime_access import executor
 from distal.mesh import surface_arithmetic, triangle_arithmetic
 from distal.mesh.files.parts import Finish, Finishes
 from distal.mesh.kernels import rows_of
-from distal.mesh.palette import reduced
+from distal.mesh.palette import nearest, palette_of
 from distal.mesh.solid import Floats, Integers
 from distal.scene.lowering.attributes import AttributePoint, SurfaceAttribute, attribute, paints
 from distal.scene.lowering.parts.table import rolled_for
@@ -38,6 +38,21 @@ _STEP: Final = 1.0 / 64.0
 _MOST_FINISHES: Final = 16
 
 
+def surface_at(assembly: Assembly, body: StatementList, node: Node, p: Expr) -> Expr:
+    """Add statements that find the surface of a tree at a point, and return it.
+
+    Args:
+        assembly: The functions of the program.
+        body: The statements.
+        node: The tree.
+        p: The point.
+    """
+    composer = ShapeComposer(assembly, [node])
+    kind = SurfaceAttribute(composer, as_material(_UNPAINTED))
+    point = AttributePoint(p, ZERO_CELL, composer.values.all(node))
+    return body.let("surface", attribute(body, kind, node, point))
+
+
 class SurfaceAt(Composed):
     """A function of the surface at a point of a shape."""
 
@@ -51,13 +66,9 @@ class SurfaceAt(Composed):
 
     def compose(self, assembly: Assembly) -> str:
         """Add the function to the program, and return its name."""
-        node = rolled_for(assembly, self._node)
-        composer = ShapeComposer(assembly, [node])
-        body = StatementList({"p"})
-        kind = SurfaceAttribute(composer, as_material(_UNPAINTED))
-        point = AttributePoint(Read("p", VEC3), ZERO_CELL, composer.values.all(node))
-        surface = body.let("surface", attribute(body, kind, node, point))
-        found = composer.call(self._function, {"surface": surface})
+        node, body = rolled_for(assembly, self._node), StatementList({"p"})
+        surface = surface_at(assembly, body, node, Read("p", VEC3))
+        found = assembly.call(self._function, {"surface": surface})
         body.statements.append(Return(found))
         params, name = (Param("p", VEC3),), self._function.name
         return assembly.define(f"{name}_at", params, self.result, body.statements, node.place)
@@ -67,7 +78,71 @@ class SurfaceAt(Composed):
         return self._node.functions()
 
 
-def colors_of(
+class Painted:
+    """The appearance of a tree with materials, at any places.
+
+    Attributes:
+        palette: The colors that are used, of shape (k, 3); None for all.
+    """
+
+    def __init__(self, node: Node, *, params: Mapping[str, Any], time: float) -> None:
+        self._node = node
+        self._params = params
+        self._time = time
+        self._functions: dict[Func, SurfaceAt] = {}
+        given = [m for n in node.walk() for m in (n.material, n.cut_material) if m is not None]
+        self._shines = any(m.reflects or m.refracts or m.emits for m in given)
+        self._patterned = any(m.uses for m in given)
+        self.palette: Floats | None = None
+
+    @property
+    def several(self) -> bool:
+        """Whether there are several materials, or a palette."""
+        return self.palette is not None or changes_abruptly(self._node)
+
+    @property
+    def varies(self) -> bool:
+        """Whether the appearance may differ between places."""
+        return self.several or self._patterned
+
+    def colors(self, places: Floats) -> Floats:
+        """Return the color at each place, of the palette if there is one."""
+        found: Floats = self._values(surface_arithmetic.shown_color, VEC3, places)
+        return found if self.palette is None else nearest(self.palette, found)
+
+    def appearance(self, places: Floats) -> Floats:
+        """Return the numbers that differ where materials do: of the color and of the finish."""
+        colors = self.colors(places)
+        return np.concatenate([colors, self._finishes(places)], axis=1) if self._shines else colors
+
+    def of_triangles(self, points: Floats, triangles: Integers) -> Floats:
+        """Return the color of each triangle, at its middle."""
+        return self.colors(middles_of(points, triangles))
+
+    def finish(self, points: Floats, triangles: Integers) -> Finish | Finishes:
+        """Return how the mesh reflects light: as a whole, or each triangle."""
+        if not self._shines:
+            return _MATTE
+        rows = np.rint(self._finishes(middles_of(points, triangles)) / _STEP) * _STEP
+        found, which = np.unique(rows, axis=0, return_inverse=True)
+        if len(found) > _MOST_FINISHES:
+            return _finish(rows.mean(axis=0))
+        kinds = tuple(_finish(row) for row in found)
+        return kinds[0] if len(kinds) == 1 else Finishes(kinds, which.reshape(-1).astype(np.int64))
+
+    def _finishes(self, places: Floats) -> Floats:
+        numbers = self._values(surface_arithmetic.gltf_numbers, VEC4, places)
+        lights = self._values(surface_arithmetic.emitted_light, VEC3, places)
+        return np.concatenate([numbers, lights], axis=1)
+
+    def _values(self, function: Func, result: Type, places: Floats) -> Any:
+        made = self._functions.get(function)
+        if made is None:
+            made = self._functions[function] = SurfaceAt(self._node, function, result)
+        return executor().call(made, (places,), {}, params=self._params, time=self._time)
+
+
+def painted(
     node: Node,
     points: Floats,
     triangles: Integers,
@@ -75,59 +150,31 @@ def colors_of(
     params: Mapping[str, Any],
     time: float,
     most: int | None = None,
-) -> tuple[Floats | None, Floats | None]:
-    """Return the color of each point and, if there are several materials, of each triangle.
+) -> Painted | None:
+    """Return the appearance of a tree; None if nothing in it has a material.
 
     Args:
         node: The tree.
-        points: Of shape (n, 3).
+        points: Points of its mesh, of shape (n, 3).
         triangles: Of shape (m, 3).
         params: Values of parameters by name.
         time: Seconds.
-        most: The most different colors of triangles; None for any number.
-    """
-    if not paints(node):
-        return None, None
-    color = SurfaceAt(node, surface_arithmetic.shown_color, VEC3)
-    at_points = executor().call(color, (points,), {}, params=params, time=time)
-    if not _several(node) and most is None:
-        return at_points, None
-    middles = rows_of(triangle_arithmetic.middle, *(points[triangles[:, i]] for i in range(3)))
-    shades = executor().call(color, (middles,), {}, params=params, time=time)
-    return at_points, shades if most is None else reduced(shades, most)
-
-
-def finish_of(
-    node: Node, points: Floats, triangles: Integers, *, params: Mapping[str, Any], time: float
-) -> Finish | Finishes | None:
-    """Return how the mesh reflects light: as a whole, or each triangle.
-
-    Args:
-        node: The tree.
-        points: Of shape (n, 3).
-        triangles: Of shape (m, 3).
-        params: Values of parameters by name.
-        time: Seconds.
+        most: The most different colors; None for any number.
     """
     if not paints(node):
         return None
-    given = (m for n in node.walk() for m in (n.material, n.cut_material) if m is not None)
-    if not any(m.reflects or m.refracts or m.emits for m in given):
-        return _MATTE
-    middles = rows_of(triangle_arithmetic.middle, *(points[triangles[:, i]] for i in range(3)))
+    found = Painted(node, params=params, time=time)
+    if most is not None:
+        found.palette = palette_of(found.of_triangles(points, triangles), most)
+    return found
 
-    def values(function: Func, result: Type) -> Any:
-        surface = SurfaceAt(node, function, result)
-        return executor().call(surface, (middles,), {}, params=params, time=time)
 
-    numbers = values(surface_arithmetic.gltf_numbers, VEC4)
-    lights = values(surface_arithmetic.emitted_light, VEC3)
-    rows = np.rint(np.concatenate([numbers, lights], axis=1) / _STEP) * _STEP
-    found, which = np.unique(rows, axis=0, return_inverse=True)
-    if len(found) > _MOST_FINISHES:
-        return _finish(rows.mean(axis=0))
-    kinds = tuple(_finish(row) for row in found)
-    return kinds[0] if len(kinds) == 1 else Finishes(kinds, which.reshape(-1).astype(np.int64))
+def middles_of(points: Floats, triangles: Integers) -> Floats:
+    """Return the middles of triangles."""
+    found: Floats = rows_of(
+        triangle_arithmetic.middle, *(points[triangles[:, i]] for i in range(3))
+    )
+    return found
 
 
 def _finish(row: Floats) -> Finish:
@@ -141,8 +188,8 @@ def _finish(row: Floats) -> Finish:
     )
 
 
-def _several(node: Node) -> bool:
-    """Return whether the colors may change abruptly."""
+def changes_abruptly(node: Node) -> bool:
+    """Return whether the colors of a tree may change abruptly."""
     if node.material is not None:
         return False
     nodes = list(node.walk())

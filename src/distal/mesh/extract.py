@@ -7,19 +7,31 @@ what they miss. ``spacing`` chooses the length of a cell.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
-from distal.mesh.accuracy import Accuracy, CutCorner, lost_places, measured, split_lost
-from distal.mesh.bricks import Slopes, surface_bricks
+from distal.mesh.accuracy import (
+    Accuracy,
+    CutCorner,
+    Misses,
+    lost_places,
+    measured,
+    split_lost,
+    worst_corner,
+)
+from distal.mesh.bricks import Slopes, SurfaceBricks, surface_bricks
+from distal.mesh.cell_tree import CornerValues, balanced
+from distal.mesh.joining import JOINED_LEVELS
 from distal.mesh.kernels import FieldKernels
-from distal.mesh.lattice import Lattice
-from distal.mesh.places import cell_points, move_beyond, roots_of
+from distal.mesh.lattice import BRICK, Lattice, cells_of_keys, keys_of
+from distal.mesh.places import cell_points, margin_of, move_beyond, roots_of
+from distal.mesh.problems import MeshProblem
 from distal.mesh.reach import reached
-from distal.mesh.solid import Floats
-from distal.mesh.topology import topology_of
+from distal.mesh.solid import Floats, Integers
+from distal.mesh.topology import Topology, topology_of
+from distal.mesh.tree_topology import MOST_MARGIN, Tree, levels_of, of_units, topology_of_tree
 from distal.mesh.triangulate import Triangles, triangulated
 
 # The share of the work that each stage takes, measured on solids of the gallery.
@@ -28,6 +40,8 @@ _ROOTS: Final = 0.45
 _POINTS: Final = 0.6
 _TRIANGLES: Final = 0.85
 _SLOPE_ROUNDING: Final = 1.001
+# Cells are joined if there are this many times as many as blocks of eight that stay separate.
+_MOST_SEPARATE: Final = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +65,23 @@ class Extent:
 
 
 @dataclass(frozen=True, slots=True)
+class LookedAt:
+    """What equal cells have seen.
+
+    Attributes:
+        step: The length of a cell, in scene units.
+        sampled: How many bricks were sampled.
+        surface: The cells that the surface passes through.
+        suspected: Points of the surface that they do not see.
+    """
+
+    step: float
+    sampled: int
+    surface: Integers
+    suspected: Floats
+
+
+@dataclass(frozen=True, slots=True)
 class Extracted:
     """A mesh at one spacing.
 
@@ -67,6 +98,12 @@ class Extracted:
         corner: The corner that is cut most.
         steepest: The largest gradient at a root, for each unit of the slope that is declared.
         steepest_at: Where it is.
+        lattice: The lattice whose units the topology counts in.
+        topology: What belongs together.
+        misses: The distances one by one.
+        looked_at: What equal cells have seen.
+        tree: The cells, if they are not equal.
+        nearest: How far each is from the nearest point of the mesh; infinite if there is none.
     """
 
     step: float
@@ -81,6 +118,39 @@ class Extracted:
     corner: CutCorner
     steepest: float
     steepest_at: Floats
+    lattice: Lattice
+    topology: Topology
+    misses: Misses
+    looked_at: LookedAt
+    nearest: Floats
+    tree: Tree | None = None
+
+    @property
+    def levels(self) -> list[int]:
+        """How many points are in cells of each level: undivided ones, halves, and so on."""
+        sizes = self.topology.points.size
+        level = np.log2(self.topology.unit / sizes[sizes <= self.topology.unit]).astype(np.int64)
+        counts: list[int] = np.bincount(level, minlength=1).tolist()
+        return counts
+
+    @property
+    def joined(self) -> list[int]:
+        """How many points are in cells of twice the length of undivided ones, four times, eight."""
+        sizes = self.topology.points.size
+        level = np.log2(sizes[sizes > self.topology.unit] / self.topology.unit).astype(np.int64)
+        counts: list[int] = np.bincount(level)[1:].tolist()
+        return counts
+
+    @property
+    def error(self) -> float:
+        """The largest distance, measured both ways."""
+        return max(self.accuracy.largest, self.accuracy.from_surface)
+
+    @property
+    def divisible(self) -> bool:
+        """Whether its undivided cells can be halved."""
+        tree = self.tree
+        return levels_of(self.lattice) > 0 if tree is None else tree.levels > tree.base
 
     @property
     def exceeds_slope(self) -> bool:
@@ -110,6 +180,7 @@ def extracted(
     tolerance: float,
     most: int,
     watch: Callable[[float], None],
+    joined: float | None = None,
 ) -> Extracted | Nothing:
     """Return the mesh at one spacing.
 
@@ -120,43 +191,109 @@ def extracted(
         tolerance: How far lines between points may be from the surface, in scene units.
         most: The most bricks.
         watch: Called with the share of the work that is done.
+        joined: Cells are joined where the surface moves by less, in scene units; None for equal
+            cells.
 
     Raises:
         MeshProblem: The shape cannot be meshed.
     """
     lattice = Lattice.over(extent.low, extent.high, step)
+    if margin_of(lattice) > MOST_MARGIN:
+        raise MeshProblem("too far", tuple(extent.low))
     found = surface_bricks(
-        kernels, lattice, extent.slopes, most, lambda share: watch(_SAMPLED * share)
+        kernels, lattice, extent.slopes, most, lambda share: watch(_SAMPLED * share), joined
     )
     suspected = lost_places(kernels, found.lost, step)
     if not len(found.bricks):
         return Nothing(step, found.sampled, suspected)
+    surface = _surface_cells(found)
+    looked_at = LookedAt(step, found.sampled, surface, suspected)
+    joins = joined is not None and levels_of(lattice) > 0
+    if joins and len(found.separate[-1]) * _MOST_SEPARATE < len(surface):
+        topology, tree = topology_of_tree(_joined_tree(kernels, lattice, found, surface))
+        units = tree.values.lattice
+        made = completed(kernels, extent, units, topology, looked_at, tolerance, watch)
+        return replace(made, tree=tree)
     topology = topology_of(kernels, lattice, found)
-    roots = roots_of(kernels, lattice, topology, found)
+    del found  # samples and masks are not needed any more
+    return completed(kernels, extent, lattice, topology, looked_at, tolerance, watch)
+
+
+def _surface_cells(found: SurfaceBricks) -> Integers:
+    """Return the cells that the surface passes through, in the order of their keys."""
+    brick, *local = np.nonzero((found.masks != 0) & (found.masks != 255))
+    keys = keys_of(found.bricks[brick] * BRICK + np.stack(local, axis=1))
+    return cells_of_keys(np.sort(keys))
+
+
+def _joined_tree(
+    kernels: FieldKernels, lattice: Lattice, found: SurfaceBricks, surface: Integers
+) -> Tree:
+    """Return a tree of cells that are joined where their samples allow it.
+
+    Args:
+        kernels: The shape.
+        lattice: The lattice.
+        found: Its bricks.
+        surface: The cells that the surface passes through.
+    """
+    levels = levels_of(lattice)
+    values = CornerValues(kernels, of_units(lattice, levels))
+    parted = [*found.separate, *(found.separate[0][:0] for _ in range(levels))]
+    return Tree(values, keys_of(surface), balanced(parted), JOINED_LEVELS)
+
+
+def completed(
+    kernels: FieldKernels,
+    extent: Extent,
+    lattice: Lattice,
+    topology: Topology,
+    looked_at: LookedAt,
+    tolerance: float,
+    watch: Callable[[float], None],
+) -> Extracted:
+    """Return the mesh of a topology.
+
+    Args:
+        kernels: The shape.
+        extent: Its box and its slope.
+        lattice: The lattice whose units the topology counts in.
+        topology: What belongs together.
+        looked_at: What equal cells have seen.
+        tolerance: How far lines between points may be from the surface, in scene units.
+        watch: Called with the share of the work that is done.
+    """
+    roots = roots_of(kernels, lattice, topology)
     watch(_ROOTS)
     places, creased = cell_points(kernels, lattice, topology, roots)
     at_creases = np.flatnonzero(creased)
     reach = reached(kernels, lattice, topology, roots, places, at_creases)
     move_beyond(kernels, lattice, topology, roots, places, reach)
     watch(_POINTS)
-    inside_first = np.concatenate([edges.first for edges in found.edges]) < 0.0
+    inside_first = topology.edges.first < 0.0
     made = triangulated(kernels, lattice, topology, roots, places, reach, inside_first, tolerance)
     watch(_TRIANGLES)
-    accuracy, normals = measured(kernels, made, roots, topology, step)
-    lost, corner = split_lost(lattice, topology, places, suspected)
+    accuracy, normals, misses = measured(kernels, made, roots, topology, lattice.step)
+    suspected, surface = looked_at.suspected, looked_at.surface
+    lost, nearest = split_lost(lattice, topology, places, suspected, surface)
     lengths = np.sqrt(np.einsum("ij,ij->i", roots.slopes, roots.slopes))
     steepest = int(np.argmax(lengths))
     return Extracted(
-        step=step,
+        step=looked_at.step,
         cells=topology.cells,
-        sampled=found.sampled,
+        sampled=looked_at.sampled,
         made=made,
         normals=normals,
         accuracy=accuracy,
         creases=int(creased.sum()),
         shared=int(topology.points.shared.sum()),
         lost=lost,
-        corner=corner,
+        corner=worst_corner(suspected, nearest),
         steepest=float(lengths[steepest]) / extent.slopes.slope,
         steepest_at=roots.places[steepest],
+        lattice=lattice,
+        topology=topology,
+        misses=misses,
+        looked_at=looked_at,
+        nearest=nearest,
     )

@@ -16,14 +16,15 @@ import numpy as np
 
 from distal.lang.render_options import Cancel, Progress, checked_time
 from distal.mesh import simplify
+from distal.mesh.borders import cut_at_borders
 from distal.mesh.bricks import Slopes
 from distal.mesh.checks import checked
-from distal.mesh.coloring import colors_of, finish_of
+from distal.mesh.coloring import Painted, painted
 from distal.mesh.extract import Extent, Extracted, Nothing
 from distal.mesh.files.parts import Finish, Finishes
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.palette import MOST as MOST_COLORS
-from distal.mesh.parts import leaves_at, named
+from distal.mesh.parts import PlacedPart, part_at, parts_at
 from distal.mesh.problems import MeshProblem
 from distal.mesh.requests import box_of, watch_of
 from distal.mesh.simplify import Simplified
@@ -41,7 +42,8 @@ DEFAULT_TOLERANCE: Final = 2e-3
 # A mesh that is simplified first takes this share of the tolerance, and leaves the rest.
 FIRST_SHARE: Final = 0.5
 _MOST_NAMED: Final = 8  # lost parts that are named
-_STEEP: Final = 1e6  # a slope above it says nothing
+_MOST_ASKED: Final = 100  # members of a union that are asked for their ends
+STEEP: Final = 1e6  # a slope above it says nothing
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +130,14 @@ def mesh_of_node(node: Node, request: MeshRequest) -> Mesh:
     found, wanted, kernels = found_mesh(node, request)
     report = _report(node, found, wanted, request)
     points, triangles, normals = found.made.points, found.made.triangles, found.normals
-    at_points, of_triangles, finish = _appearance(node, points, triangles, request)
+    paint = _paint(node, points, triangles, request)
+    if paint is not None and paint.varies:
+        watch = watch_of(replace(request, progress=None))
+        cut = cut_at_borders(points, triangles, normals, paint.appearance, found.step, watch)
+        points, triangles, normals = cut.points, cut.triangles, cut.normals
+        report["points"], report["triangles"] = len(points), len(triangles)
+        report["border_points"] = cut.added
+    at_points, of_triangles, finish = _appearance(paint, points, triangles, report)
     if request.simplify:
         imported(simplify.PACKAGE)
         less = simplify.simplified(
@@ -145,7 +154,7 @@ def mesh_of_node(node: Node, request: MeshRequest) -> Mesh:
         if less is not None:
             triangles = less.triangles
             points, normals = points[less.points], normals[less.points]
-            at_points, of_triangles, finish = _appearance(node, points, triangles, request)
+            at_points, of_triangles, finish = _appearance(paint, points, triangles, report)
     if request.check:
         report["check"] = checked(points, triangles, watch_of(request))
     report["rows"] = kernels.rows
@@ -156,16 +165,24 @@ def mesh_of_node(node: Node, request: MeshRequest) -> Mesh:
     return Mesh(*made, at_points, of_triangles, report, node.name, finish)
 
 
+def _paint(node: Node, points: Floats, triangles: Integers, request: MeshRequest) -> Painted | None:
+    """Return the appearance of a tree, with the colors that were asked for; None without any."""
+    if request.colors is False:
+        return None
+    most = None if request.colors is True else request.colors
+    given, time = request.params, request.time
+    return painted(node, points, triangles, params=given, time=time, most=most)
+
+
 def _appearance(
-    node: Node, points: Floats, triangles: Integers, request: MeshRequest
+    paint: Painted | None, points: Floats, triangles: Integers, report: Mapping[str, Any]
 ) -> tuple[Floats | None, Floats | None, Finish | Finishes | None]:
     """Return the colors of points and of triangles, and the finish."""
-    if request.colors is False:
+    if paint is None:
         return None, None, None
-    most = None if request.colors is True else request.colors
-    where, params, time = (node, points, triangles), request.params, request.time
-    at_points, of_triangles = colors_of(*where, most=most, params=params, time=time)
-    return at_points, of_triangles, finish_of(*where, params=params, time=time)
+    sharp = paint.several or report.get("border_points", 0) > 0
+    of_triangles = paint.of_triangles(points, triangles) if sharp else None
+    return paint.colors(points), of_triangles, paint.finish(points, triangles)
 
 
 def _record_simplified(report: dict[str, Any], less: Simplified | None) -> None:
@@ -221,20 +238,36 @@ def extent_of(node: Node, request: MeshRequest) -> Extent:
         SceneValueError: It has no end, or it is empty.
     """
     (slope, divisor), low, high = box_of(node, request.params, request.time)
-    endless = [
-        axis for axis, a, b in zip("xyz", low, high, strict=True) if not math.isfinite(b - a)
-    ]
+    endless = _axes_without_end(low, high)
     if endless:
         refuse(
             f"'{node.name}' has no end along {' and '.join(endless)}, and a mesh is of a part of "
             "space with an end",
-            "intersect it with a box: shape & Box(…); an own function takes bounds=(low, high)",
+            _endless_hint(node, request),
             node.place,
         )
     if (low >= high).any():
         refuse(f"'{node.name}' is empty: its box has no volume", None, node.place)
-    positive = slope if 0.0 < slope < _STEEP else _STEEP
-    return Extent(low, high, Slopes(positive, divisor if 0.0 < divisor < _STEEP else positive))
+    positive = slope if 0.0 < slope < STEEP else STEEP
+    return Extent(low, high, Slopes(positive, divisor if 0.0 < divisor < STEEP else positive))
+
+
+def _axes_without_end(low: Floats, high: Floats) -> list[str]:
+    return [axis for axis, a, b in zip("xyz", low, high, strict=True) if not math.isfinite(b - a)]
+
+
+def _endless_hint(node: Node, request: MeshRequest) -> str:
+    """Return what to write: a union without its infinite members, or a box."""
+    members = node.children if node.rule.name == "union" else ()
+    endless = []
+    for member in members[:_MOST_ASKED]:
+        _, low, high = box_of(member, request.params, request.time)
+        if _axes_without_end(low, high):
+            endless.append(f"'{member.name}'")
+    if 0 < len(endless) < len(members):
+        names = ", ".join(dict.fromkeys(endless))
+        return f"leave out {names}; distal mesh FILE:NAME meshes one shape of a file"
+    return "intersect it with a box: shape & Box(…); an own function takes bounds=(low, high)"
 
 
 def _refuse_problem(node: Node, extent: Extent, problem: MeshProblem) -> NoReturn:
@@ -250,6 +283,13 @@ def _refuse_problem(node: Node, extent: Extent, problem: MeshProblem) -> NoRetur
             refuse(
                 f"the surface of '{node.name}' leaves its box: it goes on{where}",
                 f"give larger bounds than {shown_place(extent.low)} to {shown_place(extent.high)}",
+                node.place,
+            )
+        case "too far":
+            x, y, z = (-float(number) for number in (extent.low + extent.high) / 2.0)
+            refuse(
+                f"'{node.name}' is too far from the origin for so fine a mesh: files hold 7 digits",
+                f"mesh it at the origin: .translate({x:.4g}, {y:.4g}, {z:.4g})",
                 node.place,
             )
         case "too many":
@@ -273,10 +313,10 @@ def _refuse_too_fine(node: Node, found: TooFine, wanted: Wanted) -> NoReturn:
 def _refuse_nothing(node: Node, found: Nothing, request: MeshRequest) -> NoReturn:
     if not len(found.lost):
         refuse(f"'{node.name}' has no inside: its values are positive everywhere", None, node.place)
-    leaf = leaves_at(node, found.lost[:1], request.params, request.time)[0]
+    part = part_at(node, found.lost[0], request.params, request.time)
     thin = found.step * BALL_CELLS
     refuse(
-        f"nothing of '{node.name}' is as thick as {thin:.2g}: {named(leaf)} is thinner at "
+        f"nothing of '{node.name}' is as thick as {thin:.2g}: {part.text} is thinner at "
         f"{shown_place(found.lost[0])}",
         f"a smaller feature=, such as {thin / 4.0:.2g}",
         node.place,
@@ -323,21 +363,23 @@ def _report(node: Node, found: Extracted, wanted: Wanted, request: MeshRequest) 
         )
     corner = found.corner
     if corner.distance > wanted.tolerance and not lost:
-        leaf = leaves_at(node, np.array([corner.place]), request.params, request.time)[0]
+        part = part_at(node, np.array(corner.place), request.params, request.time)
         warnings.append(
-            f"a corner of {named(leaf)} is cut by up to {corner.distance:.3g} at "
+            f"a corner of {part.text} is cut by up to {corner.distance:.3g} at "
             f"{shown_place(corner.place)}: it ends between samples"
         )
     if found.exceeds_slope:
-        leaf = leaves_at(node, found.steepest_at[None], request.params, request.time)[0]
+        part = part_at(node, found.steepest_at, request.params, request.time)
         warnings.append(
-            f"{named(leaf)} changes {found.steepest:.3g} times as fast as its slope says, at "
+            f"{part.text} changes {found.steepest:.3g} times as fast as its slope says, at "
             f"{shown_place(found.steepest_at)}: separate parts may be missing"
         )
     return {
         "tolerance": wanted.tolerance,
         "feature": found.step * BALL_CELLS,
         "spacing": found.step,
+        "levels": found.levels,
+        "joined": found.joined,
         "cells": found.cells,
         "bricks": found.sampled,
         "points": len(found.made.points),
@@ -362,11 +404,10 @@ def _report(node: Node, found: Extracted, wanted: Wanted, request: MeshRequest) 
 def _lost_parts(node: Node, found: Extracted, request: MeshRequest) -> list[dict[str, Any]]:
     """Return the shapes that are too thin in places: name, line, one place and how many."""
     places = found.lost
-    parts: dict[int, dict[str, Any]] = {}
-    for leaf, place in zip(
-        leaves_at(node, places, request.params, request.time), places, strict=True
+    parts: dict[PlacedPart, dict[str, Any]] = {}
+    for part, place in zip(
+        parts_at(node, places, request.params, request.time), places, strict=True
     ):
-        line = None if leaf.place is None else leaf.place.line
-        first = {"name": named(leaf), "line": line, "place": place.tolist(), "count": 0}
-        parts.setdefault(id(leaf), first)["count"] += 1
+        first = {"name": part.text, "line": part.line, "place": place.tolist(), "count": 0}
+        parts.setdefault(part, first)["count"] += 1
     return list(parts.values())[:_MOST_NAMED]

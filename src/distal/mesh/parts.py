@@ -1,11 +1,12 @@
 """Which shapes of the author's tree are at places in space: for messages.
 
-Input: a tree and places. Output: nodes. Does not depend on meshes.
+Input: a tree and places. Output: shapes with the author's names. Does not depend on meshes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from distal.frontend import Assembly
@@ -16,6 +17,7 @@ from distal.lang.functions import Func
 from distal.lang.runtime_access import executor
 from distal.mesh.solid import Floats
 from distal.scene.lowering.attributes import AttributePoint, Part, attribute
+from distal.scene.lowering.part_map import path_in
 from distal.scene.lowering.parts.table import rolled_for
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.tree.node import Node
@@ -54,8 +56,34 @@ class PartAt(Composed):
         return self._node.functions()
 
 
-def leaves_at(node: Node, places: Floats, params: Mapping[str, Any], time: float) -> list[Node]:
-    """Return the leaf of the tree at each place.
+@dataclass(frozen=True, slots=True)
+class PlacedPart:
+    """What is at a place.
+
+    Attributes:
+        leaf: The shape of the library.
+        label: The author's name that is nearest to it, its own or of what holds it; "" without any.
+    """
+
+    leaf: Node
+    label: str
+
+    @property
+    def line(self) -> int | None:
+        """The author's line; None if it is not known."""
+        return None if self.leaf.place is None else self.leaf.place.line
+
+    @property
+    def text(self) -> str:
+        """The author's name, the kind of the shape and the line, for messages."""
+        kind = self.leaf.rule.name
+        return _with_line(f"{self.label} ({kind})" if self.label else kind, self.line)
+
+
+def parts_at(
+    node: Node, places: Floats, params: Mapping[str, Any], time: float
+) -> list[PlacedPart]:
+    """Return what of the tree is at each place.
 
     Args:
         node: The tree.
@@ -67,10 +95,25 @@ def leaves_at(node: Node, places: Floats, params: Mapping[str, Any], time: float
         return []
     part = PartAt(node)
     numbers = executor().call(part, (places,), {}, params=params, time=time)
-    return [part.paths[int(number)][-1] for number in numbers]
+    found: dict[int, PlacedPart] = {}
+    for number in {int(number) for number in numbers}:
+        path = part.paths[number]
+        # A table of parts has not all nodes of the author's tree.
+        above = (*reversed(path), *reversed(path_in(node, path)))
+        label = next((holder.label for holder in above if holder.label), "")
+        found[number] = PlacedPart(path[-1], label)
+    return [found[int(number)] for number in numbers]
+
+
+def part_at(node: Node, place: Floats, params: Mapping[str, Any], time: float) -> PlacedPart:
+    """Return what of a tree is at a place."""
+    return parts_at(node, place[None], params, time)[0]
 
 
 def named(node: Node) -> str:
     """Return a shape's name and the author's line, for messages."""
-    line = "" if node.place is None else f" (line {node.place.line})"
-    return f"'{node.name}'{line}"
+    return _with_line(node.name, None if node.place is None else node.place.line)
+
+
+def _with_line(name: str, line: int | None) -> str:
+    return f"'{name}'" if line is None else f"'{name}' (line {line})"

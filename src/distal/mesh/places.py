@@ -12,19 +12,20 @@ from typing import Final
 import numpy as np
 
 from distal.ir.types import FLOAT, VEC3, Array, Type
-from distal.mesh import arithmetic
-from distal.mesh.bricks import SurfaceBricks
+from distal.mesh import arithmetic, face_arithmetic
 from distal.mesh.kernels import FieldKernels, rows_of
-from distal.mesh.lattice import Lattice
+from distal.mesh.lattice import BRICK, Lattice
 from distal.mesh.solid import Bools, Floats, Integers
 from distal.mesh.tables import cell_tables
 from distal.mesh.topology import Topology
 
-_SMALLEST_MARGIN: Final = 1e-4
-# Points are kept this many units in the last place of 32 bits away from sides of cells.
-_ULPS: Final = 8.0
-_ULP: Final = 2.0**-23
+SMALLEST_MARGIN: Final = 1e-4
+# Points are kept this far away from sides of cells: 8 units in the last place of 32 bits.
+SIDE_MARGIN: Final = 8.0 * 2.0**-23
+# The share of the way that is kept free in front of the planes around a region.
+REGION_MARGIN: Final = 0.02
 _AT_ONCE: Final = 1 << 16
+_MOST_ROOTS: Final = 12  # of one point at a crease
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,33 +43,39 @@ class Roots:
     kept: Floats
 
 
+def margins_of(lattice: Lattice, size: Integers) -> Floats:
+    """Return how far from its cell's sides a point must be, as a share of the cell.
+
+    Args:
+        lattice: The lattice.
+        size: The sides of cells, in units of the lattice.
+    """
+    far = lattice.places(lattice.extent * BRICK)
+    largest = float(max(np.abs(lattice.origin).max(), np.abs(far).max()))
+    found: Floats = np.maximum(SMALLEST_MARGIN, SIDE_MARGIN * largest / (lattice.step * size))
+    return found
+
+
 def margin_of(lattice: Lattice) -> float:
-    """Return how far from its cell's sides a point must be, in cells."""
-    far = lattice.places(lattice.extent * 8)
-    size = float(max(np.abs(lattice.origin).max(), np.abs(far).max()))
-    return max(_SMALLEST_MARGIN, _ULPS * _ULP * size / lattice.step)
+    """Return the margin of a cell of the size of a unit."""
+    return float(margins_of(lattice, np.ones(1, np.int64))[0])
 
 
-def roots_of(
-    kernels: FieldKernels, lattice: Lattice, topology: Topology, found: SurfaceBricks
-) -> Roots:
+def roots_of(kernels: FieldKernels, lattice: Lattice, topology: Topology) -> Roots:
     """Return the roots on all edges.
 
     Args:
         kernels: The shape.
         lattice: The lattice.
         topology: Its edges.
-        found: The values at their ends.
     """
     edges = topology.edges
     start = lattice.places(edges.start)
     way = np.zeros_like(start)
-    way[np.arange(len(way)), edges.axis] = lattice.step
-    first = np.concatenate([e.first for e in found.edges])
-    second = np.concatenate([e.second for e in found.edges])
-    columns = (start, way, first, second)
+    way[np.arange(len(way)), edges.axis] = lattice.step * edges.size
+    columns = (start, way, edges.first, edges.second)
     share, slopes = kernels.call(arithmetic.root_on_edge, *columns, types=_ROOT_COLUMNS)
-    margin = margin_of(lattice)
+    margin = margins_of(lattice, edges.size)
     kept = np.clip(share, margin, 1.0 - margin)
     return Roots(start + way * share[:, None], slopes, start + way * kept[:, None])
 
@@ -86,31 +93,50 @@ def cell_points(
     """
     points = topology.points
     count = len(points.region)
-    uses = np.diff(points.first, append=len(points.edges))
     mean = means(topology, roots)
-    normals = rows_of(arithmetic.unit_or_zero, roots.slopes)[points.edges]
-    owner = np.repeat(np.arange(count), uses)
-    average = rows_of(arithmetic.unit_or_zero, np.add.reduceat(normals, points.first))
-    cosine = rows_of(arithmetic.cosine, normals, average[owner])
-    creased = np.minimum.reduceat(cosine, points.first) < arithmetic.CREASE_COSINE
-    margin = margin_of(lattice)
-    low = lattice.places(points.cell + margin)
-    high = lattice.places(points.cell + (1.0 - margin))
+    creased = np.empty(count, np.bool_)
+    for some in pieces(np.arange(count)):
+        creased[some] = _creased(topology, roots, int(some[0]), int(some[-1]) + 1)
+    margin = margins_of(lattice, points.size)[:, None]
+    size = points.size[:, None]
+    low = lattice.places(points.cell + margin * size)
+    high = lattice.places(points.cell + (1.0 - margin) * size)
     found = np.empty((count, 3))
-    smooth = np.flatnonzero(~creased)
-    found[smooth] = kernels.call(
-        arithmetic.smooth_point,
-        mean[smooth],
-        low[smooth],
-        high[smooth],
-        types=[("mean", VEC3), ("low", VEC3), ("high", VEC3)],
-    )
+    for smooth in pieces(np.flatnonzero(~creased)):
+        found[smooth] = kernels.call(
+            arithmetic.smooth_point,
+            mean[smooth],
+            low[smooth],
+            high[smooth],
+            types=[("mean", VEC3), ("low", VEC3), ("high", VEC3)],
+        )
     rows = np.flatnonzero(creased)
     found[rows] = crease_points(kernels, topology, roots, low[rows], high[rows], rows)
     shared = np.flatnonzero(points.shared)
     if len(shared):
-        found[shared] = _in_regions(lattice, topology, mean, found, margin, shared)
+        found[shared] = _in_regions(lattice, topology, mean, found, shared)
     return found, creased
+
+
+def _creased(topology: Topology, roots: Roots, start: int, end: int) -> Bools:
+    """Return which points are at a crease: the normals at the roots of each differ.
+
+    Args:
+        topology: What belongs together.
+        roots: The roots.
+        start: The first point.
+        end: The one after the last.
+    """
+    points = topology.points
+    stop = points.first[end] if end < len(points.first) else len(points.edges)
+    first = points.first[start:end] - points.first[start]
+    uses = np.diff(points.first[start:end], append=stop)
+    edges = points.edges[points.first[start] : stop]
+    normals = rows_of(arithmetic.unit_or_zero, roots.slopes[edges])
+    average = rows_of(arithmetic.unit_or_zero, np.add.reduceat(normals, first))
+    cosine = rows_of(arithmetic.cosine, normals, np.repeat(average, uses, axis=0))
+    found: Bools = np.minimum.reduceat(cosine, first) < arithmetic.CREASE_COSINE
+    return found
 
 
 def pieces(rows: Integers) -> list[Integers]:
@@ -150,9 +176,11 @@ def crease_points(
     for some in pieces(np.arange(len(rows))):
         chosen = rows[some]
         uses = np.diff(points.first, append=len(points.edges))[chosen]
-        slot = np.arange(12)[None]
+        slot = np.arange(_MOST_ROOTS)[None]
         used = slot < uses[:, None]
-        edge = points.edges[np.where(used, points.first[chosen][:, None] + slot, 0)]
+        # A cell beside smaller ones can have more: evenly chosen ones say enough of its planes.
+        nth = slot * np.maximum(uses[:, None], _MOST_ROOTS) // _MOST_ROOTS
+        edge = points.edges[np.where(used, points.first[chosen][:, None] + nth, 0)]
         found[some] = kernels.call(
             arithmetic.crease_point,
             roots.places[edge],
@@ -174,7 +202,7 @@ def move_beyond(
     places: Floats,
     reach: Integers,
 ) -> None:
-    """Move points at creases into the empty cells that they may reach, if that is nearer.
+    """Move points at creases into the empty cells that they may reach, if that is clearly nearer.
 
     Args:
         kernels: The shape.
@@ -188,13 +216,16 @@ def move_beyond(
     if not len(rows):
         return
     cells, ways = topology.points.cell[rows], reach[rows]
-    margin = margin_of(lattice)
-    low = lattice.places(cells + margin + np.minimum(ways, 0))
-    high = lattice.places(cells + (1.0 - margin) + np.maximum(ways, 0))
+    size = topology.points.size[rows]
+    margin = margins_of(lattice, size)[:, None]
+    low = lattice.places(cells + (margin + np.minimum(ways, 0)) * size[:, None])
+    high = lattice.places(cells + ((1.0 - margin) + np.maximum(ways, 0)) * size[:, None])
     moved = crease_points(kernels, topology, roots, low, high, rows)
     after = kernels.call(arithmetic.distance_to_field, moved, types=[("p", VEC3)])
     before = kernels.call(arithmetic.distance_to_field, places[rows], types=[("p", VEC3)])
-    places[rows[after < before]] = moved[after < before]
+    # Where a crease is in the cell too, rounding does not decide.
+    nearer = after < before - margin_of(lattice) * lattice.step
+    places[rows[nearer]] = moved[nearer]
 
 
 def _in_regions(
@@ -202,7 +233,6 @@ def _in_regions(
     topology: Topology,
     mean: Floats,
     found: Floats,
-    margin: float,
     rows: Integers,
 ) -> Floats:
     """Return points of cells with several components, each within its component's region.
@@ -212,7 +242,6 @@ def _in_regions(
         topology: Its points.
         mean: The mean root of each point's edges, which is inside of the region.
         found: The place that each point should have.
-        margin: The share of the way that is kept free.
         rows: The points to compute.
     """
     points = topology.points
@@ -222,9 +251,9 @@ def _in_regions(
         mean[rows],
         found[rows],
         lattice.places(points.cell[rows]),
-        np.full(len(rows), lattice.step),
+        lattice.step * points.size[rows],
         planes,
-        np.full(len(rows), max(0.02, margin)),
+        np.maximum(REGION_MARGIN, margins_of(lattice, points.size[rows])),
     )
     return result
 
@@ -270,10 +299,11 @@ def face_points(
     chosen = rows[free]
     side = 1.0 - np.eye(3)[segments.axis[chosen]]
     ways = common_reach(topology, reach, chosen)
-    margin = margin_of(lattice) * side
+    size = segments.size[chosen]
+    margin = margins_of(lattice, size)[:, None] * side
     corner = segments.face[chosen]
-    low = lattice.places(corner + margin + np.minimum(ways, 0))
-    high = lattice.places(corner + side - margin + np.maximum(ways, 0))
+    low = lattice.places(corner + (margin + np.minimum(ways, 0)) * size[:, None])
+    high = lattice.places(corner + (side - margin + np.maximum(ways, 0)) * size[:, None])
     found[free] = _in_faces(kernels, topology, roots, low, high, chosen)
     return found
 
@@ -291,7 +321,7 @@ def wide_face_points(
         rows: The segments.
     """
     segments = topology.segments
-    side = 1.0 - np.eye(3)[segments.axis[rows]]
+    side = (1.0 - np.eye(3)[segments.axis[rows]]) * segments.size[rows, None]
     low = lattice.places(segments.face[rows] - side)
     high = lattice.places(segments.face[rows] + 2.0 * side)
     return _in_faces(kernels, topology, roots, low, high, rows)
@@ -321,7 +351,7 @@ def _in_faces(
         chosen = rows[some]
         a, b = segments.edge_a[chosen], segments.edge_b[chosen]
         found[some] = kernels.call(
-            arithmetic.face_point,
+            face_arithmetic.face_point,
             roots.kept[a],
             roots.kept[b],
             roots.slopes[a],
@@ -342,8 +372,8 @@ _ROOT_COLUMNS: Final[list[tuple[str, Type]]] = [
 ]
 _FACE_COLUMNS: Final = ("a", "b", "slope_a", "slope_b", "normal", "low", "high")
 _CREASE_COLUMNS: Final[list[tuple[str, Type]]] = [
-    ("points", Array(VEC3, 12)),
-    ("slopes", Array(VEC3, 12)),
-    ("weights", Array(FLOAT, 12)),
+    ("points", Array(VEC3, _MOST_ROOTS)),
+    ("slopes", Array(VEC3, _MOST_ROOTS)),
+    ("weights", Array(FLOAT, _MOST_ROOTS)),
     *((name, VEC3) for name in ("middle", "low", "high")),
 ]

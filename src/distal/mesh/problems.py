@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Literal, TypeAlias
 
-Kind: TypeAlias = Literal["too many", "no number", "leaves its box"]
+Kind: TypeAlias = Literal["too many", "no number", "leaves its box", "too far"]
 
 
 class MeshProblem(Exception):  # noqa: N818 (no message: only a kind)

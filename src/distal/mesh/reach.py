@@ -5,6 +5,9 @@ may be left. A crease can pass through a cell without a change of sign at its co
 lattice sees nothing. Such a cell is given to one neighbour at most. Both together are convex, and
 the mesh has nothing else there: points and faces may reach into it without triangles that
 intersect.
+
+Which neighbour gets a cell depends on directions alone, not on the order of points: a page, whose
+points have another order, gives the same cells.
 """
 
 from __future__ import annotations
@@ -14,16 +17,14 @@ from typing import Final
 import numpy as np
 
 from distal.ir.types import VEC3
-from distal.mesh import arithmetic
-from distal.mesh.kernels import FieldKernels
+from distal.mesh import arithmetic, face_arithmetic
+from distal.mesh.cell_tree import AROUND
+from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.lattice import Lattice, keys_of, position
-from distal.mesh.places import Roots, crease_points, wide_face_points
+from distal.mesh.places import Roots, crease_points, margin_of, wide_face_points
 from distal.mesh.solid import Bools, Floats, Integers
 from distal.mesh.topology import Topology
-
-# Points at creases that are farther from the surface than this, in cells, are looked at.
-_OFF: Final = 1e-6
-_OFF_IN_FACE: Final = 1e-3
+from distal.polygons.whole_numbers import sorted_keys
 
 
 def reached(
@@ -44,103 +45,126 @@ def reached(
         places: The points, each in its own cell.
         creased: The points at creases.
     """
-    points = topology.points
-    found = np.zeros((len(points.region), 3), np.int64)
+    points, unit = topology.points, topology.unit
     free = np.zeros(len(points.region), np.bool_)
-    free[creased] = ~points.shared[creased]
+    undivided = position(keys_of(points.cell[creased] // unit), topology.closed) < 0
+    undivided &= points.size[creased] == unit
+    undivided[undivided] = _beside_equal(topology, points.cell[creased[undivided]] // unit)
+    free[creased] = ~points.shared[creased] & undivided
     off = kernels.call(arithmetic.distance_to_field, places[creased], types=[("p", VEC3)])
-    rows = creased[(off > _OFF * lattice.step) & free[creased]]
-    occupied = np.sort(keys_of(points.cell))
-    given: set[int] = set()
+    rows = creased[(off > margin_of(lattice) * lattice.step) & free[creased]]
+    given = _Given(topology)
     if len(rows):
-        corner = points.cell[rows]
-        low, high = lattice.places(corner - 1), lattice.places(corner + 2)
-        wanted = crease_points(kernels, topology, roots, low, high, rows)
-        ways = one_way(wanted < lattice.places(corner), wanted > lattice.places(corner + 1))
-        keys = keys_of(corner + ways)
-        possible = ways.any(axis=1) & (position(keys, occupied) < 0)
-        for row, way, key in zip(rows[possible], ways[possible], keys[possible], strict=True):
-            if int(key) not in given:
-                given.add(int(key))
-                found[row] = way
-    _reach_by_faces(kernels, lattice, topology, roots, places, free, occupied, given, found)
-    return found
+        given.add(rows[:, None], _ways_of_points(kernels, lattice, topology, roots, rows))
+    segments = topology.segments
+    rows = np.flatnonzero(free[segments.lower] & free[segments.upper] & ~segments.paired)
+    line = places[segments.lower[rows]], places[segments.upper[rows]]
+    miss = kernels.call(face_arithmetic.middle_distance, *line, types=[("p", VEC3), ("q", VEC3)])
+    rows = rows[miss > arithmetic.OFF_FACE * unit * lattice.step]
+    if len(rows):
+        # Both cells of a face reach to the same side, where a crease passes beside the face.
+        both = np.stack([segments.lower[rows], segments.upper[rows]], axis=1)
+        given.add(both, _ways_of_faces(kernels, lattice, topology, roots, rows))
+    return given.ways
 
 
-def _reach_by_faces(
-    kernels: FieldKernels,
-    lattice: Lattice,
-    topology: Topology,
-    roots: Roots,
-    places: Floats,
-    free: Bools,
-    occupied: Integers,
-    given: set[int],
-    found: Integers,
-) -> None:
-    """Let both cells of a face reach to the same side, where a crease passes beside the face.
+def _ways_of_points(
+    kernels: FieldKernels, lattice: Lattice, topology: Topology, roots: Roots, rows: Integers
+) -> Integers:
+    """Return the codes of the directions in which points should leave their cells.
 
     Args:
         kernels: The shape.
         lattice: The lattice.
-        topology: What belongs together.
+        topology: Its points.
         roots: The roots on its edges.
-        places: The points, each in its own cell.
-        free: Whether a point is at a crease, and alone in its cell.
-        occupied: The keys of all cells that the surface passes through, sorted.
-        given: The keys of the cells that are given to a neighbour; added to.
-        found: The directions; changed.
+        rows: The points.
     """
-    segments, points = topology.segments, topology.points
-    rows = np.flatnonzero(free[segments.lower] & free[segments.upper] & ~segments.paired)
-    if not len(rows):
-        return
-    line = places[segments.lower[rows]], places[segments.upper[rows]]
-    miss = kernels.call(arithmetic.middle_distance, *line, types=[("p", VEC3), ("q", VEC3)])
-    rows = rows[miss > _OFF_IN_FACE * lattice.step]
-    if not len(rows):
-        return
-    corner = segments.face[rows]
-    side = 1 - np.eye(3, dtype=np.int64)[segments.axis[rows]]
-    wanted = wide_face_points(kernels, lattice, topology, roots, rows)
-    below = (wanted < lattice.places(corner)) & (side > 0)
-    ways = one_way(below, (wanted > lattice.places(corner + side)) & (side > 0))
-    ends = segments.lower[rows], segments.upper[rows]
-    keys = [keys_of(points.cell[end] + ways) for end in ends]
-    empty = [position(key, occupied) < 0 for key in keys]
-    for i in np.flatnonzero(ways.any(axis=1) & empty[0] & empty[1]):
-        both = [(int(end[i]), int(key[i])) for end, key in zip(ends, keys, strict=True)]
-        if all(_may_reach(point, key, ways[i], given, found) for point, key in both):
-            for point, key in both:
-                given.add(key)
-                found[point] = ways[i]
+    corner, unit = topology.points.cell[rows], topology.unit
+    low, high = lattice.places(corner - unit), lattice.places(corner + 2 * unit)
+    wanted = crease_points(kernels, topology, roots, low, high, rows)
+    return _codes(lattice, wanted, corner, corner + unit)
 
 
-def _may_reach(point: int, key: int, way: Integers, given: set[int], found: Integers) -> bool:
-    """Return whether a point's cell may reach into an empty cell.
-
-    Args:
-        point: The point.
-        key: The empty cell.
-        way: Where it is.
-        given: The cells that are given to a neighbour.
-        found: The directions so far.
-    """
-    if found[point].any():
-        return bool((found[point] == way).all())
-    return key not in given
-
-
-def one_way(
-    below: Bools,
-    above: Bools,
+def _ways_of_faces(
+    kernels: FieldKernels, lattice: Lattice, topology: Topology, roots: Roots, rows: Integers
 ) -> Integers:
-    """Return the direction in which a place is outside; 0 if it is outside in several.
+    """Return the codes of the directions in which points of segments should leave their faces.
 
     Args:
-        below: Whether it is below along each axis.
-        above: Whether it is above.
+        kernels: The shape.
+        lattice: The lattice.
+        topology: Its segments.
+        roots: The roots on its edges.
+        rows: The segments.
     """
-    ways: Integers = above.astype(np.int64) - below.astype(np.int64)
-    ways[np.abs(ways).sum(axis=1) != 1] = 0
-    return ways
+    corner, unit = topology.segments.face[rows], topology.unit
+    wanted = wide_face_points(kernels, lattice, topology, roots, rows)
+    normal = unit * np.eye(3, dtype=np.int64)[topology.segments.axis[rows]]
+    return _codes(lattice, wanted, corner - normal, corner + unit)
+
+
+def _codes(lattice: Lattice, wanted: Floats, low: Integers, high: Integers) -> Integers:
+    """Return the codes of the directions in which places are outside of boxes.
+
+    Args:
+        lattice: The lattice.
+        wanted: The places.
+        low: The lowest lattice point of each box.
+        high: The highest.
+    """
+    margin = margin_of(lattice)
+    box = lattice.places(low - margin), lattice.places(high + margin)
+    codes: Integers = rows_of(face_arithmetic.way_out, wanted, *box).astype(np.int64)
+    return codes
+
+
+def _beside_equal(topology: Topology, cells: Integers) -> Bools:
+    """Return which cells share no corner with a larger one."""
+    found = np.ones(len(cells), np.bool_)
+    for number, keys in enumerate(reversed(topology.larger)):
+        if not len(keys):
+            continue
+        for way in AROUND:
+            found &= position(keys_of((cells + way) >> number + 1), keys) < 0
+    return found
+
+
+class _Given:
+    """The empty cells that are given to points.
+
+    Attributes:
+        ways: The direction in which the cell of each point may be left, of shape (n, 3).
+    """
+
+    def __init__(self, topology: Topology) -> None:
+        self._cell = topology.points.cell // topology.unit
+        self.ways: Integers = np.zeros_like(self._cell)
+        self._taken = sorted_keys(np.concatenate([keys_of(self._cell), topology.closed]))
+        self._topology = topology
+
+    def add(self, points: Integers, codes: Integers) -> None:
+        """Give each group of points the cells in a direction, if all of them may have it.
+
+        Within one direction no two points want the same cell: groups have no order.
+
+        Args:
+            points: The points of each group, of shape (n, m).
+            codes: The code of each group's direction; 0 for none.
+        """
+        for code in _CODES:
+            way = np.zeros(3, np.int64)
+            way[abs(code) - 1] = np.sign(code)
+            groups = points[codes == code]
+            each = groups.reshape(-1)
+            keys = keys_of(self._cell[each] + way)
+            is_free = ~self.ways[each].any(axis=1) & (position(keys, self._taken) < 0)
+            is_free[is_free] = _beside_equal(self._topology, (self._cell[each] + way)[is_free])
+            has_it = (self.ways[each] == way).all(axis=1)
+            chosen = groups[(is_free | has_it).reshape(groups.shape).all(axis=1)].reshape(-1)
+            self.ways[chosen] = way
+            given = keys_of(self._cell[chosen] + way)
+            self._taken = sorted_keys(np.concatenate([self._taken, given]))
+
+
+_CODES: Final = (-3, -2, -1, 1, 2, 3)

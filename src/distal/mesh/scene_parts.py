@@ -94,24 +94,46 @@ def meshes_of(node: Node, request: MeshRequest, *, parts: bool = True) -> SceneP
     """
     if not parts:
         return SceneParts((mesh_of_node(node, request),))
+    finite, endless = with_end(node, request)
+    grouped = _grouped(finite)
+    meshes = []
+    for index, part in enumerate(grouped):
+        meshes.append(mesh_of_node(part, _in_turn(request, index, len(grouped))))
+    return SceneParts(tuple(meshes), tuple(endless))
+
+
+def with_end(node: Node, request: MeshRequest) -> tuple[list[Node], list[str]]:
+    """Return the parts of a tree that have an end, and in words those that have none.
+
+    Parts that are not shown for these values of parameters are in neither.
+
+    Args:
+        node: The tree.
+        request: The values of parameters and the time.
+
+    Raises:
+        SceneValueError: No part has an end.
+    """
     finite: list[Node] = []
     endless: list[str] = []
+    empty: list[Node] = []
     for part in parts_of(node):
-        if _has_end(part, request):
+        low, high = _corners(part, request)
+        if any(a > b for a, b in zip(low, high, strict=True)):
+            empty.append(part)
+        elif all(math.isfinite(b - a) for a, b in zip(low, high, strict=True)):
             finite.append(part)
         else:
             endless.append(named(part))
+    if empty and not finite and not endless:
+        finite = empty[:1]  # its mesh is refused with the reason
     if not finite:
         refuse(
             f"nothing of '{node.name}' has an end, so there is no part to mesh",
             "intersect it with a box: shape & Box(…)",
             node.place,
         )
-    grouped = _grouped(finite)
-    meshes = []
-    for index, part in enumerate(grouped):
-        meshes.append(mesh_of_node(part, _in_turn(request, index, len(grouped))))
-    return SceneParts(tuple(meshes), tuple(endless))
+    return finite, endless
 
 
 def parts_of(node: Node) -> Iterator[Node]:
@@ -139,19 +161,25 @@ def _painted(part: Node, around: Node) -> Node:
 def _grouped(parts: Sequence[Node]) -> list[Node]:
     """Return the named parts and, as one part, all others."""
     labeled = [part for part in parts if part.label]
-    others = tuple(part for part in parts if not part.label)
+    others = [part for part in parts if not part.label]
     if not others:
         return labeled
-    rest = (
-        others[0] if len(others) == 1 else Node(joins.UNION, False, others, place=others[0].place)
-    )
+    rest = united(others)
     return [*labeled, replace(rest, label=REST) if labeled else rest]
 
 
-def _has_end(node: Node, request: MeshRequest) -> bool:
+def united(parts: Sequence[Node]) -> Node:
+    """Return the union of parts."""
+    if len(parts) == 1:
+        return parts[0]
+    return Node(joins.UNION, False, tuple(parts), place=parts[0].place)
+
+
+def _corners(node: Node, request: MeshRequest) -> tuple[list[float], list[float]]:
+    """Return the corners of a part's box; infinite along axes without an end."""
     bounds = executor().call(BoundsOf(node), (), {}, params=request.params, time=request.time)
-    corners = [[ended(number) for number in corner] for corner in bounds[2:4]]
-    return all(math.isfinite(b - a) for a, b in zip(*corners, strict=True))
+    low, high = ([ended(number) for number in corner] for corner in bounds[2:4])
+    return low, high
 
 
 def _in_turn(request: MeshRequest, index: int, count: int) -> MeshRequest:

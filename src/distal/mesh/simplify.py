@@ -14,10 +14,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from distal.ir.types import VEC3
-from distal.mesh import arithmetic
 from distal.mesh.checks import checked
 from distal.mesh.kernels import FieldKernels
+from distal.mesh.pieces import distances
 from distal.mesh.solid import Floats, Integers
 from distal.packages import imported
 
@@ -168,36 +167,5 @@ def _misses(
     corners = points[triangles]
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     counts = np.clip(np.ceil(sides / step), 1, _MOST_DIVISIONS).astype(np.int64)
-    largest, total, weight = 0.0, 0.0, 0
-    place = tuple(points[0].tolist())
-    for count in np.unique(counts):
-        weights = _pieces(int(count))
-        some = corners[counts == count]
-        size = max(1, _AT_ONCE // len(weights))
-        for start in range(0, len(some), size):
-            pieces = np.einsum("kij,njd->nkid", weights, some[start : start + size])
-            a, b, c = (pieces[:, :, i].reshape(-1, 3) for i in range(3))
-            types = [(name, VEC3) for name in "abc"]
-            found = kernels.call(arithmetic.largest_miss, a, b, c, types=types)
-            worst = int(np.argmax(found[:, 0]))
-            if found[worst, 0] > largest:
-                middle = (a[worst] + b[worst] + c[worst]) / 3.0
-                largest, place = float(found[worst, 0]), tuple(middle.tolist())
-            total += float(found[:, 1].sum())
-            weight += len(found)
-            watch(1.0)
-    return largest, total / weight, place
-
-
-def _pieces(count: int) -> Floats:
-    """Return the corners of the pieces of a triangle, (count**2, 3, 3): shares of its corners."""
-    found = []
-    for i in range(count):
-        for j in range(count - i):
-            a, b, c = (i, j), (i + 1, j), (i, j + 1)
-            found.append([a, b, c])
-            if i + j < count - 1:
-                found.append([b, (i + 1, j + 1), c])
-    ends = np.array(found, np.float64) / count
-    rest = 1.0 - ends.sum(axis=2, keepdims=True)
-    return np.concatenate([rest, ends], axis=2)
+    found = distances(kernels, points, triangles, counts, watch)
+    return float(found.largest.max(initial=0.0)), found.mean, found.place

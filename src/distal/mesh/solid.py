@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from distal.lang.runtime_access import mesh_cell
 from distal.mesh.files import formats
 from distal.mesh.files.parts import Finish, Finishes
 
@@ -92,6 +93,10 @@ class Mesh:
             SaveError: The suffix or the unit is unknown, or the file cannot be written.
         """
         formats.write(path, self, unit=unit, bed=bed, finishes=[self.finish])
+
+    def _repr_html_(self) -> str | None:
+        """Return the mesh as a notebook shows it: it turns; None without triangles."""
+        return mesh_cell.html_of(self)
 
     def __repr__(self) -> str:
         return f"<Mesh '{self.name}': {len(self.points)} points, {len(self.triangles)} triangles>"

@@ -1,7 +1,8 @@
 """Choose the length of a cell so that the mesh is as exact as its tolerance.
 
 Input: a shape's kernels and extent, a tolerance and a feature size. Output: a mesh. A coarse mesh
-comes first; its measured error gives the next spacing.
+comes first; its measured errors give the next spacing, until few cells are too large. These are
+divided one by one.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
+from distal.mesh.dividing import bad_share, divided, typical_error
 from distal.mesh.extract import Extent, Extracted, Nothing, extracted
 from distal.mesh.kernels import FieldKernels
 
@@ -23,6 +25,9 @@ MOST_BRICKS: Final = 100_000
 # Lost parts make the spacing finer without a feature size, up to this many bricks.
 _BRICKS_FOR_LOST: Final = 6_000
 _MOST_ROUNDS: Final = 12
+# Below this share of triangles that are too far from the surface, single cells are divided.
+_FEW: Final = 0.1
+DIVIDE: Final = 0.0  # instead of a spacing
 # A next round is this much finer than a quadratic error needs, since it is not quite quadratic.
 _AIM: Final = 0.87
 _COARSEST_STEP: Final = 0.9
@@ -84,11 +89,22 @@ def meshed(
         def inner(part: float, base: float = done, share: float = share) -> None:
             watch(base + share * part)
 
-        found = extracted(kernels, extent, step, wanted.tolerance, MOST_BRICKS, inner)
+        tolerance = wanted.tolerance
+        found = extracted(kernels, extent, step, tolerance, MOST_BRICKS, inner, tolerance)
+        if isinstance(found, Extracted) and _joined_too_large(found, tolerance, finest):
+            found = divided(kernels, extent, found, tolerance, inner, joined_only=True)
         done += share
         following = _next_step(found, wanted, finest)
         if following is None:
+            if isinstance(found, Extracted) and found.tree and found.error > tolerance:
+                found = divided(kernels, extent, found, tolerance, inner, joined_only=True)
             return found
+        if isinstance(found, Extracted) and following == DIVIDE:
+
+            def last(part: float, base: float = done) -> None:
+                watch(base + (1.0 - base) * part)
+
+            return divided(kernels, extent, found, tolerance, last)
         bricks = max(found.sampled, 1) * (found.step / following) ** 2
         if bricks > MOST_BRICKS:
             return _too_fine(found, wanted, following, bricks, by_feature=following == finest)
@@ -96,8 +112,16 @@ def meshed(
     return found
 
 
+def _joined_too_large(found: Extracted, tolerance: float, finest: float) -> bool:
+    """Return whether joined cells must be divided before anything can be said about the others."""
+    if found.tree is None or found.step > finest or len(found.lost) or found.error <= tolerance:
+        return False
+    shares = (bad_share(found, tolerance, "good"), bad_share(found, tolerance, "replaced"))
+    return shares[0] < _FEW <= shares[1]
+
+
 def _next_step(found: Extracted | Nothing, wanted: Wanted, finest: float) -> float | None:
-    """Return the next spacing; None if this mesh is as wanted.
+    """Return the next spacing; None if this mesh is as wanted, 0 to divide some of its cells.
 
     Args:
         found: The mesh.
@@ -113,9 +137,13 @@ def _next_step(found: Extracted | Nothing, wanted: Wanted, finest: float) -> flo
     if len(found.lost):
         # What is thinner than a cell is missed by far: the spacing says nothing of the tolerance.
         return found.step / 2.0 if wanted.feature is None and fewer else None
-    error = max(found.accuracy.largest, found.accuracy.from_surface)
-    if error <= wanted.tolerance:
+    divisible = found.divisible
+    corner = found.corner.distance if divisible else 0.0
+    if max(found.error, corner) <= wanted.tolerance:
         return None
+    if divisible and bad_share(found, wanted.tolerance, "good") < _FEW:
+        return DIVIDE
+    error = typical_error(found) if divisible else found.error
     factor = _AIM * math.sqrt(wanted.tolerance / error)
     return found.step * min(max(factor, _FINEST_STEP), _COARSEST_STEP)
 

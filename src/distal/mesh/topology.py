@@ -2,7 +2,8 @@
 
 Input: the bricks of a surface, and the shape where a face is ambiguous. Output: integers: the four
 points around each edge, the edges around each point, and the segments of the surface on faces. Does
-not depend on where anything is.
+not depend on where anything is. Cells of several sizes are in ``leaves``; both give the same rows,
+whose places and sizes are in units of the lattice that they are made for.
 
 The cells around an edge are numbered 0 to 3 around it, counter-clockwise seen against the edge's
 axis: below in both of the next two axes (u, v), then above in u, then above in both, then above
@@ -11,8 +12,8 @@ in v. Side ``i`` of an edge is the face between the cells ``i`` and ``i + 1``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Final
+from dataclasses import dataclass, field
+from typing import Any, Final
 
 import numpy as np
 
@@ -21,16 +22,18 @@ from distal.mesh.arithmetic import distance_value
 from distal.mesh.bricks import SurfaceBricks
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import BRICK, Lattice, keys_of, position
-from distal.mesh.solid import Bools, Integers
+from distal.mesh.solid import Bools, Floats, Integers
 from distal.mesh.tables import EDGES, cell_tables
+from distal.polygons.whole_numbers import stable_order
 
+_BRICK_BITS: Final = BRICK.bit_length() - 1
 # Whether each of the four cells around an edge is below it in u, and in v.
-_BELOW: Final = ((1, 1), (0, 1), (0, 0), (1, 0))
+BELOW: Final = ((1, 1), (0, 1), (0, 0), (1, 0))
 
 
 def _edge_in_cell(axis: int, number: int) -> int:
     """Return which of a cell's edges an edge is, for one of the four cells around it."""
-    below_u, below_v = _BELOW[number]
+    below_u, below_v = BELOW[number]
     return EDGES.index((axis, below_u << (axis + 1) % 3 | below_v << (axis + 2) % 3))
 
 
@@ -43,7 +46,7 @@ def _side(normal: int, edge: int) -> int:
     return 3 if corner >> u & 1 else 1
 
 
-_IN_CELL: Final = np.array([[_edge_in_cell(a, n) for n in range(4)] for a in range(3)])
+IN_CELL: Final = np.array([[_edge_in_cell(a, n) for n in range(4)] for a in range(3)])
 _SIDES: Final = np.array(
     [[_side(n, e) if EDGES[e][0] != n else -1 for e in range(12)] for n in range(3)]
 )
@@ -53,6 +56,16 @@ _IN_NEXT: Final = np.array(
 )
 
 
+def neighbor_tables() -> tuple[Integers, ...]:
+    """Return the tables of cells around edges and beside faces, for pages.
+
+    They are, for each axis: for the four cells around an edge whether it is below them in u and v;
+    which of their edges it is; which side of an edge a face is, by its normal; the edge that an
+    edge of the upper face is in the next cell.
+    """
+    return np.array(BELOW, np.int64), IN_CELL, _SIDES, _IN_NEXT
+
+
 @dataclass(frozen=True, slots=True)
 class EdgeRows:
     """The edges with a change of sign.
@@ -60,14 +73,22 @@ class EdgeRows:
     Attributes:
         axis: The axis of each edge, of shape (n,).
         start: The lattice point at the lower end, of shape (n, 3).
-        around: The points of the four cells around each edge, of shape (n, 4).
-        segments: The segment on each of the four sides, of shape (n, 4).
+        size: Its length.
+        around: The points of the four cells around each edge, of shape (n, 4). Two may be of the
+            same cell, where the edge is in the middle of a large cell's face.
+        segments: The segment on each of the four sides, of shape (n, 4); -1 between two points of
+            the same cell.
+        first: The value of the field at the lower end.
+        second: That at the upper end.
     """
 
     axis: Integers
     start: Integers
+    size: Integers
     around: Integers
     segments: Integers
+    first: Floats
+    second: Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +97,7 @@ class PointRows:
 
     Attributes:
         cell: The lattice point at the lowest corner of its cell, of shape (n, 3).
+        size: The side of its cell.
         region: The corners at the ends of its component's edges, as bits.
         shared: Whether the cell has several components.
         edges: The edges of all points, one point after the other.
@@ -83,6 +105,7 @@ class PointRows:
     """
 
     cell: Integers
+    size: Integers
     region: Integers
     shared: Bools
     edges: Integers
@@ -96,6 +119,7 @@ class SegmentRows:
     Attributes:
         axis: The axis that the face is perpendicular to.
         face: The lattice point at the face's lowest corner, of shape (n, 3).
+        size: The side of the face.
         lower: The point in the cell below the face.
         upper: The point in the cell above it.
         edge_a: One edge at which the segment ends.
@@ -105,6 +129,7 @@ class SegmentRows:
 
     axis: Integers
     face: Integers
+    size: Integers
     lower: Integers
     upper: Integers
     edge_a: Integers
@@ -114,12 +139,27 @@ class SegmentRows:
 
 @dataclass(frozen=True, slots=True)
 class Topology:
-    """The topology of a mesh before triangles are chosen."""
+    """The topology of a mesh before triangles are chosen.
+
+    Attributes:
+        edges: The edges with a change of sign.
+        points: The points in cells.
+        segments: The segments of the surface on faces.
+        cells: How many cells the surface passes through.
+        unit: The side of a cell that is not divided, in units of the lattice.
+        closed: Keys of such cells, sorted, that no other cell may reach into, and that may not
+            reach into others: those that are divided, and those beside them.
+        larger: Keys of cells that are larger, sorted: first those of the largest size, each of the
+            next ones of half of it, the last of two units.
+    """
 
     edges: EdgeRows
     points: PointRows
     segments: SegmentRows
     cells: int
+    unit: int = 1
+    closed: Integers = field(default_factory=lambda: np.empty(0, np.int64))
+    larger: tuple[Integers, ...] = ()
 
 
 class _SurfaceCells:
@@ -148,11 +188,11 @@ class _SurfaceCells:
             brick: The brick of each cell.
             local: Its place from the brick's corner; -1 to 8 along each axis.
         """
-        step = local // BRICK
-        inside = local - step * BRICK
+        step = local >> _BRICK_BITS
+        inside = local & (BRICK - 1)
         code = (step[:, 0] + 1) * 9 + (step[:, 1] + 1) * 3 + step[:, 2] + 1
         home = brick.copy()
-        for value in np.unique(code):
+        for value in np.flatnonzero(np.bincount(code)):
             if value != 13:
                 rows = code == value
                 home[rows] = self._neighbour(int(value))[brick[rows]]
@@ -186,20 +226,24 @@ def topology_of(kernels: FieldKernels, lattice: Lattice, found: SurfaceBricks) -
     brick = np.concatenate([e.brick for e in found.edges])
     local = np.concatenate([e.start for e in found.edges])
     around = np.empty((len(axis), 4), np.int64)
-    of_cell = np.full((len(cells.mask), 12), -1, np.int64)
+    of_cell: Any = np.full((len(cells.mask), 12), -1, np.int32)
     rows = np.arange(len(axis))
-    for number, (below_u, below_v) in enumerate(_BELOW):
+    for number, (below_u, below_v) in enumerate(BELOW):
         place = local.copy()
         place[rows, (axis + 1) % 3] -= below_u
         place[rows, (axis + 2) % 3] -= below_v
         cell = cells.at(brick, place)
-        edge = _IN_CELL[axis, number]
+        edge = IN_CELL[axis, number]
         of_cell[cell, edge] = rows
         around[:, number] = first[cell] + tables.component[cells.case[cell], edge]
     points = _points(cells, count, around)
     segments, sides = _segments(cells, first, of_cell, len(axis))
     start = found.bricks[brick] * BRICK + local
-    return Topology(EdgeRows(axis, start, around, sides), points, segments, len(cells.mask))
+    first_value = np.concatenate([e.first for e in found.edges])
+    second_value = np.concatenate([e.second for e in found.edges])
+    ones = np.ones(len(axis), np.int64)
+    edges = EdgeRows(axis, start, ones, around, sides, first_value, second_value)
+    return Topology(edges, points, segments, len(cells.mask))
 
 
 def _cases(kernels: FieldKernels, lattice: Lattice, cells: _SurfaceCells) -> Integers:
@@ -236,10 +280,11 @@ def _cases(kernels: FieldKernels, lattice: Lattice, cells: _SurfaceCells) -> Int
 def _points(cells: _SurfaceCells, count: Integers, around: Integers) -> PointRows:
     cell = np.repeat(np.arange(len(count)), count)
     component = np.arange(len(cell)) - np.repeat(np.cumsum(count) - count, count)
-    order = np.argsort(around.reshape(-1), kind="stable")
+    order = stable_order(around.reshape(-1))
     uses = np.bincount(around.reshape(-1), minlength=len(cell))
     return PointRows(
         cell=cells.place[cell],
+        size=np.ones(len(cell), np.int64),
         region=cell_tables().regions[cells.case[cell], component],
         shared=count[cell] > 1,
         edges=order // 4,
@@ -279,6 +324,7 @@ def _segments(
             (
                 np.full(len(cell), axis),
                 cells.place[cell] + step,
+                np.ones(len(cell), np.int64),
                 first[cell] + tables.component[cells.case[cell], a],
                 first[upper] + tables.component[cells.case[upper], in_next],
                 edge_a,

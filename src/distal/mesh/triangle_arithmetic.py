@@ -6,6 +6,7 @@ Input: corners of triangles. Output: numbers. One row for each triangle or pair.
 from __future__ import annotations
 
 from distal.lang import abs, array, clamp, cross, dot, func, length, max, min, sqrt, vec3
+from distal.mesh.arithmetic import unit_or_zero
 
 
 @func
@@ -28,7 +29,8 @@ def chosen_diagonal(
     Args:
         points: The four points, in order.
         fits: 1 in x and y for the diagonals that may be used, else 0; z is not used.
-        misses: How far the middle of each diagonal is from the surface, in x and y.
+        misses: How far each diagonal's middle is from the surface, or the edge's root from the
+            triangles, if that is more; in x and y.
         tolerance: How far it may be.
         tie: Below this difference, the rounder triangles are preferred.
     """
@@ -49,7 +51,8 @@ def chosen_diagonal(
     if round_second < 1e-3 and round_first > 1e-2:
         return 0
     if abs(misses.x - misses.y) < tie:
-        return 0 if round_first >= round_second else 1
+        # In flat faces both are often as round: rounding must not decide.
+        return 1 if round_second > round_first + 1e-3 else 0
     return 0 if misses.x <= misses.y else 1
 
 
@@ -68,6 +71,12 @@ def distance_to_triangle(p: vec3, a: vec3, b: vec3, c: vec3) -> float:
     if outside or dot(normal, normal) < 1e-300:
         return min(to_line(p, a, b), min(to_line(p, b, c), to_line(p, c, a)))
     return abs(dot(normal, p - a)) / sqrt(dot(normal, normal))
+
+
+@func
+def distance_to_pair(p: vec3, a: vec3, b: vec3, c: vec3, d: vec3) -> float:
+    """Return the distance from a point to the two triangles beside the line from a to c."""
+    return min(distance_to_triangle(p, a, b, c), distance_to_triangle(p, a, c, d))
 
 
 @func
@@ -97,6 +106,13 @@ def moments(a: vec3, b: vec3, c: vec3) -> tuple[float, float, vec3, vec3, vec3]:
     squares = (total * total + a * a + b * b + c * c) * (volume / 20.0)
     products = (total * total.yzx + a * a.yzx + b * b.yzx + c * c.yzx) * (volume / 20.0)
     return volume, area, total * (volume / 4.0), squares, products
+
+
+@func
+def face(a: vec3, b: vec3, c: vec3) -> tuple[float, vec3]:
+    """Return the area of a triangle and its normal, 0 for a triangle without area."""
+    doubled = cross(b - a, c - a)
+    return 0.5 * length(doubled), unit_or_zero(doubled)
 
 
 @func
@@ -196,3 +212,34 @@ def is_unfolded(a: vec3, b: vec3, c: vec3, d: vec3) -> bool:
 def between(a: vec3, b: vec3) -> float:
     """Return the distance between two points."""
     return length(b - a)
+
+
+@func
+def along(a: vec3, b: vec3, share: float) -> vec3:
+    """Return the point at a share of the way from ``a`` to ``b``."""
+    return a + (b - a) * share
+
+
+@func
+def normal_along(a: vec3, b: vec3, share: float) -> vec3:
+    """Return the unit vector at a share of the way from ``a`` to ``b``; 0 between opposite ones."""
+    return unit_or_zero(along(a, b, share))
+
+
+@func
+def weighted(a: vec3, b: vec3, c: vec3, shares: vec3) -> vec3:
+    """Return the point with these shares of three corners."""
+    return a * shares.x + b * shares.y + c * shares.z
+
+
+@func
+def weighted_normal(a: vec3, b: vec3, c: vec3, shares: vec3) -> vec3:
+    """Return the unit vector with these shares of three vectors; 0 if they cancel."""
+    return unit_or_zero(weighted(a, b, c, shares))
+
+
+@func
+def least_height(a: vec3, b: vec3, c: vec3) -> float:
+    """Return the smallest height of a triangle."""
+    longest = max(dot(b - a, b - a), max(dot(c - b, c - b), dot(a - c, a - c)))
+    return length(cross(b - a, c - a)) / sqrt(max(longest, 1e-300))

@@ -33,11 +33,17 @@ THIRD: Final = Buffer([vec3(0.0)])
 # The triangles in the cells of a grid, and the first one of each cell and of one cell more.
 MEMBERS: Final = Buffer([0])
 STARTS: Final = Buffer([0])
+# The numbers of the eight cells about each node.
+ABOUT: Final = Buffer([0])
 # The steps of one cell and of one node along y and z.
 CELL_STEPS: Final = Buffer([0])
 NODE_STEPS: Final = Buffer([0])
 # The nearest triangle of each node plus 1; 0 is unknown.
 NEAREST: Final = Buffer([0])
+# The colors of the corners of each triangle.
+FIRST_COLOR: Final = Buffer([vec3(0.0)])
+SECOND_COLOR: Final = Buffer([vec3(0.0)])
+THIRD_COLOR: Final = Buffer([vec3(0.0)])
 # The normals of each triangle's seven features.
 NORMALS: Final = Buffer([vec3(0.0)])
 # The tree: center and radius of each node; sum of the areas' normals; the node that follows its
@@ -154,6 +160,25 @@ def nearest_in_cells(p: vec3, cell: int) -> NearestTriangle:
 
 
 @func
+def nearest_about(p: vec3, node: int) -> NearestTriangle:
+    """Return the nearest triangle in the eight cells about a node, as ``nearest_in_cells``.
+
+    ``node`` is its place in ``ABOUT``, divided by 8.
+    """
+    best = FAR
+    which = 0
+    for i in range(8):
+        cell = ABOUT[8 * node + i]
+        for at in range(STARTS[cell], STARTS[cell + 1]):
+            triangle = MEMBERS[at]
+            squared = squared_distance(p, triangle)
+            if squared < best:
+                best = squared
+                which = triangle + 1
+    return NearestTriangle(best, which)
+
+
+@func
 def nearest_of_neighbors(p: vec3, node: int) -> NearestTriangle:
     """Return the nearest of the triangles that are nearest to a node and its 26 neighbors."""
     best = FAR
@@ -168,6 +193,22 @@ def nearest_of_neighbors(p: vec3, node: int) -> NearestTriangle:
                         best = squared
                         which = found
     return NearestTriangle(best, which)
+
+
+@func
+def color_of_triangle(p: vec3, triangle: int) -> vec3:
+    """Return the color at the nearest point of a triangle, interpolated between its corners."""
+    a = FIRST[triangle]
+    b = SECOND[triangle]
+    c = THIRD[triangle]
+    q = p - foot_on_triangle(p, a, b, c).offset
+    normal = cross(b - a, c - a)
+    whole = max(dot(normal, normal), TINY)
+    second = clamp(dot(cross(a - c, q - c), normal) / whole, 0.0, 1.0)
+    third = clamp(dot(cross(b - a, q - a), normal) / whole, 0.0, 1.0)
+    first = max(1.0 - second - third, 0.0)
+    colors = first * FIRST_COLOR[triangle] + second * SECOND_COLOR[triangle]
+    return (colors + third * THIRD_COLOR[triangle]) / (first + second + third)
 
 
 @func

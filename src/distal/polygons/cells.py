@@ -12,6 +12,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.polygons.whole_numbers import sorted_keys
+
 # A triangle larger than this, in cells, is halved first: the box of a large slanted triangle
 # contains many cells that it does not meet.
 _LARGEST_PIECE: Final = 2.0
@@ -37,7 +39,45 @@ class CellMembers:
         return (np.diff(self.starts) > 0).reshape(self.shape)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class MetCells:
+    """The triangles of the cells that have some, for grids most of whose cells have none.
+
+    Attributes:
+        members: Numbers of triangles, cell by cell, int32.
+        starts: The first member of each cell, the number of all, and that again: the last cell has
+            no triangle. int32.
+        cells: The numbers of the cells, ascending: (z, y, x) in ``shape``.
+        shape: The number of cells along z, y and x.
+    """
+
+    members: NDArray[np.int32]
+    starts: NDArray[np.int32]
+    cells: NDArray[np.int64]
+    shape: tuple[int, int, int]
+
+    def near_nodes(self) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+        """Return the nodes with a triangle in the eight cells about them, and those cells.
+
+        The nodes are (n, 3) along z, y and x; the cells are places in ``cells``, (n, 8), or the
+        number of cells where one has no triangle.
+        """
+        _, height, width = self.shape
+        # The numbers of the eight cells about a node, from the lowest one.
+        steps = np.array(
+            [(z * height + y) * width + x for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+        )
+        lowest = sorted_keys((self.cells[:, None] - steps).reshape(-1))
+        asked = lowest[:, None] + steps
+        found = np.searchsorted(self.cells, asked)
+        is_met = np.append(self.cells, -1)[found] == asked
+        nodes = np.stack(np.unravel_index(lowest, self.shape), axis=1)
+        return nodes, np.where(is_met, found, len(self.cells)).astype(np.int32)
+
+
 Corners = tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]
+# The lowest and the highest cell of small pieces of triangles, and whose they are.
+Boxes = tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]
 
 
 def sorted_into_cells(corners: Corners, nodes: tuple[int, int, int]) -> CellMembers:
@@ -51,7 +91,32 @@ def sorted_into_cells(corners: Corners, nodes: tuple[int, int, int]) -> CellMemb
         nodes: The number of nodes along x, y and z.
     """
     shape = (nodes[2] + 1, nodes[1] + 1, nodes[0] + 1)
-    low, high, owners = _boxes_of_pieces(corners)
+    cell, members = _pairs(corners, shape, boxes_of_pieces(corners))
+    counted = np.bincount(cell, minlength=shape[0] * shape[1] * shape[2])
+    starts = np.concatenate([[0], np.cumsum(counted)]).astype(np.int32)
+    return CellMembers(members.astype(np.int32), starts, shape)
+
+
+def sorted_into_met_cells(corners: Corners, nodes: tuple[int, int, int], boxes: Boxes) -> MetCells:
+    """Return the triangles in the cells that have some.
+
+    Args:
+        corners: As for ``sorted_into_cells``.
+        nodes: The number of nodes along x, y and z.
+        boxes: What ``boxes_of_pieces`` returns for the corners.
+    """
+    shape = (nodes[2] + 1, nodes[1] + 1, nodes[0] + 1)
+    cell, members = _pairs(corners, shape, boxes)
+    first = np.flatnonzero(np.concatenate([[True], cell[1:] != cell[:-1]]))
+    starts = np.concatenate([first, [len(cell)] * 2]).astype(np.int32)
+    return MetCells(members.astype(np.int32), starts, cell[first], shape)
+
+
+def _pairs(
+    corners: Corners, shape: tuple[int, int, int], boxes: Boxes
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the number of a cell and one of its triangles, for all of them, sorted."""
+    low, high, owners = boxes
     sizes = high - low + 1
     first = (low[:, 2].astype(np.int64) * shape[1] + low[:, 1]) * shape[2] + low[:, 0]
     parts = []
@@ -67,14 +132,10 @@ def sorted_into_cells(corners: Corners, nodes: tuple[int, int, int]) -> CellMemb
     if len(owners) > len(corners[0]):  # pieces of one triangle may share a cell
         keys = keys[np.concatenate([[True], keys[1:] != keys[:-1]])]
     cell, members = np.divmod(keys, len(corners[0]))
-    counted = np.bincount(cell, minlength=shape[0] * shape[1] * shape[2])
-    starts = np.concatenate([[0], np.cumsum(counted)]).astype(np.int32)
-    return CellMembers(members.astype(np.int32), starts, shape)
+    return cell, members
 
 
-def _boxes_of_pieces(
-    corners: Corners,
-) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
+def boxes_of_pieces(corners: Corners) -> Boxes:
     """Return the lowest and the highest cell of small pieces of triangles, and whose they are."""
     found: list[tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.int64]]] = []
     left, owner = corners, np.arange(len(corners[0]))

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
 from distal.polygons import arithmetic
+from distal.polygons.bricks import MOST_DENSE
 from distal.polygons.cells import sorted_into_cells
 from distal.polygons.inside import closed_by_winding, inside_by_normals, is_contradictory
 from distal.polygons.kernels import run
@@ -33,15 +34,13 @@ SIGNS: Final = (AUTO, NORMALS, WINDING, UNSIGNED)
 # Empty cells around the mesh: the surface never touches the border of the grid.
 MARGIN: Final = 2
 CELLS_ALONG: Final = 64
-MOST_NODES: Final = 2**24
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Distances:
-    """Signed distances at the nodes of a grid.
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class MeshOnGrid:
+    """What is known of a mesh on a grid.
 
     Attributes:
-        values: float32, (nodes along z, y, x), in the unit of the mesh.
         low: The first node.
         spacing: The distance of two nodes along an axis.
         topology: Whether the mesh is closed, and its volume.
@@ -50,13 +49,23 @@ class Distances:
         left_out: Triangles that have a corner twice.
     """
 
-    values: NDArray[np.float32]
     low: NDArray[np.float64]
     spacing: float
     topology: EdgeTopology
     sign: str
     turned: bool
     left_out: int
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Distances(MeshOnGrid):
+    """Signed distances at the nodes of a grid.
+
+    Attributes:
+        values: float32, (nodes along z, y, x), in the unit of the mesh.
+    """
+
+    values: NDArray[np.float32]
 
 
 def distances(mesh: SourceTriangles, spacing: float | None = None, sign: str = AUTO) -> Distances:
@@ -71,26 +80,68 @@ def distances(mesh: SourceTriangles, spacing: float | None = None, sign: str = A
     Raises:
         LoadError: The mesh has no size or no inside, or the grid is too large.
     """
+    low, high, step = box_and_spacing(mesh, spacing)
+    x, y, z = nodes_along(high - low, step)
+    if x * y * z > MOST_DENSE:
+        enough = step * (x * y * z / MOST_DENSE) ** (1.0 / 3.0)
+        message = f"a spacing of {step:g} needs {x * y * z:,} samples, more than "
+        raise LoadError(f"{message}{MOST_DENSE:,}: a spacing of {enough * 1.05:.3g} is enough")
+    origin = first_node(low, high, step)
+    found = joined_on_grid(mesh, origin, step)
+    joints = topology(found)
+    values, method, turned = signed(found, joints, (x, y, z), sign)
+    joints = replace(joints, volume=joints.volume * step**3)
+    return Distances(
+        low=origin,
+        spacing=step,
+        topology=joints,
+        sign=method,
+        turned=turned,
+        left_out=found.left_out,
+        values=values * np.float32(step),
+    )
+
+
+def box_and_spacing(
+    mesh: SourceTriangles, spacing: float | None
+) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+    """Return the corners of a mesh's box, and the spacing.
+
+    Raises:
+        LoadError: The mesh has no size, or the spacing does not suit it.
+    """
     is_used = np.zeros(len(mesh.points), bool)
     is_used[mesh.triangles.reshape(-1)] = True
     used = mesh.points[is_used]
     low, high = used.min(axis=0), used.max(axis=0)
-    step = _checked_spacing(high - low, spacing)
-    counts = [math.ceil(side / step - 1e-9) + 1 + 2 * MARGIN for side in (high - low).tolist()]
-    if math.prod(counts) > MOST_NODES:
-        enough = step * (math.prod(counts) / MOST_NODES) ** (1.0 / 3.0)
-        message = f"a spacing of {step:g} needs {math.prod(counts):,} samples, more than "
-        raise LoadError(f"{message}{MOST_NODES:,}: a spacing of {enough * 1.05:.3g} is enough")
-    nodes = (counts[0], counts[1], counts[2])
-    origin = 0.5 * (low + high) - 0.5 * step * (np.array(nodes) - 1)
+    return low, high, _checked_spacing(high - low, spacing)
+
+
+def nodes_along(size: NDArray[np.float64], step: float) -> tuple[int, int, int]:
+    """Return how many nodes a grid has along x, y and z for a mesh of a size."""
+    x, y, z = (math.ceil(side / step - 1e-9) + 1 + 2 * MARGIN for side in size.tolist())
+    return x, y, z
+
+
+def first_node(
+    low: NDArray[np.float64], high: NDArray[np.float64], step: float
+) -> NDArray[np.float64]:
+    """Return the first node of a grid about the middle of a mesh's box."""
+    count = np.array(nodes_along(high - low, step))
+    found: NDArray[np.float64] = 0.5 * (low + high) - 0.5 * step * (count - 1)
+    return found
+
+
+def joined_on_grid(mesh: SourceTriangles, origin: NDArray[np.float64], step: float) -> Joined:
+    """Return a mesh in units of a grid.
+
+    Raises:
+        LoadError: It has no triangle.
+    """
     found = joined(mesh, origin, step)
     if not len(found.triangles):
         raise LoadError("all triangles have a corner twice: there is no surface")
-    joints = topology(found)
-    values, method, turned = _signed(found, joints, nodes, sign)
-    joints = replace(joints, volume=joints.volume * step**3)
-    scaled = values * np.float32(step)
-    return Distances(scaled, origin, step, joints, method, turned, found.left_out)
+    return found
 
 
 def _checked_spacing(size: NDArray[np.float64], spacing: float | None) -> float:
@@ -107,7 +158,7 @@ def _checked_spacing(size: NDArray[np.float64], spacing: float | None) -> float:
     return spacing
 
 
-def _signed(
+def signed(
     mesh: Joined, joints: EdgeTopology, nodes: tuple[int, int, int], sign: str
 ) -> tuple[NDArray[np.float32], str, bool]:
     """Return distances in units of the grid, how the inside was found, and whether it was turned.
@@ -118,7 +169,7 @@ def _signed(
         nodes: The number of nodes along x, y and z.
         sign: One of ``SIGNS``.
     """
-    nearest, values = _nearest(mesh, nodes)
+    nearest, values = nearest_triangles(mesh, nodes)
     if sign == UNSIGNED:
         return values, UNSIGNED, False
     turned = joints.volume < 0.0
@@ -151,7 +202,7 @@ def described(joints: EdgeTopology) -> str:
     return "the mesh is closed"
 
 
-def _nearest(
+def nearest_triangles(
     mesh: Joined, nodes: tuple[int, int, int]
 ) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
     """Return the nearest triangle of each node plus 1, and its distance, both (z, y, x)."""
@@ -220,8 +271,8 @@ def _spread(
 
 
 def widened(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return a mask with the 26 neighbors of each of its nodes."""
-    for axis in range(3):
+    """Return a mask with the 26 neighbors of each of its nodes, along the last three axes."""
+    for axis in range(-3, 0):
         along = np.moveaxis(mask, axis, 0)
         wide = along.copy()
         wide[1:] |= along[:-1]

@@ -16,10 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
-from distal.polygons.triangles import MOST_TRIANGLES, SourceTriangles, checked
+from distal.polygons.triangles import MOST_TRIANGLES, SourceTriangles, checked, colored
 
 _COMPONENTS: Final = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
-_WIDTHS: Final = {"SCALAR": 1, "VEC3": 3}
+_WIDTHS: Final = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
+# What a number of a color is divided by.
+_LEVELS: Final = {5121: 255.0, 5123: 65535.0, 5126: 1.0}
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _COMPRESSED: Final = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
 
@@ -32,8 +34,8 @@ class _File:
     data: bytes
 
 
-def read_glb(data: bytes) -> SourceTriangles:
-    """Return the triangles of a GLB file.
+def read_glb(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
+    """Return the triangles of a GLB file, with colors if they are wanted and there.
 
     Raises:
         LoadError: The file is no GLB, is truncated, or is compressed.
@@ -44,9 +46,10 @@ def read_glb(data: bytes) -> SourceTriangles:
             raise LoadError(f"it is compressed by {name}: save it without compression")
     points: list[NDArray[np.float64]] = []
     triangles: list[NDArray[np.int64]] = []
+    colors: list[NDArray[np.float32] | None] = []
     start = total = 0
-    for mesh, matrix in _placed(file):
-        for primitive in _list(_entry(file.content, "meshes", mesh), "primitives"):
+    for number, matrix in _placed(file):
+        for primitive in _list(_entry(file.content, "meshes", number), "primitives"):
             found = _primitive(file, primitive)
             if found is None:
                 continue
@@ -60,9 +63,44 @@ def read_glb(data: bytes) -> SourceTriangles:
             mirrored = float(np.linalg.det(matrix[:3, :3])) < 0.0
             triangles.append(start + (corners[:, ::-1] if mirrored else corners))
             start += len(places)
+            colors.append(_colors(file, primitive, len(places)) if with_colors else None)
     if not triangles:
         raise LoadError("there is no triangle")
-    return checked(np.concatenate(points), np.concatenate(triangles), 1.0)
+    mesh = checked(np.concatenate(points), np.concatenate(triangles), 1.0)
+    if all(each is None for each in colors):
+        return mesh
+    # A part without a color is white, as glTF has it.
+    shades = [
+        np.ones((len(places), 3), np.float32) if each is None else each
+        for each, places in zip(colors, points, strict=True)
+    ]
+    return colored(mesh, np.concatenate(shades), is_light=True)
+
+
+def _colors(file: _File, primitive: Any, count: int) -> NDArray[np.float32] | None:
+    """Return the linear colors of a primitive's points; None without them.
+
+    They are those of its points times that of its material; pictures are left out.
+    """
+    number = primitive["attributes"].get("COLOR_0")
+    known = "material" in primitive
+    material = _entry(file.content, "materials", primitive["material"]) if known else {}
+    surface = material.get("pbrMetallicRoughness", {})
+    is_colored = isinstance(surface, dict) and "baseColorFactor" in surface
+    if number is None and not is_colored:
+        return None
+    shown = np.ones((count, 3), np.float32)
+    if is_colored:
+        shown *= _numbers(surface, "baseColorFactor", 4, ())[:3].astype(np.float32)
+    if number is not None:
+        entry = _entry(file.content, "accessors", number)
+        kind = "VEC3" if entry.get("type") == "VEC3" else "VEC4"
+        rows = _accessor(file, number, kind)
+        if entry["componentType"] not in _LEVELS or len(rows) != count:
+            raise LoadError(f"accessor {number} has no color for each point")
+        with np.errstate(all="ignore"):
+            shown *= rows[:, :3].astype(np.float32) / np.float32(_LEVELS[entry["componentType"]])
+    return np.clip(np.nan_to_num(shown, nan=0.0), 0.0, 1.0)
 
 
 def _chunks(data: bytes) -> _File:

@@ -6,6 +6,7 @@ changed are computed once.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -15,13 +16,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
-from distal.polygons.distances import UNSIGNED, WINDING, Distances, described, distances
+from distal.lang.units import MILLIMETER, UNITS
+from distal.polygons.bricks import CELLS, BrickSamples, from_grid
+from distal.polygons.colors import ColorGrid, color_grid
+from distal.polygons.distances import (
+    UNSIGNED,
+    WINDING,
+    MeshOnGrid,
+    box_and_spacing,
+    described,
+    distances,
+    nodes_along,
+)
 from distal.polygons.reading import format_of, read_mesh
-from distal.polygons.triangles import SourceTriangles, checked
-from distal.polygons.units import MILLIMETER, UNITS
+from distal.polygons.sparse import brick_distances
+from distal.polygons.triangles import SourceTriangles, checked, colored
 
 # The most triangles at which the surface is measured.
 _MOST_MEASURED: Final = 50_000
+# Above this number of samples only those near the surface are computed, if that is possible. At
+# 128 along each side both ways take as long.
+_MOST_WHOLE: Final = 2**21
 # How far behind a triangle the inside is looked for, in spacings; at the last of them, a value
 # above this says that the other side of a thin part has been passed.
 _BEHIND: Final = (0.1, 0.25, 0.5, 1.0)
@@ -39,12 +54,14 @@ class ImportRequest:
         sign: How to find the inside, one of ``distances.SIGNS``.
         unit: The length of one scene unit, a key of ``UNITS``; None keeps the numbers.
         up: "y" or "z"; None is the axis that is usual for the format, y for arrays.
+        colors: Whether the colors of the mesh are wanted.
     """
 
     spacing: float | None
     sign: str
     unit: str | None
     up: str | None
+    colors: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +83,8 @@ class ImportReport:
         measured: The number of places: corners and middles of triangles.
         lost: The share of the triangles' area behind which there is no inside: that of parts
             thinner than the spacing.
+        bricks: The number of bricks of 8 cells along each axis that are stored, because the surface
+            is near; 0 if all samples are.
     """
 
     name: str
@@ -80,12 +99,14 @@ class ImportReport:
     mean: float = 0.0
     measured: int = 0
     lost: float = 0.0
+    bricks: int = 0
 
     def __str__(self) -> str:
         sizes = " x ".join(map(str, self.samples))
+        near = f", stored in {self.bricks:,} bricks near the surface" if self.bricks else ""
         return (
             f"{self.name}: {self.triangles:,} triangles, {self.closing}; {sizes} samples, "
-            f"{self.spacing:.4g} apart; inside by {self.sign}; the surface is off by "
+            f"{self.spacing:.4g} apart{near}; inside by {self.sign}; the surface is off by "
             f"{self.largest:.2g} at most, {self.mean:.2g} on average ({self.measured:,} places)"
             + (f"; {self.lost:.2%} of it is lost" if self.lost > 0.0 else "")
         )
@@ -96,21 +117,23 @@ class Imported:
     """A mesh on a grid.
 
     Attributes:
-        values: float32, (nodes along z, y, x), in scene units.
+        values: float32, (nodes along z, y, x), in scene units; or bricks of them.
         center: The middle of the grid.
         size: The size of the grid's cells together.
         places: Places at which the field is evaluated, from the center, (rows, n, 3): first
             corners of triangles, their middles, then what is behind these by ``_BEHIND``.
         areas: The areas of these triangles, (n,).
         report: What is known before that.
+        colors: The colors, in scene units, if they are wanted.
     """
 
-    values: NDArray[np.float32]
+    values: NDArray[np.float32] | BrickSamples
     center: tuple[float, float, float]
     size: tuple[float, float, float]
     places: NDArray[np.float32]
     areas: NDArray[np.float64]
     report: ImportReport
+    colors: ColorGrid | None = None
 
 
 def imported_file(path: Path, wanted: ImportRequest) -> Imported:
@@ -130,18 +153,29 @@ def imported_file(path: Path, wanted: ImportRequest) -> Imported:
 
 @lru_cache(maxsize=4)
 def _of_file(path: Path, version: tuple[int, int], wanted: ImportRequest) -> Imported:
-    mesh = read_mesh(path)
+    mesh = read_mesh(path, with_colors=wanted.colors)
     up = wanted.up or ("z" if format_of(path).z_up else "y")
     return _imported(mesh, path.name, replace(wanted, up=up))
 
 
-def imported_arrays(points: Any, triangles: Any, wanted: ImportRequest) -> Imported:
+def imported_arrays(
+    points: Any, triangles: Any, wanted: ImportRequest, colors: Any = None
+) -> Imported:
     """Return the grid of arrays.
+
+    Args:
+        points: (n, 3).
+        triangles: (m, 3).
+        wanted: What is asked for.
+        colors: Linear light of each point, (n, 3), or None.
 
     Raises:
         LoadError: The arrays are no mesh, or have no surface or no inside.
     """
-    return _imported(checked(points, triangles), "arrays", wanted)
+    mesh = checked(points, triangles)
+    if colors is not None:
+        mesh = colored(mesh, colors, is_light=True)
+    return _imported(mesh, "arrays", wanted)
 
 
 def _imported(mesh: SourceTriangles, name: str, wanted: ImportRequest) -> Imported:
@@ -152,29 +186,50 @@ def _imported(mesh: SourceTriangles, name: str, wanted: ImportRequest) -> Import
     if wanted.up == "z":
         x, y, z = mesh.points.T
         mesh = replace(mesh, points=np.stack([x, z, -y], axis=1))
-    found = distances(mesh, wanted.spacing, wanted.sign)
-    counts = found.values.shape[::-1]
+    if wanted.colors and mesh.colors is None:
+        raise LoadError(f"'{name}' has no colors that are read: leave out colors=True")
+    found, values, counts = _sampled(mesh, wanted)
     size = np.array(counts) * found.spacing
     center = found.low + 0.5 * (np.array(counts) - 1) * found.spacing
     report = ImportReport(
         name=name,
         triangles=len(mesh.triangles),
-        samples=(counts[0], counts[1], counts[2]),
+        samples=counts,
         spacing=found.spacing,
         closing=described(found.topology),
         volume=found.topology.volume,
         sign=found.sign,
         turned=found.turned,
+        bricks=values.stored if isinstance(values, BrickSamples) else 0,
     )
     x, y, z = center.tolist()
     width, height, depth = size.tolist()
     places, areas = _places(mesh, found)
     local = (places - center).astype(np.float32)
-    return Imported(found.values, (x, y, z), (width, height, depth), local, areas, report)
+    colors = color_grid(mesh, found.spacing) if wanted.colors else None
+    size_ = (width, height, depth)
+    return Imported(values, (x, y, z), size_, local, areas, report, colors)
+
+
+def _sampled(
+    mesh: SourceTriangles, wanted: ImportRequest
+) -> tuple[MeshOnGrid, NDArray[np.float32] | BrickSamples, tuple[int, int, int]]:
+    """Return what is known of a mesh, its distances, and the number of samples along x, y, z."""
+    low, high, step = box_and_spacing(mesh, wanted.spacing)
+    count = math.prod(nodes_along(high - low, step))
+    if count > _MOST_WHOLE:
+        sparse = brick_distances(mesh, step, wanted.sign)
+        if sparse is not None:
+            return sparse, sparse.bricks, sparse.bricks.samples
+    found = distances(mesh, step, wanted.sign)
+    z, y, x = found.values.shape
+    # As in ``brick_distances``: a brick's width is more than what is interpolated is too large by.
+    bricks = from_grid(found.values, (step, step, step), CELLS * step)
+    return found, found.values if bricks is None else bricks, (x, y, z)
 
 
 def _places(
-    mesh: SourceTriangles, found: Distances
+    mesh: SourceTriangles, found: MeshOnGrid
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return ``Imported.places``, not from the center, and ``Imported.areas``."""
     step = -(-len(mesh.triangles) // _MOST_MEASURED)
@@ -230,6 +285,17 @@ def warnings_of(report: ImportReport) -> list[str]:
             f"{report.lost:.1%} of its surface is lost; give spacing={report.spacing / 2:.3g}"
         )
     return found
+
+
+def notice_of(report: ImportReport) -> str:
+    """Return one line about what a mesh lost on its grid, and how to lose less."""
+    lost = f"parts thinner than that are lost, {report.lost:.2g} of its area"
+    return (
+        f"'{report.name}' is sampled every {report.spacing:.4g}: its surface is off by up to "
+        f"{report.largest:.2g}, {report.mean:.2g} on average, measured at {report.measured:,} "
+        f"places; {lost if report.lost > 0.0 else 'no thin part is lost'}; "
+        f"spacing={report.spacing / 2:.3g} is finer"
+    )
 
 
 def checked_unit(unit: str | None) -> None:

@@ -17,7 +17,7 @@ from distal.polygons.kernels import run
 from distal.polygons.topology import Joined, feature_normals
 
 # Two neighbors on different sides of the surface have distances whose sum is at most 1.
-_ROUNDED: Final = 1e-3
+ROUNDED: Final = 1e-3
 _NEIGHBORS: Final = [
     step for step in itertools.product((-1, 0, 1), repeat=3) if step > (0, 0, 0)
 ]  # the other 13 are opposite
@@ -37,28 +37,46 @@ def inside_by_normals(
         nearest: The nearest triangle of each node plus 1.
         values: Its distance.
     """
-    near = values <= 1.0 + _ROUNDED
+    near = values <= 1.0 + ROUNDED
     z, y, x = np.nonzero(near)
-    asked, which = np.unique(nearest[near] - 1, return_inverse=True)
+    signs = np.zeros(values.shape, np.int8)
+    places = np.stack([x, y, z], axis=1)
+    signs[near] = signs_by_normals(mesh, mates, places, nearest[near])
+    return filled(signs) < 0
+
+
+def signs_by_normals(
+    mesh: Joined,
+    mates: NDArray[np.int64],
+    places: NDArray[np.int64],
+    nearest: NDArray[np.int32],
+) -> NDArray[np.int8]:
+    """Return -1 for places behind their nearest triangle, else 1.
+
+    Args:
+        mesh: A closed mesh.
+        mates: The other half of each of its edges.
+        places: (n, 3).
+        nearest: The nearest triangle of each place plus 1.
+    """
+    asked, which = np.unique(nearest - 1, return_inverse=True)
     buffers = {name: corners[asked] for name, corners in mesh.buffers.items()}
     buffers["NORMALS"] = feature_normals(mesh, mates, asked.astype(np.int64))
-    places, rows = np.stack([x, y, z], axis=1), which.reshape(-1).astype(np.int32)
+    rows = which.reshape(-1).astype(np.int32)
     side = run(arithmetic.side_of_triangle, places, rows, buffers, double=True)
-    signs = np.zeros(values.shape, np.int8)
-    signs[near] = np.where(side < 0.0, -1, 1)
-    return _filled(signs)
+    return np.where(side < 0.0, np.int8(-1), np.int8(1))
 
 
-def _filled(signs: NDArray[np.int8]) -> NDArray[np.bool_]:
-    """Return which nodes are inside, where those of sign 0 are on the side of a neighbor."""
+def filled(signs: NDArray[np.int8]) -> NDArray[np.int8]:
+    """Give nodes of sign 0 that of a neighbor along one of the last three axes, in place."""
     known = -1
     while known != (known := int(np.count_nonzero(signs))):
-        for axis in range(3):
+        for axis in range(-3, 0):
             along = np.moveaxis(signs, axis, 0)
             for each in (along, along[::-1]):
                 for before, here in itertools.pairwise(each):
                     np.copyto(here, before, where=here == 0)
-    return signs < 0
+    return signs
 
 
 def is_contradictory(inside: NDArray[np.bool_], values: NDArray[np.float32]) -> bool:
@@ -67,9 +85,9 @@ def is_contradictory(inside: NDArray[np.bool_], values: NDArray[np.float32]) -> 
     Where bodies overlap or lie in each other, normals say that a place is outside of the one and
     inside of the other.
     """
-    for axis in range(3):
+    for axis in range(-3, 0):
         sides, near = np.moveaxis(inside, axis, 0), np.moveaxis(values, axis, 0)
-        if ((sides[1:] != sides[:-1]) & (near[1:] + near[:-1] > 1.0 + _ROUNDED)).any():
+        if ((sides[1:] != sides[:-1]) & (near[1:] + near[:-1] > 1.0 + ROUNDED)).any():
             return True
     return False
 
@@ -87,26 +105,40 @@ def closed_by_winding(
         inverted: Whether the mesh is inside out.
     """
     turn = -1.0 if inverted else 1.0
-    is_near = values <= 1.0 + _ROUNDED
+    is_near = values <= 1.0 + ROUNDED
     signs = np.zeros(values.shape, np.int8)
-    signs[is_near] = np.where(turn * _winding(tree, is_near) > 0.5, -1, 1)
-    inside = _filled(signs)
+    z, y, x = np.nonzero(is_near)
+    signs[is_near] = signs_by_winding(tree, np.stack([x, y, z], axis=1), turn)
+    inside = filled(signs) < 0
     if not is_contradictory(inside, values):  # bodies that overlap; holes smaller than a cell
         return np.where(inside, -values, values)
-    winding = turn * _winding(tree, np.ones(values.shape, bool)).reshape(values.shape)
+    z, y, x = np.indices(values.shape).reshape(3, -1)
+    winding = turn * winding_numbers(tree, np.stack([x, y, z], axis=1)).reshape(values.shape)
     near = values.copy()
-    for axis in range(3):
-        _close(np.moveaxis(near, axis, 0), np.moveaxis(winding, axis, 0))
+    closed_between(near, winding)
     if (near < values).any():
-        _shorten(near)
+        shorten(near)
     return np.where(winding > 0.5, -near, near)
 
 
-def _winding(tree: dict[str, NDArray[Any]], asked: NDArray[np.bool_]) -> NDArray[np.float32]:
-    """Return the winding numbers of the nodes that are asked for, in their order."""
-    z, y, x = np.nonzero(asked)
-    found = run(arithmetic.winding_number, np.stack([x, y, z], axis=1), None, tree)
-    return np.asarray(found, np.float32)
+def signs_by_winding(
+    tree: dict[str, NDArray[Any]], places: NDArray[np.int64], turn: float
+) -> NDArray[np.int8]:
+    """Return -1 for places where the winding number, times ``turn``, is more than 0.5, else 1."""
+    return np.where(turn * winding_numbers(tree, places) > 0.5, np.int8(-1), np.int8(1))
+
+
+def winding_numbers(
+    tree: dict[str, NDArray[Any]], places: NDArray[np.int64]
+) -> NDArray[np.float32]:
+    """Return the winding numbers of places, (n, 3)."""
+    return np.asarray(run(arithmetic.winding_number, places, None, tree), np.float32)
+
+
+def closed_between(near: NDArray[np.float32], winding: NDArray[np.float32]) -> None:
+    """Bound distances by those to the surface that closes holes, along all axes, in place."""
+    for axis in range(3):
+        _close(np.moveaxis(near, axis, 0), np.moveaxis(winding, axis, 0))
 
 
 def _close(near: NDArray[np.float32], winding: NDArray[np.float32]) -> None:
@@ -117,14 +149,14 @@ def _close(near: NDArray[np.float32], winding: NDArray[np.float32]) -> None:
     """
     here, there = winding[:-1], winding[1:]
     crossed = (here > 0.5) != (there > 0.5)
-    crossed &= near[:-1] + near[1:] > 1.0 + _ROUNDED
+    crossed &= near[:-1] + near[1:] > 1.0 + ROUNDED
     rise = np.where(crossed, there - here, 1.0)
     share = np.clip((0.5 - here) / rise, 0.0, 1.0)
     np.copyto(near[:-1], np.minimum(near[:-1], share), where=crossed)
     np.copyto(near[1:], np.minimum(near[1:], 1.0 - share), where=crossed)
 
 
-def _shorten(near: NDArray[np.float32]) -> None:
+def shorten(near: NDArray[np.float32]) -> None:
     """Lower distances until neighbors differ by at most how far they are apart."""
     total = np.inf
     while total > (total := float(near.sum(dtype=np.float64))):

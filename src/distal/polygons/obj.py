@@ -1,23 +1,27 @@
-"""Reads OBJ: points and polygons; materials, curves and normals are left out.
+"""Reads OBJ: points, their colors, and polygons; materials and curves are left out.
 
 Input: bytes. Output: a mesh.
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
-from distal.polygons.triangles import SourceTriangles, checked, fans
+from distal.polygons.triangles import SourceTriangles, checked, colored, fans
 
 
-def read_obj(data: bytes) -> SourceTriangles:
-    """Return the triangles of an OBJ file.
+def read_obj(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
+    """Return the triangles of an OBJ file, with colors of points if they are wanted and there.
 
     Raises:
         LoadError: A line is invalid; the message has its number.
     """
     points: list[list[float]] = []
+    colors: list[list[float]] = []
     counts: list[int] = []
     indices: list[int] = []
     number = 0
@@ -28,6 +32,8 @@ def read_obj(data: bytes) -> SourceTriangles:
                 if len(words) < 4:
                     raise LoadError(f"line {number}: a point needs three numbers")
                 points.append([float(word) for word in words[1:4]])
+                if with_colors and len(words) == 7:  # with x, y, z: red, green, blue
+                    colors.append([float(word) for word in words[4:7]])
             elif line.startswith((b"f ", b"f\t")):
                 corners = [int(word.partition(b"/")[0]) for word in line.split()[1:]]
                 if len(corners) < 3:
@@ -40,7 +46,33 @@ def read_obj(data: bytes) -> SourceTriangles:
     if not counts:
         raise LoadError("there is no polygon")
     triangles = fans(np.array(counts, np.int64), np.array(indices, np.int64))
-    return checked(np.array(points, np.float64).reshape(-1, 3), triangles)
+    mesh = checked(np.array(points, np.float64).reshape(-1, 3), triangles)
+    if not colors or len(colors) != len(points):
+        return mesh
+    shown = np.array(colors, np.float32)
+    return colored(mesh, np.clip(np.where(np.isfinite(shown), shown, 0.0), 0.0, 1.0))
+
+
+def read_obj_points(data: bytes) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return the points of an OBJ file and their normals: a vn for each v, in the same order.
+
+    Raises:
+        LoadError: A line is invalid; the message has its number.
+    """
+    found: dict[bytes, list[list[float]]] = {b"v": [], b"vn": []}
+    for number, line in enumerate(data.splitlines(), 1):
+        words = line.split()
+        if not words or words[0] not in found:
+            continue
+        try:
+            row = [float(word) for word in words[1:4]]
+        except ValueError:
+            raise LoadError(f"line {number} is not as in OBJ: {line[:40]!r}") from None
+        if len(row) < 3:
+            raise LoadError(f"line {number}: {words[0].decode()} needs three numbers")
+        found[words[0]].append(row)
+    points, normals = (np.array(found[name], np.float64).reshape(-1, 3) for name in (b"v", b"vn"))
+    return points, normals
 
 
 def _index(number: int, count: int, line: int) -> int:

@@ -1,4 +1,4 @@
-"""Reads PLY: text and binary, little and big endian; colors and other properties are left out.
+"""Reads PLY: text and binary, little and big endian; properties of other programs are left out.
 
 Input: bytes. Output: a mesh.
 """
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
-from distal.polygons.triangles import SourceTriangles, checked, fans
+from distal.polygons.triangles import SourceTriangles, checked, colored, fans
 
 _TYPES: Final = {
     **dict.fromkeys(("char", "int8"), "i1"),
@@ -26,6 +26,8 @@ _TYPES: Final = {
 }
 _ORDERS: Final = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 _MOST_ROWS: Final = 100_000_000
+_ORIENTED: Final = ("x", "y", "z", "nx", "ny", "nz")
+_COLORS: Final = ("red", "green", "blue")
 _INDICES: Final = ("vertex_indices", "vertex_index")
 
 
@@ -53,8 +55,8 @@ class _Rest:
     words: list[bytes] | None = None  # the numbers of a text file
 
 
-def read_ply(data: bytes) -> SourceTriangles:
-    """Return the triangles of a PLY file.
+def read_ply(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
+    """Return the triangles of a PLY file, with colors if they are wanted and there.
 
     Raises:
         LoadError: The file is no PLY, is truncated, or has no points or polygons.
@@ -62,8 +64,12 @@ def read_ply(data: bytes) -> SourceTriangles:
     elements, reader = _header(data)
     points: NDArray[np.float64] | None = None
     triangles: NDArray[np.int64] | None = None
+    shades: dict[str, NDArray[np.float32]] = {}
     for element in elements:
         columns = _columns(element, reader)
+        given = _colors(element, columns) if with_colors else None
+        if given is not None:
+            shades[element.name] = given
         if element.name == "vertex":
             missing = [axis for axis in "xyz" if axis not in columns]
             if missing:
@@ -74,9 +80,44 @@ def read_ply(data: bytes) -> SourceTriangles:
             if name is None:
                 raise LoadError("its polygons have no vertex_indices")
             triangles = fans(*columns[name])
+            corners = np.maximum(columns[name][0] - 2, 0)
+            if given is not None and len(given) == len(corners):
+                shades[element.name] = np.repeat(given, corners, axis=0)
     if points is None or triangles is None:
         raise LoadError("it has points only, no polygons" if points is not None else "no points")
-    return checked(points, triangles)
+    mesh = checked(points, triangles)
+    if "face" in shades and len(shades["face"]) == len(mesh.triangles):
+        return colored(mesh, shades["face"], of="triangles")
+    return colored(mesh, shades["vertex"]) if "vertex" in shades else mesh
+
+
+def _colors(element: _Element, columns: dict[str, Any]) -> NDArray[np.float32] | None:
+    """Return the colors of an element's rows, display values from 0 to 1; None without them."""
+    if any(name not in columns for name in _COLORS):
+        return None
+    found = np.stack([columns[name] for name in _COLORS], axis=1).astype(np.float32)
+    types = {each.type for each in element.properties if each.name in _COLORS}
+    most = {"u1": 255.0, "u2": 65535.0}.get(min(types), 1.0)
+    shown: NDArray[np.float32] = np.clip(np.nan_to_num(found / np.float32(most)), 0.0, 1.0)
+    return shown
+
+
+def read_ply_points(data: bytes) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return the points of a PLY file and their normals.
+
+    Raises:
+        LoadError: The file is no PLY, is truncated, or has no points with normals.
+    """
+    elements, reader = _header(data)
+    for element in elements:
+        columns = _columns(element, reader)
+        if element.name == "vertex":
+            missing = [name for name in _ORIENTED if name not in columns]
+            if missing:
+                raise LoadError(f"its points have no {missing[0]}")
+            found = np.stack([columns[name] for name in _ORIENTED], axis=1).astype(np.float64)
+            return found[:, :3], found[:, 3:]
+    raise LoadError("it has no points")
 
 
 def _header(data: bytes) -> tuple[list[_Element], _Rest]:

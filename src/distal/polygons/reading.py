@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -31,19 +32,21 @@ class ReadFormat:
         name: Its name.
         z_up: Whether z is up in it; else y is.
         read: Reads the bytes of a file.
+        colored: Reads them with colors, if they are there; None for a format without colors.
     """
 
     name: str
     z_up: bool
     read: Callable[[bytes], SourceTriangles]
+    colored: Callable[[bytes], SourceTriangles] | None = None
 
 
 READ_FORMATS: Final = {
     ".stl": ReadFormat("STL", True, read_stl),
-    ".3mf": ReadFormat("3MF", True, read_three_mf),
-    ".obj": ReadFormat("OBJ", False, read_obj),
-    ".ply": ReadFormat("PLY", False, read_ply),
-    ".glb": ReadFormat("GLB", False, read_glb),
+    ".3mf": ReadFormat("3MF", True, read_three_mf, partial(read_three_mf, with_colors=True)),
+    ".obj": ReadFormat("OBJ", False, read_obj, partial(read_obj, with_colors=True)),
+    ".ply": ReadFormat("PLY", False, read_ply, partial(read_ply, with_colors=True)),
+    ".glb": ReadFormat("GLB", False, read_glb, partial(read_glb, with_colors=True)),
 }
 
 
@@ -60,15 +63,20 @@ def format_of(path: Path) -> ReadFormat:
     return chosen
 
 
-def read_mesh(path: Path) -> SourceTriangles:
+def read_mesh(path: Path, *, with_colors: bool = False) -> SourceTriangles:
     """Return the triangles of a file, in its own unit and axes.
+
+    Args:
+        path: The file.
+        with_colors: Whether to read its colors, if it has some.
 
     Raises:
         LoadError: The file cannot be read, or is not what its suffix says.
     """
     chosen = format_of(path)
     try:
-        return chosen.read(bytes_of(path, LARGEST_FILE))
+        read = chosen.colored if with_colors and chosen.colored is not None else chosen.read
+        return read(bytes_of(path, LARGEST_FILE))
     except LoadError as error:
         if error.message.startswith("cannot read"):
             raise

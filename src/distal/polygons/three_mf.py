@@ -19,11 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
-from distal.polygons.triangles import MOST_TRIANGLES, SourceTriangles, checked
-from distal.polygons.units import UNITS
+from distal.lang.units import UNITS
+from distal.polygons.triangles import MOST_TRIANGLES, SourceTriangles, checked, colored
 
 _CORE: Final = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
 _PATH: Final = "{http://schemas.microsoft.com/3dmanufacturing/production/2015/06}path"
+_MATERIAL: Final = "{http://schemas.microsoft.com/3dmanufacturing/material/2015/02}"
 _MODEL: Final = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 _LARGEST: Final = 2**30  # bytes of XML
 _DEEPEST: Final = 32  # components within components
@@ -39,11 +40,15 @@ _METERS: Final = {
 
 @dataclass(slots=True)
 class _Object:
-    """An object: a mesh, or other objects with the matrices that place them."""
+    """An object: a mesh, or other objects with the matrices that place them.
+
+    Colors are those of the triangles' corners, (m, 3, 3); None without them.
+    """
 
     points: NDArray[np.float64]
     triangles: NDArray[np.int64]
     components: list[tuple[tuple[str, str], NDArray[np.float64]]]
+    colors: NDArray[np.float32] | None = None
 
 
 @dataclass(slots=True)
@@ -52,34 +57,38 @@ class _Archive:
 
     Attributes:
         archive: The file.
+        with_colors: Whether colors are wanted.
         roots: The models by name.
         objects: Their objects by the name of the model and their own.
         points: The points of each placed object.
         triangles: Its triangles.
+        colors: Their colors.
         corners: The number of all these points.
         count: The number of all these triangles.
         placed: The number of placed objects.
     """
 
     archive: zipfile.ZipFile
+    with_colors: bool
     roots: dict[str, ElementTree.Element] = field(default_factory=dict)
     objects: dict[tuple[str, str], _Object] = field(default_factory=dict)
     points: list[NDArray[np.float64]] = field(default_factory=list)
     triangles: list[NDArray[np.int64]] = field(default_factory=list)
+    colors: list[NDArray[np.float32] | None] = field(default_factory=list)
     corners: int = 0
     count: int = 0
     placed: int = 0
 
 
-def read_three_mf(data: bytes) -> SourceTriangles:
-    """Return the triangles of a 3MF file.
+def read_three_mf(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
+    """Return the triangles of a 3MF file, with colors if they are wanted and there.
 
     Raises:
         LoadError: The file is no 3MF, or is damaged.
     """
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            return _read(_Archive(archive))
+            return _read(_Archive(archive, with_colors))
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
         raise LoadError(f"it is no whole zip archive, as 3MF is: {error}") from None
 
@@ -96,7 +105,14 @@ def _read(whole: _Archive) -> SourceTriangles:
         _place(whole, key, _matrix(item.get("transform")), 0)
     if not whole.triangles:
         raise LoadError("there is no triangle in its build")
-    return checked(np.concatenate(whole.points), np.concatenate(whole.triangles), _METERS[unit])
+    mesh = checked(np.concatenate(whole.points), np.concatenate(whole.triangles), _METERS[unit])
+    if all(each is None for each in whole.colors):
+        return mesh
+    shades = [
+        np.ones((len(triangles), 3, 3), np.float32) if each is None else each
+        for each, triangles in zip(whole.colors, whole.triangles, strict=True)
+    ]
+    return colored(mesh, np.concatenate(shades), of="corners")
 
 
 def _start(whole: _Archive) -> str:
@@ -115,8 +131,9 @@ def _start(whole: _Archive) -> str:
 def _root(whole: _Archive, path: str) -> ElementTree.Element:
     if path not in whole.roots:
         root = whole.roots[path] = _parsed(whole, path)
+        palettes = _palettes(root) if whole.with_colors else {}
         for element in root.iterfind(f"{_CORE}resources/{_CORE}object"):
-            whole.objects[path, element.get("id", "")] = _object(element, path)
+            whole.objects[path, element.get("id", "")] = _object(element, path, palettes)
     return whole.roots[path]
 
 
@@ -136,7 +153,58 @@ def _parsed(whole: _Archive, path: str) -> ElementTree.Element:
         raise LoadError(f"its part '{path:.60}' is no XML: {error}") from None
 
 
-def _object(element: ElementTree.Element, path: str) -> _Object:
+def _palettes(root: ElementTree.Element) -> dict[str, list[list[float]]]:
+    """Return the colors of each group and list of materials, by its id, from 0 to 1."""
+    found: dict[str, list[list[float]]] = {}
+    kinds = (
+        (f"{_MATERIAL}colorgroup", f"{_MATERIAL}color", "color"),
+        (f"{_CORE}basematerials", f"{_CORE}base", "displaycolor"),
+    )
+    for group, entry, attribute in kinds:
+        for each in root.iterfind(f"{_CORE}resources/{group}"):
+            texts = [color.get(attribute, "") for color in each.iterfind(entry)]
+            found[each.get("id", "")] = [_color(text) for text in texts]
+    return found
+
+
+def _color(text: str) -> list[float]:
+    try:
+        code = bytes.fromhex(text[1:7])
+    except ValueError:
+        code = b""
+    if not text.startswith("#") or len(code) != 3:
+        raise LoadError(f"the color '{text:.20}' is not as in #rrggbb")
+    return [channel / 255.0 for channel in code]
+
+
+def _colors(
+    element: ElementTree.Element,
+    mesh: ElementTree.Element,
+    palettes: dict[str, list[list[float]]],
+) -> NDArray[np.float32] | None:
+    """Return the colors of the corners of an object's triangles; None if none has one."""
+    group, index = element.get("pid", ""), element.get("pindex", "0")
+    triangles = list(mesh.iterfind(f"{_CORE}triangles/{_CORE}triangle"))
+    if group not in palettes and not any(each.get("pid") in palettes for each in triangles):
+        return None
+    rows: list[list[list[float]]] = []
+    for each in triangles:
+        own = each.get("pid")
+        shades = palettes.get(group if own is None else own)
+        first = each.get("p1", index if own is None else "0")
+        numbers = (first, each.get("p2", first), each.get("p3", first))
+        if shades is None:  # a picture or a mixture: white
+            rows.append([[1.0, 1.0, 1.0]] * 3)
+            continue
+        if not all(n.isdecimal() and int(n) < len(shades) for n in numbers):
+            raise LoadError(f"a triangle names the color {'/'.join(numbers):.30}, of {len(shades)}")
+        rows.append([shades[int(n)] for n in numbers])
+    return np.array(rows, np.float32).reshape(-1, 3, 3)
+
+
+def _object(
+    element: ElementTree.Element, path: str, palettes: dict[str, list[list[float]]]
+) -> _Object:
     mesh = element.find(f"{_CORE}mesh")
     components = [
         (
@@ -151,7 +219,8 @@ def _object(element: ElementTree.Element, path: str) -> _Object:
     triangles = _rows(mesh, "triangles", "triangle", ("v1", "v2", "v3"), int)
     if len(triangles) and not 0 <= triangles.min() <= triangles.max() < len(points):
         raise LoadError(f"a triangle of object {element.get('id')!r:.20} names a missing point")
-    return _Object(points.astype(np.float64), triangles.astype(np.int64), components)
+    colors = _colors(element, mesh, palettes)
+    return _Object(points.astype(np.float64), triangles.astype(np.int64), components, colors)
 
 
 def _rows(
@@ -188,6 +257,8 @@ def _add(whole: _Archive, found: _Object, matrix: NDArray[np.float64]) -> None:
         whole.points.append(found.points @ matrix[:3] + matrix[3])
     mirrored = float(np.linalg.det(matrix[:3])) < 0.0
     whole.triangles.append(start + (found.triangles[:, ::-1] if mirrored else found.triangles))
+    colors = found.colors
+    whole.colors.append(colors[:, ::-1] if mirrored and colors is not None else colors)
 
 
 def _after(inner: NDArray[np.float64], outer: NDArray[np.float64]) -> NDArray[np.float64]:

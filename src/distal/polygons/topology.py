@@ -23,12 +23,14 @@ class Joined:
         triangles: (m, 3) int64.
         corners: The first, second and third corner of each triangle, three times (m, 3) float32.
         left_out: The number of triangles with a point twice.
+        rows: The numbers of the triangles in the mesh that they come from; None if all are there.
     """
 
     points: NDArray[np.float32]
     triangles: NDArray[np.int64]
     corners: tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]
     left_out: int
+    rows: NDArray[np.int64] | None = None
 
     @property
     def buffers(self) -> dict[str, NDArray[Any]]:
@@ -73,10 +75,11 @@ def joined(mesh: SourceTriangles, origin: NDArray[np.float64], spacing: float) -
     triangles = which[mesh.triangles]
     a, b, c = triangles.T
     proper = (a != b) & (b != c) & (c != a)
+    rows = None
     if not proper.all():
-        triangles = triangles[proper]
+        triangles, rows = triangles[proper], np.flatnonzero(proper)
     corners = points[triangles[:, 0]], points[triangles[:, 1]], points[triangles[:, 2]]
-    return Joined(points, triangles, corners, len(proper) - len(triangles))
+    return Joined(points, triangles, corners, len(proper) - len(triangles), rows)
 
 
 def topology(mesh: Joined) -> EdgeTopology:

@@ -5,7 +5,7 @@ Input: arrays. Output: checked arrays; equal points joined. Does not depend on f
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -27,11 +27,16 @@ class SourceTriangles:
         points: (n, 3) float64.
         triangles: (m, 3) int64, indices of points.
         meters: The length of the unit of the points in meters; None if nothing says it.
+        colors: A color for each point, (n, 3) float32, or None. Points of triangles whose colors
+            differ are not shared.
+        is_light: Whether colors are linear light; else they are display values, from 0 to 1.
     """
 
     points: NDArray[np.float64]
     triangles: NDArray[np.int64]
     meters: float | None = None
+    colors: NDArray[np.float32] | None = None
+    is_light: bool = False
 
 
 def checked(points: Any, triangles: Any, meters: float | None = None) -> SourceTriangles:
@@ -45,7 +50,7 @@ def checked(points: Any, triangles: Any, meters: float | None = None) -> SourceT
     Raises:
         LoadError: An array has another shape, there is no triangle, or a number is invalid.
     """
-    places = _array(points, "points", "fiu")
+    places = checked_places(points, "points")
     corners = _array(triangles, "triangles", "iu")
     if not len(corners):
         raise LoadError("there is no triangle")
@@ -55,12 +60,63 @@ def checked(points: Any, triangles: Any, meters: float | None = None) -> SourceT
     if low < 0 or high >= len(places):
         wrong = low if low < 0 else high
         raise LoadError(f"a triangle names point {wrong}, and there are {len(places)} points")
-    places = places.astype(np.float64)
+    return SourceTriangles(places, corners.astype(np.int64), meters)
+
+
+def checked_places(values: Any, name: str) -> NDArray[np.float64]:
+    """Return an array (n, 3) of finite numbers.
+
+    Args:
+        values: The numbers.
+        name: What they are: "points", "normals".
+
+    Raises:
+        LoadError: They have another shape, or one of them is invalid.
+    """
+    places = _array(values, name, "fiu").astype(np.float64)
     wrong_rows = np.flatnonzero(~(np.abs(places) <= _LARGEST).all(axis=1))
     if len(wrong_rows):
-        values = ", ".join(f"{value:g}" for value in places[wrong_rows[0]])
-        raise LoadError(f"point {wrong_rows[0]} is ({values}), which is no place")
-    return SourceTriangles(places, corners.astype(np.int64), meters)
+        row = ", ".join(f"{value:g}" for value in places[wrong_rows[0]])
+        what = "place" if name == "points" else "direction"
+        raise LoadError(f"{name[:-1]} {wrong_rows[0]} is ({row}), which is no {what}")
+    return places
+
+
+def colored(
+    mesh: SourceTriangles, colors: Any, *, of: str = "points", is_light: bool = False
+) -> SourceTriangles:
+    """Return a mesh with colors.
+
+    Args:
+        mesh: The mesh.
+        colors: (n, 3) for points, (m, 3) for triangles, (m, 3, 3) for their corners.
+        of: What has colors: "points", "triangles" or "corners".
+        is_light: Whether they are linear light.
+
+    Raises:
+        LoadError: There are not as many, or one is no color.
+    """
+    count = len(mesh.points) if of == "points" else len(mesh.triangles)
+    try:
+        found = np.asarray(colors, np.float32)
+    except (TypeError, ValueError):
+        raise LoadError("colors are numbers (n, 3), one color for each point") from None
+    if found.shape != ((count, 3, 3) if of == "corners" else (count, 3)):
+        raise LoadError(f"there are {count} {of}, and colors are {found.shape}")
+    wrong = np.flatnonzero(~((found >= 0.0) & (found <= 1.0)).reshape(count, -1).all(axis=1))
+    if len(wrong):
+        raise LoadError(f"color {wrong[0]} is no color: its numbers are from 0 to 1")
+    if of == "points":
+        return replace(mesh, colors=found, is_light=is_light)
+    if of == "triangles":
+        found = np.repeat(found[:, None], 3, axis=1)
+    return replace(
+        mesh,
+        points=mesh.points[mesh.triangles.reshape(-1)],
+        triangles=np.arange(3 * count).reshape(-1, 3),
+        colors=found.reshape(-1, 3),
+        is_light=is_light,
+    )
 
 
 def welded(places: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.int64]]:

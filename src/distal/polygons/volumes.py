@@ -22,10 +22,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError, printable
+from distal.lang.resources import AXES
 from distal.polygons.reading import bytes_of
 
 LARGEST_FILE: Final = 2**31  # bytes
-MOST_SAMPLES: Final = 2**24
+# Those near the surface are kept: ``bricks.MOST_NUMBERS``.
+MOST_SAMPLES: Final = 2**26
 _LARGEST_SAMPLES: Final = MOST_SAMPLES * 8
 _NRRD_TYPES: Final = {
     **dict.fromkeys(("signed char", "int8", "int8_t"), "i1"),
@@ -138,7 +140,7 @@ def field_of(
     Raises:
         LoadError: Nothing is inside.
     """
-    values = samples.transpose([axes.index(axis) for axis in "zyx"])
+    values = samples.transpose([axes.index(axis) for axis in AXES])
     if level is not None:
         values = np.float32(level) - values
     if not (values < 0.0).any():
@@ -157,6 +159,25 @@ def field_of(
     z, y, x = values.shape
     size = x * spacing[0], y * spacing[1], z * spacing[2]
     return FieldSamples(np.ascontiguousarray(values), size, 1.0 if is_fair else 1.0 / steepest)
+
+
+def notice_of(name: str, field: FieldSamples, spacing: tuple[float, float, float]) -> str:
+    """Return one line about what a volume's field can show, and how to show more.
+
+    Args:
+        name: The file, or "array".
+        field: The field.
+        spacing: The distances of samples along x, y and z.
+    """
+    z, y, x = field.values.shape
+    steps = " x ".join(f"{step:.4g}" for step in spacing)
+    # The volume is all that is known: how far it is from what was measured, it does not say.
+    values = "values are no distances: rays take more steps; " if field.scale != 1.0 else ""
+    return (
+        f"'{name}' has {x} x {y} x {z} samples, {steps} apart: between them it is interpolated, "
+        f"and parts thinner than {max(spacing):.4g} may be missing; {values}more samples are "
+        "finer, or spacing= if they are another distance apart"
+    )
 
 
 def read_npy(data: bytes) -> VolumeSamples:

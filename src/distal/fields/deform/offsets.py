@@ -12,6 +12,9 @@ the surface.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any, Final
+
 from distal.fields.extents import Boxes, at_least_one, moved_out
 from distal.fields.guarantees import (
     EXACT_OUTSIDE,
@@ -19,6 +22,7 @@ from distal.fields.guarantees import (
     Growth,
     Guarantee,
     Limit,
+    Operator,
     operator,
 )
 from distal.lang import abs, dot, func, max, vec2, vec3
@@ -166,12 +170,14 @@ SHELL_OUTER = operator(
     limits=THICK,
     growth=Growth.KEPT,
 )
-CUT = {
+CUT: Final[Mapping[str, Any]] = {
     "keeps": INSIDE_AND_BOUND,
     "growth": Growth.KEPT,
     "slope": at_least_one,
     "limits": {"normal": Limit.UNIT},
 }
+# What a person cuts away to look inside: no author writes it, so it has no name in the library.
+SECTION = Operator("section", finish=kept_below, **CUT)
 SPLIT_BELOW = operator("split below", finish=kept_below, **CUT)
 SPLIT_ABOVE = operator("split above", finish=kept_above, **CUT)
 SPLIT_BELOW_FLAT = operator("flat split below", finish=kept_below_flat, **CUT)

@@ -69,14 +69,14 @@ def rectangle_bounds(size: vec2) -> Bounds2:
     return centred_bounds(0.5 * size)
 
 
-@primitive("Rectangle", EXACT, bounds=rectangle_bounds)
+@primitive("Rectangle", EXACT, bounds=rectangle_bounds, endless=("size",))
 @func
 def rectangle(p: vec2, size: vec2 = UNIT_SQUARE) -> float:
     """Rectangle with sides along the axes, centred at the origin.
 
     Args:
         p: Point.
-        size: Full width and height.
+        size: Full width and height; ``math.inf`` along an axis without an end.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).

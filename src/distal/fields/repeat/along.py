@@ -32,6 +32,7 @@ from distal.fields.repeat.cells import (
     slope_in,
     to_others,
 )
+from distal.fields.repeat.varied import cells_of_copies
 from distal.lang import (
     Buffer,
     abs,
@@ -63,6 +64,12 @@ def line_index(p: vec3, start: vec3, end: vec3, count: int, bounds: Bounds) -> f
     step = line_step(start, end, count)
     along = dot(p - start - middle_of(bounds), step) / dot(step, step)
     return clamp(round(along), 0.0, float(count) - 1.0)
+
+
+@func
+def cells_in_line(count: int) -> Bounds:
+    """Return the first and the last index of a number of copies."""
+    return Bounds(vec3(0.0), vec3(float(count) - 1.0, 0.0, 0.0))
 
 
 @func
@@ -126,7 +133,12 @@ def ring(spacing: vec2, count_x: int, count_z: int) -> Copies:
 
 @func
 def on_side(
-    field: Callable[[vec3], float], p: vec3, copies: Copies, bounds: Bounds, index: vec3, free: vec3
+    field: Callable[[vec3, vec3], float],
+    p: vec3,
+    copies: Copies,
+    bounds: Bounds,
+    index: vec3,
+    free: vec3,
 ) -> Nearest:
     """Return one copy on a side of the rectangle, limited by the others on that side.
 
@@ -143,13 +155,13 @@ def on_side(
     half = half_of(bounds)
     along = Copies(copies.spacing * free, copies.origin, copies.first, copies.last)
     gap = to_others(away, half, along, index, 0, True)
-    d = max(field(q), distance_to_box(away, half))
+    d = max(field(q, index), distance_to_box(away, half))
     return Nearest(min(d, distance_to_others(away, half, gap)), Site(q, index))
 
 
 @func
 def nearest_on_ring(
-    field: Callable[[vec3], float], p: vec3, copies: Copies, bounds: Bounds
+    field: Callable[[vec3, vec3], float], p: vec3, copies: Copies, bounds: Bounds
 ) -> Nearest:
     """Return the nearer copy of two: on the side across x and on that across z.
 
@@ -177,14 +189,16 @@ def nearest_on_ring(
 
 
 @func
-def around_ring(field: Callable[[vec3], float], p: vec3, copies: Copies, bounds: Bounds) -> float:
+def around_ring(
+    field: Callable[[vec3, vec3], float], p: vec3, copies: Copies, bounds: Bounds
+) -> float:
     """Return the distance to the copies on the border of a block."""
     return nearest_on_ring(field, p, copies, bounds).distance
 
 
 @func
 def around_ring_site(
-    field: Callable[[vec3], float], p: vec3, copies: Copies, bounds: Bounds
+    field: Callable[[vec3, vec3], float], p: vec3, copies: Copies, bounds: Bounds
 ) -> Site:
     """Return the place in the nearest copy; its index is that in the block."""
     return nearest_on_ring(field, p, copies, bounds).site
@@ -194,29 +208,38 @@ def around_ring_site(
 
 
 @func
-def nearest_at(field: Callable[[vec3], float], p: vec3, positions: Buffer[vec3]) -> Nearest:
+def nearest_at(field: Callable[[vec3, vec3], float], p: vec3, positions: Buffer[vec3]) -> Nearest:
     """Return the nearest of all copies; each copy is evaluated."""
     nearest = UNBOUNDED
     site = Site(p, vec3(0.0))
     for i in range(size(positions)):
         q = p - positions[i]
-        d = field(q)
+        index = vec3(float(i), 0.0, 0.0)
+        d = field(q, index)
         if d < nearest:
             nearest = d
-            site = Site(q, vec3(float(i), 0.0, 0.0))
+            site = Site(q, index)
     return Nearest(nearest, site)
 
 
 @func
-def at_positions(field: Callable[[vec3], float], p: vec3, positions: Buffer[vec3]) -> float:
+def at_positions(field: Callable[[vec3, vec3], float], p: vec3, positions: Buffer[vec3]) -> float:
     """Return the distance to the copies at the positions."""
     return nearest_at(field, p, positions).distance
 
 
 @func
-def at_positions_site(field: Callable[[vec3], float], p: vec3, positions: Buffer[vec3]) -> Site:
+def at_positions_site(
+    field: Callable[[vec3, vec3], float], p: vec3, positions: Buffer[vec3]
+) -> Site:
     """Return the place in the nearest copy; its index is that of the position."""
     return nearest_at(field, p, positions).site
+
+
+@func
+def cells_at(positions: Buffer[vec3]) -> Bounds:
+    """Return the first and the last index of the positions."""
+    return cells_in_line(size(positions))
 
 
 @func
@@ -244,6 +267,7 @@ def ring_requirement(count_x: int, count_z: int) -> str | None:
 
 REPEAT_LINE = operator(
     "repeat line",
+    cells=cells_in_line,
     point=along_line,
     finish=along_line_value,
     keeps=INSIDE_AND_BOUND,
@@ -255,6 +279,7 @@ REPEAT_LINE = operator(
 )
 REPEAT_RING = operator(
     "repeat ring",
+    cells=cells_of_copies,
     copies=ring,
     around=around_ring,
     site=around_ring_site,
@@ -269,6 +294,7 @@ REPEAT_RING = operator(
 )
 REPEAT_AT = operator(
     "repeat at",
+    cells=cells_at,
     around=at_positions,
     site=at_positions_site,
     keeps=EXACT_OUTSIDE,

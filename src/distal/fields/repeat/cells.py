@@ -242,7 +242,7 @@ def bounds_in(bounds: Bounds, copies: Copies) -> Bounds:
 
 @func
 def nearest_copy(
-    field: Callable[[vec3], float],
+    field: Callable[[vec3, vec3], float],
     p: vec3,
     copies: Copies,
     bounds: Bounds,
@@ -275,7 +275,7 @@ def nearest_copy(
                 there = index + step
                 if limited and not all(clamp(there, copies.first, copies.last) == there):
                     continue
-                d = max(field(place), distance_to_box(place - middle, half))
+                d = max(field(place, there), distance_to_box(place - middle, half))
                 if d < nearest:
                     nearest = d
                     site = Site(place, there)
@@ -284,7 +284,7 @@ def nearest_copy(
 
 @func
 def nearest_copy_distance(
-    field: Callable[[vec3], float],
+    field: Callable[[vec3, vec3], float],
     p: vec3,
     copies: Copies,
     bounds: Bounds,
@@ -297,7 +297,7 @@ def nearest_copy_distance(
 
 @func
 def nearest_copy_site(
-    field: Callable[[vec3], float],
+    field: Callable[[vec3, vec3], float],
     p: vec3,
     copies: Copies,
     bounds: Bounds,

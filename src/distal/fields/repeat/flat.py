@@ -22,6 +22,7 @@ from distal.fields.guarantees import (
     operator,
 )
 from distal.fields.place.flat import kaleidoscope_flat_bounds
+from distal.fields.repeat.along import cells_in_line
 from distal.fields.repeat.cells import (
     Copies,
     Nearest,
@@ -45,6 +46,7 @@ from distal.fields.repeat.grid import (
 from distal.fields.repeat.polar import (
     POLAR_FITTING,
     POLAR_SMALLER,
+    nearest_of_all_polar,
     nearest_polar,
     polar_around_requirement,
     polar_requirement,
@@ -121,7 +123,7 @@ def bounds_in_flat(bounds: Bounds2, copies: Copies) -> Bounds2:
 
 @func
 def nearest_copy_flat(
-    field: Callable[[vec2], float],
+    field: Callable[[vec2, vec3], float],
     p: vec2,
     copies: Copies,
     bounds: Bounds2,
@@ -130,13 +132,13 @@ def nearest_copy_flat(
 ) -> Nearest:
     """Return the nearest of the copies around the point, limited by those not evaluated."""
     return nearest_copy(
-        lambda q: field(q.xy), in_space(p), copies, slab(bounds), neighbours, limited
+        lambda q, cell: field(q.xy, cell), in_space(p), copies, slab(bounds), neighbours, limited
     )
 
 
 @func
 def nearest_copy_distance_flat(
-    field: Callable[[vec2], float],
+    field: Callable[[vec2, vec3], float],
     p: vec2,
     copies: Copies,
     bounds: Bounds2,
@@ -149,7 +151,7 @@ def nearest_copy_distance_flat(
 
 @func
 def nearest_copy_site_flat(
-    field: Callable[[vec2], float],
+    field: Callable[[vec2, vec3], float],
     p: vec2,
     copies: Copies,
     bounds: Bounds2,
@@ -215,22 +217,22 @@ def repeated_polar_flat_slope(slope: float, bounds: Bounds2, count: int) -> floa
 
 @func
 def repeated_polar_flat_around(
-    field: Callable[[vec2], float], p: vec2, count: int, bounds: Bounds2, neighbours: int
+    field: Callable[[vec2, vec3], float], p: vec2, count: int, bounds: Bounds2, neighbours: int
 ) -> float:
     """Return the distance to the nearest of the copies around the point."""
     found = nearest_polar(
-        lambda q: field(off_ground(q)), on_ground(p), count, column(bounds), neighbours
+        lambda q, cell: field(off_ground(q), cell), on_ground(p), count, column(bounds), neighbours
     )
     return found.distance
 
 
 @func
 def repeated_polar_flat_site(
-    field: Callable[[vec2], float], p: vec2, count: int, bounds: Bounds2, neighbours: int
+    field: Callable[[vec2, vec3], float], p: vec2, count: int, bounds: Bounds2, neighbours: int
 ) -> Site2:
     """Return the place in the nearest copy."""
     found = nearest_polar(
-        lambda q: field(off_ground(q)), on_ground(p), count, column(bounds), neighbours
+        lambda q, cell: field(off_ground(q), cell), on_ground(p), count, column(bounds), neighbours
     )
     return Site2(off_ground(found.site.p), found.site.cell)
 
@@ -243,32 +245,60 @@ def repeated_polar_flat_around_slope(
     return repeated_polar_around_slope(slope, column(bounds), count, neighbours)
 
 
+@func
+def repeated_polar_flat_all(field: Callable[[vec2, vec3], float], p: vec2, count: int) -> float:
+    """Return the distance to the nearest of all copies."""
+    return nearest_of_all_polar(
+        lambda q, cell: field(off_ground(q), cell), on_ground(p), count
+    ).distance
+
+
+@func
+def repeated_polar_flat_all_site(
+    field: Callable[[vec2, vec3], float], p: vec2, count: int
+) -> Site2:
+    """Return the place in the nearest of all copies."""
+    site = nearest_of_all_polar(
+        lambda q, cell: field(off_ground(q), cell), on_ground(p), count
+    ).site
+    return Site2(off_ground(site.p), site.cell)
+
+
 # At given positions
 
 
 @func
-def at_positions_flat(field: Callable[[vec2], float], p: vec2, positions: Buffer[vec2]) -> float:
+def at_positions_flat(
+    field: Callable[[vec2, vec3], float], p: vec2, positions: Buffer[vec2]
+) -> float:
     """Return the distance to the copies at the positions."""
     nearest = UNBOUNDED
     for i in range(size(positions)):
-        nearest = min(nearest, field(p - positions[i]))
+        nearest = min(nearest, field(p - positions[i], vec3(float(i), 0.0, 0.0)))
     return nearest
 
 
 @func
 def at_positions_flat_site(
-    field: Callable[[vec2], float], p: vec2, positions: Buffer[vec2]
+    field: Callable[[vec2, vec3], float], p: vec2, positions: Buffer[vec2]
 ) -> Site2:
     """Return the place in the nearest copy; its index is that of the position."""
     nearest = UNBOUNDED
     site = Site2(p, vec3(0.0))
     for i in range(size(positions)):
         q = p - positions[i]
-        d = field(q)
+        index = vec3(float(i), 0.0, 0.0)
+        d = field(q, index)
         if d < nearest:
             nearest = d
-            site = Site2(q, vec3(float(i), 0.0, 0.0))
+            site = Site2(q, index)
     return site
+
+
+@func
+def cells_at_flat(positions: Buffer[vec2]) -> Bounds:
+    """Return the first and the last index of the positions."""
+    return cells_in_line(size(positions))
 
 
 @func
@@ -316,8 +346,19 @@ REPEAT_MIRRORED_FLAT = operator(
     limits=SPACING,
     growth=Growth.KEPT,
 )
+REPEAT_POLAR_ALL_FLAT = operator(
+    "flat repeat polar all",
+    cells=cells_in_line,
+    around=repeated_polar_flat_all,
+    site=repeated_polar_flat_all_site,
+    keeps=EXACT_OUTSIDE,
+    bounds=kaleidoscope_flat_bounds,
+    requires=polar_requirement,
+    growth=Growth.TURNED,
+)
 REPEAT_POLAR_FLAT = operator(
     "flat repeat polar",
+    cells=cells_in_line,
     point=repeated_polar_flat,
     finish=repeated_polar_flat_value,
     keeps=INSIDE_AND_BOUND,
@@ -329,6 +370,7 @@ REPEAT_POLAR_FLAT = operator(
 )
 REPEAT_POLAR_NEIGHBOURS_FLAT = operator(
     "flat repeat polar neighbours",
+    cells=cells_in_line,
     around=repeated_polar_flat_around,
     site=repeated_polar_flat_site,
     keeps=LOWER_BOUND,
@@ -340,6 +382,7 @@ REPEAT_POLAR_NEIGHBOURS_FLAT = operator(
 )
 REPEAT_AT_FLAT = operator(
     "flat repeat at",
+    cells=cells_at_flat,
     around=at_positions_flat,
     site=at_positions_flat_site,
     keeps=EXACT_OUTSIDE,

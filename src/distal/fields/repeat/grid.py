@@ -33,6 +33,7 @@ from distal.fields.repeat.cells import (
     slope_in,
     value_in,
 )
+from distal.fields.repeat.varied import cells_of_copies
 from distal.lang import floor, func, round, vec3
 from distal.lang.functions import Func
 
@@ -78,6 +79,7 @@ def one_cell(
     """
     return operator(
         name,
+        cells=cells_of_copies,
         copies=copies,
         point=functions.site,
         finish=functions.value,
@@ -111,6 +113,7 @@ def several_cells(
     """
     return operator(
         name,
+        cells=cells_of_copies,
         copies=copies,
         around=functions.nearest_distance,
         site=functions.nearest_site,

@@ -18,6 +18,7 @@ from distal.fields.constants import PI
 from distal.fields.extents import drum_distance
 from distal.fields.guarantees import (
     ENDLESS,
+    EXACT_OUTSIDE,
     INSIDE_AND_BOUND,
     LOWER_BOUND,
     UNBOUNDED,
@@ -28,6 +29,7 @@ from distal.fields.guarantees import (
 )
 from distal.fields.place.mirrors import kaleidoscope_bounds, outer_radius
 from distal.fields.place.solid import rotated_y
+from distal.fields.repeat.along import cells_in_line
 from distal.fields.repeat.cells import LEAD, ROOM, Nearest
 from distal.lang import (
     abs,
@@ -138,10 +140,16 @@ def turned_by(p: vec3, index: float, count: int) -> vec3:
 
 
 @func
+def polar_cell(index: float, count: int) -> vec3:
+    """Return the index of a copy, from 0 to below ``count``, as a cell."""
+    n = float(count)
+    return vec3(index - n * floor(index / n), 0.0, 0.0)
+
+
+@func
 def polar_site(p: vec3, index: float, count: int) -> Site:
     """Return the place in a copy; its index is from 0 to below ``count``."""
-    n = float(count)
-    return Site(turned_by(p, index, count), vec3(index - n * floor(index / n), 0.0, 0.0))
+    return Site(turned_by(p, index, count), polar_cell(index, count))
 
 
 # One sector
@@ -186,7 +194,7 @@ def repeated_polar_slope(slope: float, bounds: Bounds, count: int) -> float:
 
 @func
 def nearest_polar(
-    field: Callable[[vec3], float], p: vec3, count: int, bounds: Bounds, neighbours: int
+    field: Callable[[vec3, vec3], float], p: vec3, count: int, bounds: Bounds, neighbours: int
 ) -> Nearest:
     """Return the nearest of the copies around the point, limited by those not evaluated."""
     sector = sector_of(bounds)
@@ -200,7 +208,7 @@ def nearest_polar(
     for i in range(0 if neighbours == 1 else -1, 2):
         there = index + float(i) * toward
         q = turned_by(p, there, count)
-        d = max(field(q), to_own(in_sector(q, sector), sector))
+        d = max(field(q, polar_cell(there, count)), to_own(in_sector(q, sector), sector))
         if d < nearest:
             nearest = d
             chosen = there
@@ -216,7 +224,7 @@ def nearest_polar(
 
 @func
 def repeated_polar_around(
-    field: Callable[[vec3], float], p: vec3, count: int, bounds: Bounds, neighbours: int
+    field: Callable[[vec3, vec3], float], p: vec3, count: int, bounds: Bounds, neighbours: int
 ) -> float:
     """Return the distance to the nearest of the copies around the point."""
     return nearest_polar(field, p, count, bounds, neighbours).distance
@@ -224,7 +232,7 @@ def repeated_polar_around(
 
 @func
 def repeated_polar_around_site(
-    field: Callable[[vec3], float], p: vec3, count: int, bounds: Bounds, neighbours: int
+    field: Callable[[vec3, vec3], float], p: vec3, count: int, bounds: Bounds, neighbours: int
 ) -> Site:
     """Return the place in the nearest copy."""
     return nearest_polar(field, p, count, bounds, neighbours).site
@@ -236,6 +244,34 @@ def repeated_polar_around_slope(slope: float, bounds: Bounds, count: int, neighb
     reach = 1.0 if neighbours == 1 else 1.5
     free = min(2.0 * PI / float(count) * reach * (1.0 - LEAD), 0.49 * PI)
     return sector_slope(slope, bounds, free)
+
+
+# All copies
+
+
+@func
+def nearest_of_all_polar(field: Callable[[vec3, vec3], float], p: vec3, count: int) -> Nearest:
+    """Return the nearest of all copies; each copy is evaluated."""
+    nearest = UNBOUNDED
+    chosen = 0.0
+    for i in range(count):
+        d = field(turned_by(p, float(i), count), vec3(float(i), 0.0, 0.0))
+        if d < nearest:
+            nearest = d
+            chosen = float(i)
+    return Nearest(nearest, polar_site(p, chosen, count))
+
+
+@func
+def repeated_polar_all(field: Callable[[vec3, vec3], float], p: vec3, count: int) -> float:
+    """Return the distance to the nearest of all copies."""
+    return nearest_of_all_polar(field, p, count).distance
+
+
+@func
+def repeated_polar_all_site(field: Callable[[vec3, vec3], float], p: vec3, count: int) -> Site:
+    """Return the place in the nearest of all copies."""
+    return nearest_of_all_polar(field, p, count).site
 
 
 def polar_requirement(count: int) -> str | None:
@@ -252,14 +288,16 @@ def polar_around_requirement(count: int, neighbours: int) -> str | None:
 
 POLAR_FITTING = (
     "a shape beside the y axis whose box fits in its sector, with a little room: set neighbours=1 "
-    "for a wider one, or kaleidoscope for one that is symmetric in its sector"
+    "for a wider one, neighbours='all' for one that reaches the axis, or kaleidoscope for one that "
+    "is symmetric in its sector"
 )
 POLAR_SMALLER = (
     "a shape beside the y axis, narrower than the sectors that are evaluated and less than half a "
-    "turn wide"
+    "turn wide; neighbours='all' takes any shape"
 )
 REPEAT_POLAR = operator(
     "repeat polar",
+    cells=cells_in_line,
     point=repeated_polar,
     finish=repeated_polar_value,
     keeps=INSIDE_AND_BOUND,
@@ -271,6 +309,7 @@ REPEAT_POLAR = operator(
 )
 REPEAT_POLAR_NEIGHBOURS = operator(
     "repeat polar neighbours",
+    cells=cells_in_line,
     around=repeated_polar_around,
     site=repeated_polar_around_site,
     keeps=LOWER_BOUND,
@@ -279,4 +318,14 @@ REPEAT_POLAR_NEIGHBOURS = operator(
     requires=polar_around_requirement,
     needs=POLAR_SMALLER,
     growth=Growth.HELD,
+)
+REPEAT_POLAR_ALL = operator(
+    "repeat polar all",
+    cells=cells_in_line,
+    around=repeated_polar_all,
+    site=repeated_polar_all_site,
+    keeps=EXACT_OUTSIDE,
+    bounds=kaleidoscope_bounds,
+    requires=polar_requirement,
+    growth=Growth.TURNED,
 )

@@ -6,6 +6,7 @@ side.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Final
 
 from distal.fields.chords import in_box
@@ -53,14 +54,20 @@ def box_chord(p: vec3, direction: vec3, size: vec3) -> vec2:
     return in_box(p, direction, 0.5 * size)
 
 
-@primitive("Box", EXACT, bounds=box_bounds, chord=box_chord)
+@primitive(
+    "Box",
+    EXACT,
+    bounds=box_bounds,
+    chord=box_chord,
+    endless=("size",),
+)
 @func
 def box(p: vec3, size: vec3 = UNIT_CUBE) -> float:
     """Box with sides along the axes, centred at the origin.
 
     Args:
         p: Point.
-        size: Full size along x, y and z.
+        size: Full size along x, y and z; ``math.inf`` along an axis without an end.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -79,6 +86,7 @@ def box(p: vec3, size: vec3 = UNIT_CUBE) -> float:
     growth=ROOT_THREE,
     side_growth=1.0,
     chord=box_chord,
+    endless=("size",),
 )
 @func
 def box_cheap(p: vec3, size: vec3 = UNIT_CUBE) -> float:
@@ -88,7 +96,7 @@ def box_cheap(p: vec3, size: vec3 = UNIT_CUBE) -> float:
 
     Args:
         p: Point.
-        size: Full size along x, y and z.
+        size: Full size along x, y and z; ``math.inf`` along an axis without an end.
 
     Source: Mercury, "hg_sdf" (https://mercury.sexy/hg_sdf/), the Chebyshev distance.
 
@@ -101,25 +109,25 @@ def box_cheap(p: vec3, size: vec3 = UNIT_CUBE) -> float:
     return max(q.x, q.y, q.z)
 
 
-def _fits_every_side(what: str, reach: float, size: vec3) -> str | None:
+def _fits_every_side(what: str, reach: float, size: Iterable[float]) -> str | None:
     if 2.0 * reach > sorted(size)[0]:
         return f"{what} must be at most half of the smallest size"
     return None
 
 
-def round_box_requires(size: vec3, rounding: float) -> str | None:
+def round_box_requires(size: tuple[float, ...], rounding: float) -> str | None:
     """Return why the rounding is too large, or None."""
     return _fits_every_side("rounding", rounding, size)
 
 
-@primitive("RoundBox", EXACT, bounds=box_bounds, requires=round_box_requires)
+@primitive("RoundBox", EXACT, bounds=box_bounds, requires=round_box_requires, endless=("size",))
 @func
 def round_box(p: vec3, size: vec3 = UNIT_CUBE, rounding: float = 0.1) -> float:
     """Box with rounded edges; the full size does not change.
 
     Args:
         p: Point.
-        size: Full size along x, y and z.
+        size: Full size along x, y and z; ``math.inf`` along an axis without an end.
         rounding: Radius of the edges, at most half of the smallest size.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).

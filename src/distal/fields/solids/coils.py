@@ -6,7 +6,7 @@ Input: a point and the numbers of a coil. Output: a lower bound of the distance.
 from __future__ import annotations
 
 from distal.fields.constants import PI, TAU
-from distal.fields.guarantees import LOWER_BOUND, Approximation, Bounds, primitive
+from distal.fields.guarantees import LOWER_BOUND, UNBOUNDED, Approximation, Bounds, primitive
 from distal.lang import abs, atan2, func, length, max, round, sqrt, vec2, vec3
 
 
@@ -39,8 +39,27 @@ def coil(p: vec3, major: float, minor: float, pitch: float) -> float:
     return (length(vec2(out - major, height)) - minor) / coil_steepest(major, pitch)
 
 
+@func
+def coil_growth(major: float, pitch: float) -> float:
+    """Return the growth of the sides: the factor by which ``coil`` is divided."""
+    return coil_steepest(major, pitch)
+
+
+@func
+def helix_bounds(major: float, minor: float, pitch: float) -> Bounds:
+    """Return the box of the tube, which ends only around its axis."""
+    out = major + minor
+    reach = vec3(out, UNBOUNDED, out)
+    return Bounds(-reach, reach)
+
+
 @primitive(
-    "Helix", LOWER_BOUND, tier=2, approximates=Approximation("a tube with a round section", 7e-5)
+    "Helix",
+    LOWER_BOUND,
+    bounds=helix_bounds,
+    tier=2,
+    growth=coil_growth,
+    approximates=Approximation("a tube with a round section", 7e-5),
 )
 @func
 def helix(p: vec3, major: float = 0.5, minor: float = 0.1, pitch: float = 0.4) -> float:
@@ -70,12 +89,6 @@ def spring_bounds(major: float, minor: float, height: float) -> Bounds:
 
 
 @func
-def spring_side_growth(major: float, pitch: float) -> float:
-    """Return the growth of the sides: the factor by which ``coil`` is divided."""
-    return coil_steepest(major, pitch)
-
-
-@func
 def spring_growth(major: float, pitch: float) -> float:
     """Return the growth: that of a side, and that past an end at the same time."""
     return length(vec2(coil_steepest(major, pitch), 1.0))
@@ -87,7 +100,7 @@ def spring_growth(major: float, pitch: float) -> float:
     bounds=spring_bounds,
     tier=2,
     growth=spring_growth,
-    side_growth=spring_side_growth,
+    side_growth=coil_growth,
     approximates=Approximation("a tube with a round section", 3.3e-5),
 )
 @func

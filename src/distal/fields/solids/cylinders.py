@@ -8,7 +8,7 @@ from __future__ import annotations
 from distal.fields.chords import in_capsule, in_cylinder, in_round
 from distal.fields.constants import TINY
 from distal.fields.flats.edges import inside_both
-from distal.fields.guarantees import EXACT, Bounds, Limit, primitive
+from distal.fields.guarantees import EXACT, UNBOUNDED, Bounds, Limit, primitive
 from distal.fields.solids.axes import (
     HIGH_END,
     LOW_END,
@@ -30,7 +30,16 @@ def infinite_cylinder_chord(p: vec3, direction: vec3, radius: float) -> vec2:
     return in_round(vec3(p.x, 0.0, p.z), vec3(direction.x, 0.0, direction.z), radius)
 
 
-@primitive("InfiniteCylinder", EXACT, chord=infinite_cylinder_chord)
+@func
+def infinite_cylinder_bounds(radius: float) -> Bounds:
+    """Return the box of the cylinder, which ends only around its axis."""
+    reach = vec3(radius, UNBOUNDED, radius)
+    return Bounds(-reach, reach)
+
+
+@primitive(
+    "InfiniteCylinder", EXACT, bounds=infinite_cylinder_bounds, chord=infinite_cylinder_chord
+)
 @func
 def infinite_cylinder(p: vec3, radius: float = 0.5) -> float:
     """Infinite cylinder around the y axis.

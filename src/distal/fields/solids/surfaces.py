@@ -30,7 +30,13 @@ def plane_chord(p: vec3, direction: vec3, y: float) -> vec2:
     return below_face(p.y - y, direction.y)
 
 
-@primitive("Plane", EXACT, linear=True, chord=plane_chord)
+@func
+def plane_bounds(y: float) -> Bounds:
+    """Return the box of the ground, which ends only above."""
+    return Bounds(vec3(-UNBOUNDED), vec3(UNBOUNDED, y, UNBOUNDED))
+
+
+@primitive("Plane", EXACT, bounds=plane_bounds, linear=True, chord=plane_chord)
 @func
 def plane(p: vec3, y: float = 0.0) -> float:
     """Ground: the half space below a horizontal plane.
@@ -55,7 +61,17 @@ def half_space_chord(p: vec3, direction: vec3, normal: vec3, offset: float) -> v
     return below_face(dot(p, normal) - offset, dot(direction, normal))
 
 
-@primitive("HalfSpace", EXACT, linear=True, chord=half_space_chord)
+@func
+def half_space_bounds(normal: vec3, offset: float) -> Bounds:
+    """Return the box of the half space, which ends on one side if its normal is along an axis."""
+    far = vec3(UNBOUNDED)
+    return Bounds(
+        select(normal < vec3(-1.0 + TINY), vec3(-offset), -far),
+        select(normal > vec3(1.0 - TINY), vec3(offset), far),
+    )
+
+
+@primitive("HalfSpace", EXACT, bounds=half_space_bounds, linear=True, chord=half_space_chord)
 @func
 def half_space(p: vec3, normal: vec3 = UP, offset: float = 0.0) -> float:
     """Half space on one side of a plane.

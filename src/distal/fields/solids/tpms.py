@@ -40,6 +40,10 @@ SPLIT_P_STEEPEST: Final = 3.62008
 SPLIT_P_TYPICAL: Final = 2.25
 IWP_STEEPEST: Final = 5.196152422706632  # 3 sqrt(3)
 IWP_TYPICAL: Final = 4.31
+FISCHER_KOCH_S_STEEPEST: Final = 2.443973
+FISCHER_KOCH_S_TYPICAL: Final = 1.76
+FRD_STEEPEST: Final = 7.0406904
+FRD_TYPICAL: Final = 3.62
 
 
 def _sheet_fits(cell_size: float, thickness: float, offset: float) -> str | None:
@@ -292,6 +296,69 @@ def iwp(
     double_cosine = 2.0 * c * c - 1.0
     value = 2.0 * dot(c, c.yzx) - (double_cosine.x + double_cosine.y + double_cosine.z)
     return layered(value, cell_size, IWP_TYPICAL, thickness, offset, solid)
+
+
+@minimal_surface("FischerKochS", FISCHER_KOCH_S_STEEPEST / FISCHER_KOCH_S_TYPICAL)
+@func
+def fischer_koch_s(
+    p: vec3,
+    cell_size: float = 1.0,
+    thickness: float = 0.1,
+    offset: float = 0.0,
+    solid: bool = False,
+) -> float:
+    """Fischer-Koch S surface: two labyrinths of the same form, with many crossings in each cell.
+
+    Args:
+        p: Point.
+        cell_size: Edge length of the repeated cube.
+        thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
+        offset: How far the surface is moved outwards, in scene units.
+        solid: Whether to return the solid inside the surface instead of a sheet.
+
+    Source: Werner Fischer and Elke Koch (1987), for the surface; its nodal equation.
+
+    Measured:
+        fischer_koch_s((0.0, 0.0, 0.0), 1.0, 0.25) = -0.125
+        fischer_koch_s((0.25, 0.0, 0.0), 1.0, 0.1, 0.0, True) = 0.0904289
+        fischer_koch_s((0.5, 0.25, 0.0), 2.0, 0.1, 0.05, True) = -0.05
+    """
+    q = p * (TAU / cell_size)
+    s = sin(q)
+    c = cos(q)
+    value = dot(2.0 * c * c - 1.0, s.yzx * c.zxy)
+    return layered(value, cell_size, FISCHER_KOCH_S_TYPICAL, thickness, offset, solid)
+
+
+@minimal_surface("FRD", FRD_STEEPEST / FRD_TYPICAL)
+@func
+def frd(
+    p: vec3,
+    cell_size: float = 1.0,
+    thickness: float = 0.1,
+    offset: float = 0.0,
+    solid: bool = False,
+) -> float:
+    """F-RD surface (Schoen): tubes from the corners of a cube to the middles of its faces.
+
+    Args:
+        p: Point.
+        cell_size: Edge length of the repeated cube.
+        thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
+        offset: How far the surface is moved outwards, in scene units.
+        solid: Whether to return the solid inside the surface instead of a sheet.
+
+    Source: Alan Schoen, "Infinite periodic minimal surfaces" (1970).
+
+    Measured:
+        frd((0.0, 0.0, 0.0), 1.0, 0.25) = -0.08103451
+        frd((0.25, 0.25, 0.25), 1.0, 0.1, 0.0, True) = -0.1318964
+        frd((1.0, 0.5, 0.0), 2.0, 0.1, 0.05, True) = 0.03793092
+    """
+    c = cos(p * (TAU / cell_size))
+    double_cosine = 2.0 * c * c - 1.0
+    value = 4.0 * c.x * c.y * c.z - dot(double_cosine, double_cosine.yzx)
+    return layered(value, cell_size, FRD_TYPICAL, thickness, offset, solid)
 
 
 @func

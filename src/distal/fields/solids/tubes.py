@@ -14,7 +14,7 @@ from distal.fields.flats.curves import from_bezier
 from distal.fields.flats.edges import from_segment, nearer
 from distal.fields.guarantees import EXACT_OUTSIDE, Approximation, Bounds, Limit, primitive
 from distal.fields.solids.cones import round_cone_between
-from distal.lang import Buffer, abs, clamp, func, length, max, min, select, size, vec3, vec4
+from distal.lang import Buffer, abs, clamp, func, length, max, min, select, size, vec2, vec3, vec4
 
 START: Final = vec3(-0.5, -0.3, 0.0)
 CONTROL: Final = vec3(0.0, 0.8, 0.4)
@@ -139,6 +139,63 @@ def bezier_tube(
         bezier_tube((2.0, 1.0, 0.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (4.0, 0.0, 0.0), 0.5) = 0.5
     """  # noqa: E501
     return length(from_bezier(p, start, control, end)) - radius
+
+
+@func
+def curve_tube_bounds(points: Buffer[vec3], radius: float) -> Bounds:
+    """Return the box around all pieces, enlarged by the radius."""
+    found = bezier_tube_bounds(points[0], points[0], points[0], radius)
+    last = size(points) - 1
+    for i in range(size(points) // 2):
+        at = 2 * i
+        end = points[min(at + 2, last)]
+        piece = bezier_tube_bounds(points[at], points[at + 1], end, radius)
+        found = Bounds(min(found.low, piece.low), max(found.high, piece.high))
+    return found
+
+
+@func
+def from_chord(p: vec3, start: vec3, control: vec3, end: vec3) -> vec2:
+    """Return the distance to a parabola's chord, and how far the parabola is from it at most."""
+    chord = length(from_segment(p, start, end))
+    return vec2(chord, 0.5 * length(control - 0.5 * start - 0.5 * end))
+
+
+@primitive("CurveTube", EXACT_OUTSIDE, bounds=curve_tube_bounds, tier=2)
+@func
+def curve_tube(p: vec3, points: Buffer[vec3], radius: float = 0.1) -> float:
+    """Round tube along quadratic Bézier curves, one after the other; ``Curve.tube`` makes them.
+
+    Curves that are farther away than the chord of another are left out, so that of many pieces few
+    are searched.
+
+    Args:
+        p: Point.
+        points: The start, then for each piece its control point and its end. If the last end is
+            missing, the last piece is straight.
+        radius: Radius of the tube.
+
+    Source: the nearest point of each piece as in ``bezier_tube``.
+
+    Measured:
+        curve_tube((2.0, 1.0, 0.0), Buffer([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (4.0, 0.0, 0.0)]), 0.5) = 0.5
+        curve_tube((0.0, 3.0, 0.0), Buffer([(-1.0, -1.0, 0.0), (0.0, 1.0, 0.0), (1.0, -1.0, 0.0)]), 0.5) = 2.5
+        curve_tube((3.0, 0.0, 4.0), Buffer([(0.0, 0.0, 0.0)]), 0.5) = 4.5
+    """  # noqa: E501
+    last = size(points) - 1
+    near = length(p - points[0])
+    for i in range(size(points) // 2):
+        at = 2 * i
+        reach = from_chord(p, points[at], points[at + 1], points[min(at + 2, last)])
+        near = min(near, reach.x + reach.y)
+    nearest = p - points[0]
+    for i in range(size(points) // 2):
+        at = 2 * i
+        end = points[min(at + 2, last)]
+        reach = from_chord(p, points[at], points[at + 1], end)
+        if reach.x - reach.y <= near:
+            nearest = nearer(nearest, from_bezier(p, points[at], points[at + 1], end))
+    return length(nearest) - radius
 
 
 @func

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.images.atomic_files import SaveError, check_destination, replacement
+from distal.lang.units import MILLIMETER, UNITS
 from distal.mesh.files.glb import write_glb
 from distal.mesh.files.obj import write_obj
 from distal.mesh.files.outlines import (
@@ -30,7 +31,6 @@ from distal.mesh.files.parts import FilePart, Finish, Finishes, Solid, part_of, 
 from distal.mesh.files.ply import write_ply
 from distal.mesh.files.stl import write_stl
 from distal.mesh.files.three_mf import write_three_mf
-from distal.polygons.units import MILLIMETER, UNITS
 
 
 @dataclass(frozen=True, slots=True)

@@ -192,10 +192,15 @@ def placed(parts: Sequence[FilePart], scale: float, *, z_up: bool, bed: bool) ->
     return [replace(part, points=part.points - origin) for part in turned]
 
 
+def display_values(light: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the sRGB values, 0 to 1, of linear light."""
+    encoded = executor().call(encode_srgb, (np.clip(light, 0.0, 1.0),), {})
+    return np.clip(np.asarray(encoded, np.float64), 0.0, 1.0)
+
+
 def display_codes(light: NDArray[np.float64]) -> NDArray[np.uint8]:
     """Return the sRGB codes, 0 to 255, of linear light."""
-    encoded = executor().call(encode_srgb, (np.clip(light, 0.0, 1.0),), {})
-    return np.asarray(np.rint(255.0 * np.clip(np.asarray(encoded), 0.0, 1.0)), np.uint8)
+    return np.asarray(np.rint(255.0 * display_values(light)), np.uint8)
 
 
 def corner_codes(part: FilePart) -> NDArray[np.uint8] | None:

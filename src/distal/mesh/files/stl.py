@@ -14,7 +14,7 @@ from distal.images.atomic_files import SaveError
 from distal.mesh.files.parts import FilePart
 
 # The text must not begin with "solid", by which readers recognize the other kind of STL.
-_HEADER: Final = b"binary STL, millimeters, z up".ljust(80)
+HEADER: Final = b"binary STL, millimeters, z up".ljust(80)
 _RECORD: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("extra", "<u2")])
 _MOST: Final = 2**32 - 1
 
@@ -28,7 +28,7 @@ def write_stl(file: BinaryIO, parts: Sequence[FilePart]) -> None:
     count = sum(len(part.triangles) for part in parts)
     if count > _MOST:
         raise SaveError(f"{count} triangles are more than STL can count")
-    file.write(_HEADER + count.to_bytes(4, "little"))
+    file.write(HEADER + count.to_bytes(4, "little"))
     for part in parts:
         corners = part.points.astype(np.float32)[part.triangles]
         edges = corners[:, 1:].astype(np.float64) - corners[:, :1]

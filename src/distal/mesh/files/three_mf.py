@@ -10,8 +10,11 @@ painted triangles in PrusaSlicer's TriangleSelector.
 
 from __future__ import annotations
 
+import base64
 import zipfile
+import zlib
 from collections.abc import Sequence
+from io import BytesIO
 from typing import Any, BinaryIO, Final
 from xml.sax.saxutils import quoteattr
 
@@ -42,11 +45,51 @@ _RELATIONS: Final = (
 _DATE: Final = (1980, 1, 1, 0, 0, 0)  # the first that zip can store: the bytes are always the same
 # PrusaSlicer numbers the filaments of painted triangles 1 to 16.
 MOST_FILAMENTS: Final = 16
+# Sizes of the entries of a zip archive without names, and where check sums stand in them.
+_LOCAL_BYTES: Final = 30
+_CENTRAL_BYTES: Final = 46
+_END_BYTES: Final = 22
+_SUM_IN_LOCAL: Final = 14
+_SUM_IN_CENTRAL: Final = 16
+# Stands where a page inserts texts; no name contains it.
+_SPLIT: Final = "\0"
 
 
 def write_three_mf(file: BinaryIO, parts: Sequence[FilePart]) -> None:
     """Write the parts as objects of one build."""
-    contents = {"[Content_Types].xml": _TYPES, "_rels/.rels": _RELATIONS, _MODEL: _model(parts)}
+    _write(file, _model(parts))
+
+
+def frame_of(name: str) -> dict[str, Any]:
+    """Return what is the same in every file of one part, for pages that write the rest.
+
+    They are the archive before and after the model's bytes, in base64; where the model's check sum
+    and its two sizes stand in both; the model before colors, attributes, points and triangles and
+    after them; and PrusaSlicer's attributes by filament.
+
+    Args:
+        name: The name of the part.
+    """
+    file = BytesIO()
+    _write(file, "")
+    archive = file.getvalue()
+    with zipfile.ZipFile(file) as read:
+        begin = read.getinfo(_MODEL).header_offset
+    at = begin + _LOCAL_BYTES + len(_MODEL)
+    tail = archive[at + len(zlib.compress(b"", wbits=-zlib.MAX_WBITS)) :]
+    parts = _text(["".join([_SPLIT, _opening(name, 2), _SPLIT, *_around(_SPLIT, _SPLIT)])], [2])
+    return {
+        "head": base64.b64encode(archive[:at]).decode("ascii"),
+        "tail": base64.b64encode(tail).decode("ascii"),
+        "local": begin + _SUM_IN_LOCAL,
+        "central": len(tail) - _END_BYTES - _CENTRAL_BYTES - len(_MODEL) + _SUM_IN_CENTRAL,
+        "model": parts.split(_SPLIT),
+        "paints": [_painted(number + 1) for number in range(MOST_FILAMENTS)],
+    }
+
+
+def _write(file: BinaryIO, model: str) -> None:
+    contents = {"[Content_Types].xml": _TYPES, "_rels/.rels": _RELATIONS, _MODEL: model}
     with zipfile.ZipFile(file, "w") as archive:
         for name, text in contents.items():
             entry = zipfile.ZipInfo(name, _DATE)
@@ -58,11 +101,22 @@ def write_three_mf(file: BinaryIO, parts: Sequence[FilePart]) -> None:
 def _model(parts: Sequence[FilePart]) -> str:
     codes = [corner_codes(part) for part in parts]
     filaments = _filaments(codes)
-    resources, items = [], []
+    resources, numbers = [], []
     for index, (part, colors) in enumerate(zip(parts, codes, strict=True)):
         group, number = 2 * index + 1, 2 * index + 2
         resources.append(_object(part, colors, group, number, filaments))
-        items.append(f'<item objectid="{number}"/>')
+        numbers.append(number)
+    return _text(resources, numbers)
+
+
+def _text(resources: Sequence[str], objects: Sequence[int]) -> str:
+    """Return the text of a model.
+
+    Args:
+        resources: The texts of its objects.
+        objects: Their numbers.
+    """
+    items = [f'<item objectid="{number}"/>' for number in objects]
     return (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         f'<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}" xmlns:m="{_MATERIALS}"'
@@ -90,8 +144,7 @@ def _object(
         number: The number of its object.
         filaments: PrusaSlicer's filament of each color; empty if there are too many colors.
     """
-    name = quoteattr(_printable(part.name) or f"part {number // 2}")
-    opening, attributes, palette = f'<object id="{number}" name={name} type="model"', "", ""
+    attributes, palette = "", ""
     faces = _triangles(part.triangles)
     if colors is None and part.whole_finish is not None:
         palette = f'<basematerials id="{group}"><base name="1" displaycolor="'
@@ -108,9 +161,23 @@ def _object(
         if len(found) > 1:
             faces = _colored(part.triangles, which, group, found, filaments)
     points = "".join(_rows('<vertex x="%.9g" y="%.9g" z="%.9g"/>\n', part.points))
+    return "".join([palette, _opening(part.name, number), attributes, *_around(points, faces)])
+
+
+def _opening(name: str, number: int) -> str:
+    """Return the beginning of an object."""
+    quoted = quoteattr(_printable(name) or f"part {number // 2}")
+    return f'<object id="{number}" name={quoted} type="model"'
+
+
+def _around(points: str, faces: str) -> tuple[str, ...]:
+    """Return the points and the triangles of an object, and what stands around them."""
     return (
-        f"{palette}{opening}{attributes}>\n<mesh>\n<vertices>\n{points}</vertices>\n"
-        f"<triangles>\n{faces}</triangles>\n</mesh>\n</object>\n"
+        ">\n<mesh>\n<vertices>\n",
+        points,
+        "</vertices>\n<triangles>\n",
+        faces,
+        "</triangles>\n</mesh>\n</object>\n",
     )
 
 

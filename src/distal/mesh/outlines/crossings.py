@@ -11,6 +11,7 @@ from typing import Final
 import numpy as np
 
 from distal.mesh.outlines.tiles import Bools, Integers
+from distal.polygons.whole_numbers import sorted_keys
 
 LARGEST: Final = 2**29
 _PAIRS_AT_ONCE: Final = 1 << 20
@@ -77,9 +78,9 @@ def _pairs(square: Integers, owner: Integers) -> tuple[Integers, Integers]:
         if not len(same):
             break
         a, b = owner[same], owner[same + gap]  # in this order, since owners are sorted
-        found.append(np.unique((a << 31 | b)[a != b]))
+        found.append(sorted_keys((a << 31 | b)[a != b]))
         gap += 1
-    pairs = np.unique(np.concatenate(found))
+    pairs = sorted_keys(np.concatenate(found))
     return pairs >> 31, pairs & (2**31 - 1)
 
 

@@ -162,7 +162,7 @@ def _refuse_problem(node: Node, extent: FlatExtent, problem: MeshProblem) -> NoR
                 f"give larger bounds than {shown_place(extent.low)} to {shown_place(extent.high)}",
                 node.place,
             )
-        case "too many":
+        case "too many" | "too far":
             refuse(
                 f"the edge of '{node.name}' is in too many places to look at",
                 "give a smaller slope=, smaller bounds=, or a larger tolerance=",

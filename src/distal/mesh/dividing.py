@@ -1,0 +1,194 @@
+"""Divide cells where a mesh is not within its tolerance.
+
+Input: a mesh, and the distances that were measured. Output: a mesh whose cells are halved, as often
+as needed, only where an error is too large or a corner is cut.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Final, Literal, TypeAlias
+
+import numpy as np
+
+from distal.mesh.cell_tree import Divided, leaves_of, widened
+from distal.mesh.extract import Extent, Extracted, completed
+from distal.mesh.kernels import FieldKernels
+from distal.mesh.lattice import keys_of, position
+from distal.mesh.solid import Bools, Floats, Integers
+from distal.mesh.tree_topology import (
+    Tree,
+    changes,
+    settled,
+    topology_of_changes,
+    topology_of_tree,
+)
+from distal.polygons.whole_numbers import sorted_keys
+
+Joined: TypeAlias = Literal["measured", "good", "replaced"]
+# After a division the surroundings of the cells are measured, unless they are more than this share
+# of all; in the end all is.
+_MOST_OF_WHOLE: Final = 0.4
+# Cells beside those that are too large that are divided with them, in each round. Where large cells
+# meet small ones along a crease, an error may move by a cell in each round.
+_RINGS: Final = (0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4, 5)
+
+
+def _unwatched(share: float) -> None:
+    """Report nothing: how much is left is not known."""
+
+
+def divided(
+    kernels: FieldKernels,
+    extent: Extent,
+    found: Extracted,
+    tolerance: float,
+    watch: Callable[[float], None],
+    *,
+    joined_only: bool = False,
+) -> Extracted:
+    """Return a mesh with smaller cells where one is not within the tolerance.
+
+    Args:
+        kernels: The shape.
+        extent: Its box and its slope.
+        found: The mesh.
+        tolerance: How far it may be from the surface, in scene units.
+        watch: Called with the share of the work that is done.
+        joined_only: Whether no cells are divided but those that were joined.
+
+    Raises:
+        MeshProblem: A value is no number.
+    """
+    tree = found.tree
+    if tree is None:
+        tree = Tree.of_equal_cells(kernels, found.lattice, keys_of(found.looked_at.surface))
+    lattice, looked_at = tree.values.lattice, found.looked_at
+    wanted = _some(_too_large(found, tree, tolerance), tree, joined_only=joined_only)
+    for number, rings in enumerate(_RINGS):
+        if not wanted:
+            break
+        before = tree.divided
+        tree = settled(tree.with_divided(_with_rings(wanted, tree, rings)), before)
+        changed = changes(tree, before)
+        part = topology_of_changes(tree, changed, _MOST_OF_WHOLE)
+        wanted = ()
+        # Cells that only a suspicion divides may have no surface in them.
+        if part is not None and len(part[0].edges.axis):
+            topology, certain = part
+            seen = replace(looked_at, suspected=_places_near(looked_at.suspected, tree, changed))
+            made = completed(kernels, extent, lattice, topology, seen, tolerance, _unwatched)
+            wanted = _too_large(made, tree, tolerance, certain)
+            wanted = _some(wanted, tree, joined_only=joined_only)
+        if not wanted or number == len(_RINGS) - 1:
+            topology, tree = topology_of_tree(tree)
+            made = completed(kernels, extent, lattice, topology, looked_at, tolerance, _unwatched)
+            found = replace(made, tree=tree)
+            wanted = _some(_too_large(found, tree, tolerance), tree, joined_only=joined_only)
+        watch((number + 1) / len(_RINGS))
+    return found
+
+
+def _some(wanted: Divided, tree: Tree, *, joined_only: bool) -> Divided:
+    """Return the cells to divide, without those that are not joined if so asked; () for none."""
+    if joined_only:
+        wanted = tuple(keys if level < tree.base else keys[:0] for level, keys in enumerate(wanted))
+    return wanted if any(len(keys) for keys in wanted) else ()
+
+
+def _with_rings(wanted: Divided, tree: Tree, rings: int) -> Divided:
+    """Return cells and those beside them that the surface may pass through."""
+    if not rings:
+        return wanted
+    leaves = leaves_of(tree.surface, tree.divided, tree.levels, tree.base)
+    found = []
+    for level, keys in enumerate(wanted):
+        own = leaves.key[leaves.of_level(level)]
+        found.append(own[position(own, widened(keys, rings)) >= 0])
+    return tuple(found)
+
+
+def _places_near(places: Floats, tree: Tree, changed: Divided) -> Floats:
+    """Return the places that are in cells or beside them."""
+    lattice = tree.values.lattice
+    near = np.zeros(len(places), np.bool_)
+    for level, keys in enumerate(changed):
+        side = lattice.step * (1 << tree.levels >> level)
+        cells = keys_of(np.floor((places - lattice.origin) / side).astype(np.int64))
+        near |= position(cells, widened(keys)) >= 0
+    return places[near]
+
+
+def _too_large(
+    found: Extracted, tree: Tree, tolerance: float, certain: Bools | None = None
+) -> Divided:
+    """Return the keys of the cells to divide, by level.
+
+    Args:
+        found: The mesh.
+        tree: Its cells.
+        tolerance: How far the mesh may be from the surface.
+        certain: The edges that count; None for all.
+    """
+    topology, made, misses = found.topology, found.made, found.misses
+    corners = misses.points[made.triangles].max(axis=1)
+    edges = misses.roots > tolerance
+    edges[made.edge[np.maximum(misses.triangles, corners) > tolerance]] = True
+    far = edges if certain is None else edges & certain
+    far_points = np.zeros(len(topology.points.size), np.bool_)
+    far_points[topology.edges.around[far]] = True
+    size = topology.points.size[far_points]
+    level = tree.base + np.round(np.log2(topology.unit / size)).astype(np.int64)
+    keys = keys_of(topology.points.cell[far_points] // size[:, None])
+    tips = found.looked_at.suspected[np.isfinite(found.nearest) & (found.nearest > tolerance)]
+    return tuple(
+        sorted_keys(np.concatenate([keys[level == number], more]))
+        for number, more in enumerate(_leaves_at(tips, tree))
+    )
+
+
+def _leaves_at(places: Floats, tree: Tree) -> Divided:
+    """Return the keys of the cells that contain places and are not divided, by level."""
+    found = []
+    lattice = tree.values.lattice
+    for level, keys in enumerate(tree.divided):
+        side = lattice.step * (1 << tree.levels >> level)
+        cells = keys_of(np.floor((places - lattice.origin) / side).astype(np.int64))
+        known = position(cells, keys) >= 0
+        found.append(cells[~known])
+        places = places[known]
+    return tuple(found)
+
+
+def bad_share(found: Extracted, tolerance: float, joined: Joined = "measured") -> float:
+    """Return the share of the surface that is too far from its triangles.
+
+    A triangle of a joined cell counts as many times as those that it replaces.
+
+    Args:
+        found: The mesh.
+        tolerance: How far it may be from the surface.
+        joined: How triangles of joined cells count: as they are, as if they were good, or about as
+            those that they replace, by an error that is quadratic in the length of a cell.
+    """
+    weights = _weights(found)
+    misses = found.misses.triangles
+    if joined == "good":
+        misses = np.where(weights > 1, 0.0, misses)
+    elif joined == "replaced":
+        misses = misses / weights
+    return float(((misses > tolerance) * weights).sum() / weights.sum())
+
+
+def typical_error(found: Extracted) -> float:
+    """Return the error that all but a tenth of the surface stays below, joined ones as replaced."""
+    weights = _weights(found)
+    misses = np.repeat(found.misses.triangles / weights, weights)
+    return float(np.quantile(misses, 0.9)) if len(misses) else math.inf
+
+
+def _weights(found: Extracted) -> Integers:
+    size = found.topology.edges.size[found.made.edge]
+    return np.maximum(size // found.topology.unit, 1) ** 2

@@ -1,0 +1,220 @@
+"""The triangles of a mesh as a notebook shows them: few, rounded, packed.
+
+Input: a mesh. Output: plain values for JSON, with the corners of triangles as bytes. Corners have
+normals of their own where triangles meet at an edge. Does not depend on how they are drawn; the
+other side of the format is ``web/src/mesh/unpacking.ts``.
+"""
+
+from __future__ import annotations
+
+import base64
+import zlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from distal.mesh import preview_arithmetic, triangle_arithmetic
+from distal.mesh.files.parts import FilePart, corner_codes, display_codes, part_of
+from distal.mesh.kernels import rows_of
+
+if TYPE_CHECKING:
+    from distal.mesh.solid import Bools, Floats, Integers, Mesh
+
+# About a megabyte in a notebook; larger meshes are shown with fewer triangles.
+MOST_TRIANGLES: Final = 100_000
+_PLACES: Final = 2**16 - 1
+_NORMALS: Final = 2**7 - 1
+# At a point with more triangles than this each has its own normal: pairs grow as the square.
+_MOST_AROUND: Final = 64
+# Triangles that are less round, along creases, face anywhere: they take a neighbor's direction.
+_THIN: Final = 1e-3
+
+
+@dataclass(frozen=True, slots=True)
+class Preview:
+    """What is shown of a mesh.
+
+    Attributes:
+        size: The size of its box, in scene units.
+        triangles: How many triangles it has.
+        shown: How many of them are shown.
+        content: Plain values for the viewer.
+    """
+
+    size: tuple[float, float, float]
+    triangles: int
+    shown: int
+    content: dict[str, Any]
+
+
+def preview_of(mesh: Mesh, most: int = MOST_TRIANGLES) -> Preview | None:
+    """Return what is shown of a mesh; None if it has no extent.
+
+    Args:
+        mesh: The mesh.
+        most: How many triangles are shown at most.
+
+    Raises:
+        SaveError: It has no triangle, or a number that is not finite.
+    """
+    part = part_of(mesh)
+    low, high = part.points.min(axis=0), part.points.max(axis=0)
+    size = high - low
+    side = float(size.max())
+    if not side > 0.0:
+        return None
+    points = (part.points - low) / side
+    triangles, of = fewer(points, part.triangles, most)
+    if not len(triangles):
+        return None
+    normals = corner_normals(points, triangles, part.normals)
+    rows, corners = _vertices(points[triangles], normals, _codes(part, triangles, of))
+    content = {
+        "size": (size / side).tolist(),
+        "elevation": preview_arithmetic.ELEVATION,
+        "points": len(rows),
+        "triangles": len(corners),
+        "data": _packed(rows, corners),
+    }
+    x, y, z = (float(length) for length in size)
+    return Preview((x, y, z), len(part.triangles), len(triangles), content)
+
+
+def fewer(points: Floats, triangles: Integers, most: int) -> tuple[Integers, Integers]:
+    """Return at most so many triangles, and the numbers of those that they were.
+
+    Points in one cell of a lattice become the first of them, and triangles without area are left
+    out. The lattice is the finest one, of those tried, that leaves few enough.
+
+    Args:
+        points: Of shape (n, 3), from 0 to 1.
+        triangles: Of shape (m, 3).
+        most: How many may be left.
+    """
+    kept, of = triangles, np.arange(len(triangles))
+    cells = 1024.0
+    while len(kept) > most and cells >= 1.0:
+        places = np.floor(points * cells).astype(np.int64)
+        keys = (places[:, 0] * 2048 + places[:, 1]) * 2048 + places[:, 2]
+        _, first, which = np.unique(keys, return_index=True, return_inverse=True)
+        joined = first[which.reshape(-1)][triangles]
+        a, b, c = joined.T
+        of = np.flatnonzero((a != b) & (b != c) & (c != a))
+        kept = joined[of]
+        # Triangles of a surface are as many as the square of the cells along a side.
+        cells *= min(0.9, 0.97 * (most / max(len(kept), 1)) ** 0.5)
+    return kept, of
+
+
+def corner_normals(points: Floats, triangles: Integers, normals: Floats | None) -> Floats:
+    """Return a normal for each corner of each triangle, of shape (m, 3, 3).
+
+    It is the point's, unless one of the triangles around the point faces another way; then it is
+    the mean of the triangles that face as this one does.
+
+    Args:
+        points: Of shape (n, 3).
+        triangles: Of shape (m, 3).
+        normals: Of shape (n, 3), or None if they are not known.
+    """
+    corners = [points[triangles[:, i]] for i in range(3)]
+    areas, faces = rows_of(triangle_arithmetic.face, *corners)
+    thin = np.flatnonzero(rows_of(triangle_arithmetic.roundness, *corners) < _THIN)
+    at = triangles.reshape(-1)
+    faces[thin] = faces[_largest_at(at, areas)[triangles[thin, 0]]]
+    of = np.repeat(np.arange(len(triangles)), 3)
+    found = faces[of] if normals is None else normals[at]
+    sharp = np.ones(len(points), bool)
+    if normals is not None:
+        smooth = rows_of(preview_arithmetic.is_smooth, faces[of], found)
+        sharp = np.bincount(at, ~smooth, len(points)) > 0
+    _join(found, at, of, sharp, faces, areas)
+    return found.reshape(-1, 3, 3)
+
+
+def _largest_at(at: Integers, areas: Floats) -> Integers:
+    """Return the largest triangle at each point, from the point of each corner."""
+    found = np.zeros(int(at.max(initial=-1)) + 1, np.int64)
+    of = np.repeat(np.arange(len(areas)), 3)
+    order = np.argsort(areas[of], kind="stable")
+    found[at[order]] = of[order]
+    return found
+
+
+def _join(
+    found: Floats, at: Integers, of: Integers, sharp: Bools, faces: Floats, areas: Floats
+) -> None:
+    """Set the normals of corners at edges to means of triangles.
+
+    Args:
+        found: The normal of each corner, changed in place.
+        at: The point of each corner.
+        of: The triangle of each corner.
+        sharp: The points at edges.
+        faces: The normal of each triangle.
+        areas: Its area.
+    """
+    corners = np.flatnonzero(sharp[at])
+    found[corners] = faces[of[corners]]
+    corners = corners[np.argsort(at[corners], kind="stable")]
+    _, begins, counts = np.unique(at[corners], return_index=True, return_counts=True)
+    few = np.repeat(counts <= _MOST_AROUND, counts)
+    begin, count = np.repeat(begins, counts)[few], np.repeat(counts, counts)[few]
+    # Each corner of a point with each corner of this point.
+    one = np.repeat(np.flatnonzero(few), count)
+    if not len(one):
+        return
+    other = np.arange(len(one)) - np.repeat(np.cumsum(count) - count - begin, count)
+    first, second = of[corners[one]], of[corners[other]]
+    shares = rows_of(preview_arithmetic.joined, faces[first], faces[second], areas[second])
+    sums = [np.bincount(one, shares[:, axis], len(corners)) for axis in range(3)]
+    chosen = corners[few]
+    total = np.stack(sums, axis=1)[few]
+    found[chosen] = rows_of(preview_arithmetic.unit, total, faces[of[chosen]])
+
+
+def _codes(part: FilePart, triangles: Integers, of: Integers) -> NDArray[np.uint8]:
+    """Return the sRGB codes of each corner of the triangles that are shown."""
+    shades = None if part.triangle_colors is None else part.triangle_colors[of]
+    shown = FilePart(part.name, part.points, triangles, None, part.colors, shades)
+    codes = corner_codes(shown)
+    if codes is None:
+        material = display_codes(np.array([preview_arithmetic.MATERIAL], np.float64))
+        codes = np.broadcast_to(material, (len(triangles), 3, 3))
+    return codes
+
+
+def _vertices(
+    places: Floats, normals: Floats, codes: NDArray[np.uint8]
+) -> tuple[NDArray[np.void], Integers]:
+    """Return each corner that differs once, in the order of use, and the corners of triangles."""
+    kind = np.dtype([("place", "<u2", 3), ("normal", "i1", 3), ("code", "u1", 3)])
+    rows = np.zeros(3 * len(places), kind)
+    rows["place"] = np.rint(places.reshape(-1, 3) * _PLACES)
+    rows["normal"] = np.rint(normals.reshape(-1, 3) * _NORMALS)
+    rows["code"] = codes.reshape(-1, 3)
+    keys = rows.view(f"V{kind.itemsize}")
+    _, first, which = np.unique(keys, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
+    return rows[first[order]], rank[which.reshape(-1)].reshape(-1, 3)
+
+
+def _packed(rows: NDArray[np.void], corners: Integers) -> str:
+    """Return corners and triangles as differences, byte by byte, compressed, in base64."""
+    columns = [rows[name][:, axis] for name in ("place", "normal", "code") for axis in range(3)]
+    planes = b"".join(_planes(column) for column in columns)
+    planes += _planes(corners.reshape(-1).astype("<u4"))
+    press = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS, 9)
+    return base64.b64encode(press.compress(planes) + press.flush()).decode("ascii")
+
+
+def _planes(column: NDArray[Any]) -> bytes:
+    """Return the differences of whole numbers, modulo their range: all low bytes first."""
+    width = column.dtype.itemsize
+    plain = np.ascontiguousarray(column).view(f"<u{width}")
+    changes = np.diff(plain, prepend=plain.dtype.type(0))
+    return np.ascontiguousarray(changes.view(np.uint8).reshape(-1, width).T).tobytes()
