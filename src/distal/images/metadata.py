@@ -10,12 +10,16 @@ import json
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final, TypeVar
+from typing import Any, Final, TypeAlias, TypeVar
 
 from distal.diagnostics import LONGEST_MESSAGE, printable
+from distal.ir.limits import FRAME_SECONDS
+from distal.lang.live_textures import NO_KEYS, Keys, checked_keys
 from distal.version import __version__
 
 _First = TypeVar("_First")
+# The two ends of a ruler, in scene units.
+Ends: TypeAlias = tuple[tuple[float, ...], tuple[float, ...]]
 
 PREFIX: Final = "distal:"
 # The text of ``Provenance.samples`` None.
@@ -48,6 +52,11 @@ class Provenance:
         index: The number of the frame.
         seed: The seed of random numbers.
         mouse: The frame's mouse.
+        buttons: The buttons of the mouse that were down.
+        keys: The keyboard.
+        delta: The seconds between two frames.
+        date: The frame's date.
+        live: Whether it reads earlier frames that a window drew, of which no file tells.
         samples: Samples in each pixel; None for one, and more where neighbouring pixels differ.
         mode: How light was computed: "direct" or "path".
         paths: The options of mode "path" that were given, by name.
@@ -57,6 +66,9 @@ class Provenance:
         exposure: The given factor on all light; None if the scene's own was used.
         tone_map: The given tone map; None if the scene's own was used.
         steering: The movement of the camera: yaw, pitch, zoom, pan x and y; None if not moved.
+        section: The plane that cut the scene open: normal, offset and distance of lines; None if it
+            was whole.
+        ruler: The ends of the ruler that is drawn over it; None if there is none.
         stage: The parameters and the time for which the default scene of a single shape was made;
             None for a scene.
         look: The given look; None if the scene's own was used.
@@ -73,6 +85,11 @@ class Provenance:
     index: int = 0
     seed: int = 0
     mouse: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)
+    buttons: int = 0
+    keys: Keys = NO_KEYS
+    delta: float = FRAME_SECONDS
+    date: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)
+    live: bool = False
     samples: int | None = 1
     mode: str = "direct"
     paths: Mapping[str, Any] = field(default_factory=dict)
@@ -82,6 +99,8 @@ class Provenance:
     exposure: float | None = None
     tone_map: str | None = None
     steering: tuple[float, ...] | None = None
+    section: tuple[float, ...] | None = None
+    ruler: Ends | None = None
     stage: tuple[Mapping[str, Any], float] | None = None
     look: str | None = None
     layers: tuple[str, ...] = ()
@@ -107,6 +126,7 @@ def texts(origin: Provenance, size: tuple[int, int]) -> dict[str, str]:
         "distal:transparent": json.dumps(origin.transparent),
         "distal:device": origin.device,
     }
+    found |= _frame_texts(origin)
     if origin.neighbours:
         found["distal:neighbours"] = json.dumps(origin.neighbours)
     if origin.mode != "direct":
@@ -121,6 +141,10 @@ def texts(origin: Provenance, size: tuple[int, int]) -> dict[str, str]:
         found["distal:tone-map"] = origin.tone_map
     if origin.steering is not None:
         found["distal:steering"] = json.dumps(list(origin.steering))
+    if origin.section is not None:
+        found["distal:section"] = json.dumps(list(origin.section))
+    if origin.ruler is not None:
+        found["distal:ruler"] = json.dumps([list(end) for end in origin.ruler])
     if origin.stage is not None:
         values, time = origin.stage
         found["distal:stage"] = json.dumps([dict(values), float(time)], sort_keys=True)
@@ -130,6 +154,23 @@ def texts(origin: Provenance, size: tuple[int, int]) -> dict[str, str]:
         found["distal:layers"] = ",".join(origin.layers)
     if origin.freeze:
         found["distal:freeze"] = "true"
+    return found
+
+
+def _frame_texts(origin: Provenance) -> dict[str, str]:
+    """Return the texts of what a picture reads of its frame, besides those that all files have."""
+    found = {}
+    if origin.buttons:
+        found["distal:buttons"] = str(origin.buttons)
+    if origin.keys != NO_KEYS:
+        sets = (origin.keys.held, origin.keys.pressed, origin.keys.toggled)
+        found["distal:keys"] = json.dumps([sorted(map(int, codes)) for codes in sets])
+    if origin.delta != FRAME_SECONDS:
+        found["distal:delta"] = repr(float(origin.delta))
+    if any(origin.date):
+        found["distal:date"] = json.dumps(list(origin.date))
+    if origin.live:
+        found["distal:live"] = "true"
     return found
 
 
@@ -148,6 +189,8 @@ def provenance(found: Mapping[str, str]) -> Provenance:
             raise ValueError("a text is too long")
         plane = json_of("distal:plane", None)
         steering = json_of("distal:steering", None)
+        section = json_of("distal:section", None)
+        ruler = json_of("distal:ruler", None)
         stage = json_of("distal:stage", None)
         exposure = found.get("distal:exposure")
         samples = found.get("distal:samples", "1")
@@ -160,6 +203,11 @@ def provenance(found: Mapping[str, str]) -> Provenance:
             index=int(found.get("distal:index", "0")),
             seed=int(found.get("distal:seed", "0")),
             mouse=_numbers(json_of("distal:mouse", [0.0] * 4), 4),
+            buttons=int(found.get("distal:buttons", "0")),
+            keys=_keys(json_of("distal:keys", [[], [], []])),
+            delta=_number(float(found.get("distal:delta", FRAME_SECONDS))),
+            date=_numbers(json_of("distal:date", [0.0] * 4), 4),
+            live=_flag(found.get("distal:live", "false")),
             samples=None if samples == ADAPTIVE else int(samples),
             mode=found.get("distal:mode", "direct"),
             paths=_values(json_of("distal:paths", {})),
@@ -169,6 +217,8 @@ def provenance(found: Mapping[str, str]) -> Provenance:
             exposure=None if exposure is None else _number(float(exposure)),
             tone_map=found.get("distal:tone-map"),
             steering=None if steering is None else _numbers(steering, 5),
+            section=None if section is None else _numbers(section, 5),
+            ruler=None if ruler is None else _ends(ruler),
             stage=None if stage is None else _pair(stage, _values),
             look=found.get("distal:look"),
             layers=tuple(filter(None, found.get("distal:layers", "").split(","))),
@@ -192,6 +242,18 @@ def _numbers(given: Any, count: int) -> tuple[float, ...]:
     if not isinstance(given, list) or len(given) != count:
         raise ValueError(f"{count} numbers are wanted")
     return tuple(map(_number, given))
+
+
+def _keys(given: Any) -> Keys:
+    if not isinstance(given, list) or len(given) != 3:
+        raise ValueError("three sets of keys are wanted")
+    return Keys(*(frozenset(checked_keys(codes).held) for codes in given))
+
+
+def _ends(given: Any) -> Ends:
+    if not isinstance(given, list) or len(given) != 2:
+        raise ValueError("two ends are wanted")
+    return _numbers(given[0], 3), _numbers(given[1], 3)
 
 
 def _pair(given: Any, first: Callable[[Any], _First]) -> tuple[_First, float]:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.images import metadata, png
+from distal.images import jpeg, metadata, png
 from distal.images.atomic_files import SaveError, check_destination, replacement
 from distal.images.metadata import Provenance
 from distal.lang.lazy_module import LazyModule
@@ -31,7 +31,12 @@ else:
     exr = LazyModule("distal.images.exr")  # OpenEXR is optional, and slow to import
 
 # The possible bits of a channel by suffix; the first is the default.
-FORMATS: Final = {".png": (8, 16), ".exr": (16, 32)}
+FORMATS: Final[Mapping[str, tuple[int, ...]]] = {
+    ".png": png.BITS,
+    ".jpg": jpeg.BITS,
+    ".exr": (16, 32),
+}
+_OTHER_SUFFIXES: Final = {".jpeg": ".jpg"}
 # The optional packages that write them.
 PACKAGES: Final = {".exr": "OpenEXR"}
 
@@ -118,24 +123,27 @@ class Picture:
     def save(self, path: str | PathLike[str], bits: int | None = None) -> None:
         """Write the picture in the format of the suffix. The file is complete or not written.
 
-        PNG: display values with sRGB declared, rounded to nearest, straight alpha. EXR: linear
-        light before exposure and tone mapping, premultiplied, and the layers. Both contain
-        ``metadata``.
+        PNG: display values with sRGB declared, rounded to nearest, straight alpha. JPEG: the same
+        at quality 95, opaque. EXR: linear light before exposure and tone mapping, premultiplied,
+        and the layers. All contain ``metadata``.
 
         Args:
-            path: A file that ends in .png or .exr.
+            path: A file that ends in .png, .jpg or .exr.
             bits: Bits of a channel: 8 (default) or 16 for a PNG, 16 (default, half floats) or 32
                 for an EXR.
 
         Raises:
-            SaveError: The suffix or number of bits is not supported, or the file cannot be written.
+            SaveError: The suffix or number of bits is not supported, the picture of a JPEG is
+                transparent, or the file cannot be written.
         """
         destination = Path(path)
         suffix, bits = check_savable(destination, bits)
         if suffix == ".exr":
             data = exr.encode(self.linear, self.layers, self.metadata, bits)
-        else:
+        elif suffix == ".png":
             data = png.encode(self.array, self.metadata, bits)
+        else:
+            data = jpeg.encode(self.array, self.metadata)
         with replacement(destination) as file:
             file.write(data)
 
@@ -185,12 +193,14 @@ def check_savable(path: Path, bits: int | None = None) -> tuple[str, int]:
             or no file can be written there.
     """
     suffix = path.suffix.lower()
+    suffix = _OTHER_SUFFIXES.get(suffix, suffix)
     if suffix not in FORMATS:
         named = f"the suffix '{path.suffix}'" if path.suffix else "no suffix"
-        raise SaveError(f"cannot write {path}: it has {named}, pictures end in .png or .exr")
+        raise SaveError(f"cannot write {path}: it has {named}, pictures end in .png, .jpg or .exr")
     usual = FORMATS[suffix]
     if bits is not None and bits not in usual:
-        raise SaveError(f"cannot write {path}: a channel has {usual[0]} or {usual[1]} bits")
+        possible = " or ".join(map(str, usual))
+        raise SaveError(f"cannot write {path}: a channel has {possible} bits")
     if suffix in PACKAGES:
         try:
             imported(PACKAGES[suffix])

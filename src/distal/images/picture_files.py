@@ -1,7 +1,7 @@
 """Reads what a picture file says of itself, whatever its format.
 
-Input: the path of a PNG or an EXR. Output: a ``Record``: how the picture was rendered, and how the
-file stores it. Recognizes formats by their first bytes only. Does not read pixels.
+Input: the path of a PNG, a JPEG or an EXR. Output: a ``Record``: how the picture was rendered, and
+how the file stores it. Recognizes formats by their first bytes only. Does not read pixels.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from distal.images import exr, png
+from distal.images import exr, jpeg, png
 from distal.images.metadata import Provenance, ReadError, provenance
 
 _HEAD_PNG: Final = b"\x89PNG\r\n\x1a\n"
@@ -27,8 +27,8 @@ class Record:
         size: Width and height in pixels when it was rendered.
         stored_size: Width and height of the file; different if a program scaled or cropped it.
         version: The version of distal that rendered it.
-        format: "png" or "exr".
-        bits: Bits of each channel: 8 or 16 in a PNG; 16 or 32 in an EXR.
+        format: "png", "jpg" or "exr".
+        bits: Bits of each channel: 8 or 16 in a PNG; 8 in a JPEG; 16 or 32 in an EXR.
     """
 
     provenance: Provenance
@@ -54,8 +54,10 @@ def read(path: Path) -> Record:
         kind, (size, bits, found) = "png", png.head_of(path)
     elif head[:4] == _HEAD_EXR:
         kind, (size, bits, found) = "exr", exr.head_of(path)
+    elif head[:3] == jpeg.SIGNATURE:
+        kind, (size, bits, found) = "jpg", jpeg.head_of(path)
     else:
-        raise ReadError(f"{path} is neither a PNG nor an EXR")
+        raise ReadError(f"{path} is no PNG, JPEG or EXR")
     if not found.get("distal:source-hash"):
         raise ReadError(
             f"{path} does not say how it was made: not a picture of distal's, or its metadata "

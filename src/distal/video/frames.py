@@ -7,10 +7,12 @@ the frame depends on. A later run keeps files with the right key.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Final
 
+import numpy as np
+from numpy.typing import NDArray
 from PIL import Image
 
 from distal.images.atomic_files import SaveError, replacement
@@ -56,6 +58,16 @@ class Frames:
         texts = {**picture.metadata, KEY: self._key(index)}
         with replacement(self.files[index]) as file:
             file.write(encode(picture.array, texts))
+
+    def levels(self, index: int) -> NDArray[np.uint8]:
+        """Return a frame that is there: 8 bits for red, green, blue and alpha."""
+        with Image.open(self.files[index]) as picture:
+            return np.asarray(picture.convert("RGBA"))
+
+    def remove(self, indices: Iterable[int]) -> None:
+        """Delete the files of frames, where they exist."""
+        for index in indices:
+            self.files[index].unlink(missing_ok=True)
 
     def _key(self, index: int) -> str:
         key = f"{self._common} {index} {self._times[index]!r}"

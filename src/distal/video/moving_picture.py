@@ -6,15 +6,17 @@ animated pictures with the same fingerprint have the same frames. Does not depen
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, Final
 
 from distal.images.picture import Picture
 from distal.ir.nodes import Origin
 from distal.lang.chosen_values import checked_values
+from distal.lang.live_textures import LiveTexture, SoundFile
 from distal.lang.render_options import Refinement, RenderOptions
-from distal.lang.runtime_access import executor
+from distal.lang.runtime_access import cluster_kernels, executor
 from distal.render import film
 from distal.runtime.fingerprints import fingerprint
 from distal.runtime.lowered import Lowered
@@ -28,12 +30,17 @@ from distal.scene.steering import Steering
 from distal.scene.view_options import ViewOptions
 from distal.scene.view_ranges import with_range
 from distal.scene.viewing.viewable import COLOR, Viewable, viewable
+from distal.sounds.reading import Samples, read
 from distal.video.formats import VideoError
+from distal.video.soundtrack import cut
 
 if TYPE_CHECKING:
     from distal.lang.composed import Composed
     from distal.lang.functions import Image
     from distal.scene.scene import Scene
+
+# Larger frames are rendered one at a time: each takes 16 bytes per pixel.
+MOST_PIXELS_AT_ONCE: Final = 2**24
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +73,26 @@ class MovingPicture:
         """The value of each parameter that it reads, by name."""
         return self.options.params
 
+    @property
+    def keeps_frames(self) -> bool:
+        """Whether a frame is computed from those before it."""
+        return bool(executor().parts(self._image).frames)
+
+    def sound(self, start: Fraction, duration: Fraction) -> Samples | None:
+        """Return what is heard with it, if it reads a sound file.
+
+        Args:
+            start: The time of its first frame, in seconds.
+            duration: Seconds.
+
+        Raises:
+            LoadError: The file cannot be read.
+        """
+        heard = executor().sound(self._image)
+        if heard is None:
+            return None
+        return cut(read(heard.path), start, duration, loop=heard.loop)
+
     def picture(self, index: int, time: float, size: tuple[int, int] | None = None) -> Picture:
         """Render the picture at a time.
 
@@ -75,15 +102,30 @@ class MovingPicture:
             size: Width and height in pixels; None for the picture's own size.
         """
         options = replace(self.options, size=size or self.size, time=time, index=index)
-        return (
-            executor()
-            .render(self._image, options)
-            .with_provenance(
-                view=self._view,
-                stage=None if self._scene is None else self._scene.staged,
-                steering=None if self._steering is None else self._steering.numbers,
-            )
+        if options.cluster is None:
+            made = executor().render(self._image, options)
+        else:
+            made = cluster_kernels.picture(options.cluster, self._image, options)
+        return made.with_provenance(
+            view=self._view,
+            stage=None if self._scene is None else self._scene.staged,
+            steering=None if self._steering is None else self._steering.numbers,
         )
+
+    @property
+    def at_once(self) -> int:
+        """How many frames are rendered at the same time.
+
+        While one frame waits for its last part, or is converted to 8 bits, the next keeps
+        processors busy. On two processors a video of 640x480 took 1.45 times as long as rendering
+        alone, now 1.25.
+        """
+        if self.keeps_frames:  # each is computed from the one before it
+            return 1
+        if self.options.cluster is not None:
+            return int(cluster_kernels.at_once(self.options.cluster))
+        width, height = self.size
+        return 3 if width * height <= MOST_PIXELS_AT_ONCE else 1
 
     def warn_if_black(self, picture: Picture, time: float) -> None:
         """Warn if the first picture is black, as rendering a still picture does."""
@@ -121,7 +163,8 @@ def moving_picture(
     image, settings = _image(shown, view, options.samples, steering)
     refinement = _refinement(shown, view, options.samples, shutter)
     lowered = Lowered.of(image, None)
-    values = _values(shown, lowered, options.params)
+    programs = (lowered, *executor().parts(image).frames)
+    values = _values(shown, programs, options.params)
     # The range of the first frame's values, for all frames: it does not flicker.
     first = replace(options, params=values, settings=settings)
     settings = dict(with_range(image, first).settings)
@@ -133,7 +176,7 @@ def moving_picture(
     return MovingPicture(
         name=shown.name,
         options=replace(options, params=values, settings=settings, refinement=refinement),
-        fingerprint=_fingerprint(lowered, _asked(settings, options, refinement)),
+        fingerprint=_fingerprint(programs, _asked(settings, options, refinement)),
         source_hash=lowered.source_hash,
         _image=image,
         _scene=shown.scene,
@@ -195,11 +238,14 @@ def _asked(
     return asked
 
 
-def _values(shown: Viewable, lowered: Lowered, params: Mapping[str, Any]) -> dict[str, Any]:
+def _values(
+    shown: Viewable, programs: Sequence[Lowered], params: Mapping[str, Any]
+) -> dict[str, Any]:
     """Return the parameters that the view reads; values for other parameters are allowed too."""
     read = {
         u.source.name: u.source
-        for u in lowered.module.uniforms
+        for program in programs
+        for u in program.module.uniforms
         if u.origin is Origin.PARAMETER and u.source is not None
     }
     try:
@@ -209,6 +255,15 @@ def _values(shown: Viewable, lowered: Lowered, params: Mapping[str, Any]) -> dic
     return {name: chosen.get(name, parameter.default) for name, parameter in read.items()}
 
 
-def _fingerprint(lowered: Lowered, settings: Mapping[str, Any]) -> str:
+def _fingerprint(programs: Sequence[Lowered], settings: Mapping[str, Any]) -> str:
+    """Return the fingerprint of a picture's program and those of the images that it reads."""
+    lowered, *others = programs
     numbers = {u.name: u.default for u in lowered.module.uniforms if u.origin is Origin.NUMBER}
-    return fingerprint([lowered.digest, numbers, dict(settings)], lowered.resources)
+    parts = [lowered.digest, numbers, dict(settings), *(program.digest for program in others)]
+    resources = {
+        f"{name}{number or ''}": source.path if isinstance(source, SoundFile) else source
+        for number, program in enumerate(programs)
+        for name, source in program.resources.items()
+        if isinstance(source, SoundFile) or not isinstance(source, LiveTexture)
+    }
+    return fingerprint(parts, resources)

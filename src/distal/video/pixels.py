@@ -36,7 +36,10 @@ class Converter:
 
     def frame(self, array: NDArray[np.float32]) -> Any:
         """Return the frame of a picture; alpha is ignored."""
-        levels = quantise(array)
+        return self.frame_of(quantise(array))
+
+    def frame_of(self, levels: NDArray[np.uint8]) -> Any:
+        """Return the frame of 8-bit red, green, blue and alpha."""
         made = self._av.VideoFrame.from_numpy_buffer(levels, "rgba")
         if self._codec.exact:
             return self._reformatter.reformat(made, format=self._codec.pixels, threads=1)

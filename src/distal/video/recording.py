@@ -10,13 +10,12 @@ from __future__ import annotations
 import json
 import threading
 import time
-from collections.abc import Callable, Iterable, Mapping
-from contextlib import closing
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from os import PathLike
 from pathlib import Path
-from typing import Any, Final, TypeVar
+from typing import Any, Final
 
 import numpy as np
 
@@ -31,6 +30,7 @@ from distal.video.animation import Animation, animate
 from distal.video.encoding import Encoding, piece_name
 from distal.video.formats import (
     FRAMES,
+    Codec,
     VideoError,
     VideoFormat,
     check_rate,
@@ -41,18 +41,15 @@ from distal.video.formats import (
     numbered,
     read_quality,
 )
+from distal.video.frame_rendering import FrameRendering, FrameSteps, Progress
 from distal.video.frames import Frames, make_folder
 from distal.video.moving_picture import MovingPicture, moving_picture
-from distal.video.overlap import made_ahead, taking
 from distal.video.segments import join
 from distal.video.store import Store, Tell
 from distal.video.timing import Timing, timing
 
-Item = TypeVar("Item")
-# Called with (finished frames, all frames, "rendering" or "encoding").
-Progress = Callable[[int, int, str], Any]
-# Larger frames are rendered one at a time: each takes 16 bytes per pixel.
-MOST_PIXELS_AT_ONCE: Final = 2**24
+# Frames in the folder of finished parts.
+_KEPT: Final = "frame-%05d.png"
 # A loop jumps if its ends differ by more than this: three steps of 255 on average.
 _JUMP: Final = 3.0 / 255.0
 
@@ -111,6 +108,7 @@ def video(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
     tell: Tell | None = None,
+    cluster: Any = None,
 ) -> FinishedSequence:
     """Render an animated picture and write it.
 
@@ -143,6 +141,8 @@ def video(
         cancel: An event, or a function without arguments, that stops the work early; it is called
             by the threads that render.
         tell: Called with a line of text, for example that an interrupted run continues.
+        cluster: A ``dask.distributed.Client`` whose workers render the frames, with the same bits;
+            None renders them in this process. Needs ``distal[cluster]``.
 
     Raises:
         SaveError: The file cannot be written, or PyAV is missing.
@@ -171,11 +171,13 @@ def video(
     options = RenderOptions(
         size=size,
         time=when.time(0),
+        delta=float(1 / when.rate),
         params=params or {},
         device=device,
         samples=samples,
         threads=threads,
         cancel=lambda: stop.is_set() or is_cancelled(),
+        cluster=cluster,
     )
     shown: dict[str, Any] = {"view": view, "samples": samples, "mode": mode, "shutter": shutter}
     if steering is not None:
@@ -246,7 +248,7 @@ class _RecordingJob:
         return rendered, sum(file.stat().st_size for file in frames.files)
 
     def _animated(self, store: Store, kept: Frames | None) -> int:
-        frames = kept or self._frames(store.path("frame-%05d.png"))
+        frames = kept or self._frames(store.path(_KEPT))
         rendered = self._write_frames(frames)
         what = Animation(frames.files, self.timing.rate, self.quality, self.loop, self.texts())
         whole = store.path(f"whole.partial.{self.format.name}")
@@ -257,23 +259,69 @@ class _RecordingJob:
     def _encoded(self, store: Store, kept: Frames | None) -> int:
         codec = codec_of(self.format, self.quality)
         pieces = {store.path(piece_name(frames)): frames for frames in self.timing.pieces}
-        missing = [
-            (file, frames)
-            for file, frames in pieces.items()
-            if not file.exists() or not (kept is None or all(map(kept.is_there, frames)))
-        ]
-        wanted = [i for _, frames in missing for i in frames]
-        encoding = Encoding(dict(missing), codec, self.moving.size, self.timing.rate, kept)
-        try:
-            self._render(wanted, encoding.ready, encoding.take, workers=1)
-        except BaseException:
-            encoding.abandon()
-            raise
+        frames = kept or self._frames(store.path(_KEPT))
+        rendering = self._rendering()
+        while not self._encode_pieces(pieces, codec, frames, rendering, keeps=kept is not None):
+            self._complete(pieces, frames, rendering)
         whole = store.path(f"whole.partial.{self.format.name}")
         counted = [(file, len(frames)) for file, frames in pieces.items()]
-        join(counted, whole, self.format, self.timing.rate, self.texts())
+        sound = self.moving.sound(self.timing.start, self.timing.duration)
+        join(counted, whole, self.format, self.timing.rate, self.texts(), sound)
         store.appear(whole)
-        return len(wanted)
+        return len(rendering.rendered)
+
+    def _encode_pieces(
+        self,
+        pieces: Mapping[Path, range],
+        codec: Codec,
+        frames: Frames,
+        rendering: FrameRendering,
+        *,
+        keeps: bool,
+    ) -> bool:
+        """Make the segments that are not there; return whether all are there then.
+
+        Args:
+            pieces: Their files, with the indices of their frames.
+            codec: The codec.
+            frames: Where frames are kept as pictures.
+            rendering: Renders the frames that are not kept.
+            keeps: Whether all frames are to be kept as pictures.
+        """
+        there = {
+            i
+            for i in range(self.timing.count)
+            if (not self.fresh or i in rendering.rendered) and frames.is_there(i)
+        }
+        missing = {
+            file: of_piece
+            for file, of_piece in pieces.items()
+            if not file.exists() or (keeps and not there.issuperset(of_piece))
+        }
+        wanted = [i for of_piece in missing.values() for i in of_piece]
+        codec_and_size = codec, self.moving.size, self.timing.rate
+        encoding = Encoding(missing, *codec_and_size, frames, keeps_all=keeps)
+        again = {i: encoding.ready_again for i in wanted if i in there}
+        way = FrameSteps(encoding.ready, encoding.take, again=again, without=encoding.ready_without)
+        try:
+            rendering.render(wanted, way)
+        finally:
+            encoding.abandon()
+        return not rendering.failed
+
+    def _complete(
+        self, pieces: Mapping[Path, range], frames: Frames, rendering: FrameRendering
+    ) -> None:
+        """Keep all frames of incomplete segments as pictures, the failed ones if a repeat succeeds.
+
+        Raises:
+            DeviceError: It does not.
+        """
+        incomplete = [i for file, of_piece in pieces.items() if not file.exists() for i in of_piece]
+        lost = [i for i in incomplete if i not in rendering.failed and not frames.is_there(i)]
+        rendering.render(lost, self._as_pictures(frames))
+        rendering.repeat(self._as_pictures(frames))
+        rendering.check()
 
     # Frames
 
@@ -284,55 +332,19 @@ class _RecordingJob:
 
     def _write_frames(self, frames: Frames) -> int:
         wanted = [i for i in range(self.timing.count) if self.fresh or not frames.is_there(i)]
-        # Measured: 13 ms for a PNG of 640x480, and 6 ms for rendering it on two processors.
-        workers = max(1, min(4, usable_threads()))
-        self._render(wanted, lambda i, made: (i, made), lambda item: frames.write(*item), workers)
+        rendering, way = self._rendering(), self._as_pictures(frames)
+        rendering.render(wanted, way)
+        rendering.repeat(way)
+        rendering.check()
         return len(wanted)
 
-    def _render(
-        self,
-        wanted: Iterable[int],
-        ready: Callable[[int, Picture], Item],
-        take: Callable[[Item], None],
-        workers: int,
-    ) -> None:
-        """Render frames and convert them, while other threads take them.
+    def _rendering(self) -> FrameRendering:
+        return FrameRendering(self.moving, self.timing, self.progress, self.tell, self.stop)
 
-        Args:
-            wanted: The indices of the frames.
-            ready: Converts a frame, on the thread that rendered it.
-            take: Takes a converted frame.
-            workers: How many threads take frames.
-        """
-        indices = list(wanted)
-        count = self.timing.count
-        done = count - len(indices)
-        if done:
-            self.tell(f"continues: {done} of {count} frames are there")
-
-        def made(i: int) -> Item:
-            at = self.timing.time(i)
-            picture = self.moving.picture(i, at)
-            if i == 0:
-                self.moving.warn_if_black(picture, at)
-            return ready(i, picture)
-
-        frames = made_ahead(made, indices, self._at_once(), self.stop.set)
-        with taking(take, workers) as taker, closing(frames):
-            for frame in frames:
-                taker.put(frame)
-                done += 1
-                self.progress(done, count, "rendering")
-
-    def _at_once(self) -> int:
-        """Return how many frames are rendered at the same time.
-
-        While one frame waits for its last part, or is converted to 8 bits, the next keeps
-        processors busy. On two processors a video of 640x480 took 1.45 times as long as rendering
-        alone, now 1.25.
-        """
-        width, height = self.moving.size
-        return 3 if width * height <= MOST_PIXELS_AT_ONCE else 1
+    def _as_pictures(self, frames: Frames) -> FrameSteps[tuple[int, Picture]]:
+        # Measured: 13 ms for a PNG of 640x480, and 6 ms for rendering it on two processors.
+        workers = max(1, min(4, usable_threads()))
+        return FrameSteps(lambda i, made: (i, made), lambda item: frames.write(*item), workers)
 
     def compare_ends(self) -> None:
         """Report a loop that jumps: the picture one period later is different."""
@@ -393,7 +405,9 @@ class _RecordingJob:
     def _report_kept(self, store: Store) -> None:
         if self.format.encoded:
             there = [f for f in self.timing.pieces if store.path(piece_name(f)).exists()]
-            kept = sum(map(len, there))
+            in_pieces = {i for frames in there for i in frames}
+            single = {i for i in range(self.timing.count) if store.path(_KEPT % i).exists()}
+            kept = len(in_pieces | single)
         else:
             kept = len(store.items())
         if kept:

@@ -14,8 +14,10 @@ from pathlib import Path
 from typing import Any, Final
 
 from distal.images.atomic_files import SaveError, move_into_place
+from distal.sounds.reading import Samples
 from distal.video.formats import Codec, VideoFormat, library
 from distal.video.pixels import tag
+from distal.video.soundtrack import Soundtrack
 
 # MP4 can store the packets of both codecs with any clock; Matroska's clock counts milliseconds.
 PIECE_SUFFIX: Final = ".mp4"
@@ -78,6 +80,7 @@ def join(
     format: VideoFormat,
     rate: Fraction,
     texts: Mapping[str, str],
+    sound: Samples | None = None,
 ) -> None:
     """Join segments to one file; their packets are copied.
 
@@ -87,6 +90,7 @@ def join(
         format: mp4 or webm.
         rate: Frames per second.
         texts: Metadata of the container.
+        sound: What is heard from the first frame on; None for a silent video.
 
     Raises:
         SaveError: A segment cannot be read, or the file cannot be written.
@@ -99,7 +103,7 @@ def join(
         out = library().open(str(path), "w", format=format.name, options=options)
         try:
             out.metadata.update(texts)
-            _copy(pieces, out, rate)
+            _copy(pieces, out, rate, format, sound)
         except BaseException:
             with suppress(Exception):  # report the first error, not the one of closing
                 out.close()
@@ -107,18 +111,29 @@ def join(
         out.close()
 
 
-def _copy(pieces: Sequence[tuple[Path, int]], out: Any, rate: Fraction) -> None:
-    stream, first = None, 0
+def _copy(
+    pieces: Sequence[tuple[Path, int]],
+    out: Any,
+    rate: Fraction,
+    format: VideoFormat,
+    sound: Samples | None,
+) -> None:
+    stream, track, first = None, None, 0
     for file, count in pieces:
         source, packets = _read(file, first, count, rate)
         with source:
             if stream is None:
                 stream = out.add_stream_from_template(source.streams.video[0])
                 stream.time_base = 1 / rate
+                track = None if sound is None else Soundtrack(out, format, sound)
             for packet in packets:
                 packet.stream = stream
                 out.mux(packet)
         first += count
+        if track is not None:  # beside the pictures that it is heard with
+            track.write(first / rate)
+    if track is not None:
+        track.write(None)
 
 
 def _read(file: Path, first: int, count: int, rate: Fraction) -> tuple[Any, list[Any]]:

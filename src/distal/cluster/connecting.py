@@ -1,0 +1,145 @@
+"""Connect to a cluster by the text of ``--cluster``.
+
+Input: "local", "local:N", the address of a scheduler, or its file. Output: a pool, for the time of
+a block. Nothing listens beyond this machine.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Final
+
+from distal.cluster.errors import ClusterError, words
+from distal.cluster.pool import TIMEOUT_S, WorkerPool
+from distal.devices.threads import usable_threads
+from distal.packages import imported
+
+_CONNECT_S: Final = 10.0
+_LOCAL: Final = "local"
+_PROTOCOLS: Final = ("tcp", "tls", "ucx", "ws", "wss")
+_FORMS: Final = "local, local:4, tcp://host:8786, tls://host:8786, or the scheduler's file"
+# The scheduler of "local" is in this process, and its logs hold messages: 11 kB for each frame.
+_SHORT_LOGS: Final = {
+    "distributed.admin.log-length": 100,
+    "distributed.admin.low-level-log-length": 50,
+    "distributed.admin.system-monitor.log-length": 100,
+    "distributed.diagnostics.computations.max-history": 10,
+}
+_CERTIFICATE: Final = "Dask's settings distributed.comm.tls.ca-file, client.cert and client.key"
+
+
+@contextmanager
+def connected(
+    where: str, *, timeout: float = TIMEOUT_S, tell: Callable[[str], None] | None = None
+) -> Iterator[WorkerPool]:
+    """Connect to a cluster for the time of a block.
+
+    Args:
+        where: "local" for a process on each processor of this machine, "local:N" for N, the address
+            of a scheduler, or the path of its file.
+        timeout: Seconds after which a task is given to another worker.
+        tell: Called with a line of text, for example of workers with another processor.
+
+    Raises:
+        ClusterError: There is no such cluster.
+        PackageError: ``distal[cluster]`` is not installed.
+    """
+    if where == _LOCAL or where.startswith(f"{_LOCAL}:"):
+        with _local(_count(where)) as client:
+            yield WorkerPool(client, timeout=timeout, tell=tell)
+        return
+    client = _client(where)
+    try:
+        yield WorkerPool(client, timeout=timeout, tell=tell)
+    finally:
+        client.close(timeout=2)
+
+
+def _count(where: str) -> int:
+    text = where.removeprefix(_LOCAL).removeprefix(":")
+    if not text:
+        return usable_threads()
+    if not text.isdigit() or not 1 <= int(text) <= 1024:
+        raise ClusterError(f"'{where}': local:N has 1 to 1024 processes")
+    return int(text)
+
+
+@contextmanager
+def _local(count: int) -> Iterator[Any]:
+    distributed = imported("distributed")
+    with (
+        imported("dask").config.set(_SHORT_LOGS),
+        distributed.LocalCluster(
+            n_workers=count,
+            threads_per_worker=1,
+            processes=True,
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",
+            silence_logs=50,
+        ) as cluster,
+        distributed.Client(cluster, set_as_default=False) as client,
+    ):
+        yield client
+
+
+def _check_file(path: Path) -> None:
+    """Check that a file is one that a scheduler wrote.
+
+    Raises:
+        ClusterError: It is not, or it cannot be read.
+    """
+    if not path.is_file():
+        raise ClusterError(f"there is no file {path}; --cluster takes {_FORMS}")
+    try:
+        found = json.loads(path.read_text("utf-8"))["address"]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        found = None
+    if not isinstance(found, str):
+        raise ClusterError(f"{path} is no file of a scheduler: dask scheduler --scheduler-file")
+    if found.startswith("tls://"):
+        _check_certificate(found)
+
+
+def _check_certificate(where: str) -> None:
+    """Check that Dask's settings name a certificate.
+
+    Raises:
+        ClusterError: They name none, or one that cannot be read.
+    """
+    security: Any = imported("distributed.security")
+    try:
+        found = security.Security().get_connection_args("client")["ssl_context"]
+    except (OSError, ValueError) as error:  # errors of the ssl module are OSErrors
+        raise ClusterError(
+            f"the certificate for {where} cannot be read: {words(error)}; {_CERTIFICATE} name it"
+        ) from None
+    if found is None:
+        raise ClusterError(f"{where} needs a certificate: {_CERTIFICATE} name the files")
+
+
+def _client(where: str) -> Any:
+    if where.startswith("tls://"):
+        _check_certificate(where)
+    client = imported("distributed").Client
+    given: dict[str, Any] = {"timeout": _CONNECT_S, "set_as_default": False}
+    protocol, separator, host = where.partition("://")
+    if separator and protocol not in _PROTOCOLS:
+        raise ClusterError(f"'{where}' is no cluster; --cluster takes {_FORMS}")
+    if separator and not host.rpartition(":")[2].isdigit():
+        raise ClusterError(f"'{where}' has no port: {protocol}://host:8786")
+    try:
+        if separator:
+            return client(where, **given)
+        if where.endswith(".json"):
+            _check_file(Path(where))
+            return client(scheduler_file=where, **given)
+    except ClusterError:
+        raise
+    except (OSError, TimeoutError) as error:
+        raise ClusterError(f"no scheduler answers at {where}: {words(error)}") from None
+    except Exception as error:
+        raise ClusterError(f"{where} is no scheduler: {words(error)}") from None
+    raise ClusterError(f"'{where}' is no cluster; --cluster takes {_FORMS}")

@@ -1,0 +1,79 @@
+"""Encode pixels as JPEG, and read the metadata of such a file.
+
+Input: display-encoded float pixels, top row first, and texts. Output: a JPEG of 8 bits with full
+resolution of color, whose comment holds the texts as JSON. Does not depend on scenes.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image as PillowImage
+
+from distal.images.atomic_files import SaveError
+from distal.images.metadata import ReadError
+from distal.images.png import quantise
+
+SIGNATURE: Final = b"\xff\xd8\xff"
+BITS: Final = (8,)
+LARGEST_SIDE: Final = 65535  # pixels (ITU-T T.81, B.2.2)
+_QUALITY: Final = 95
+_LONGEST_COMMENT: Final = 65533  # bytes (ITU-T T.81, B.2.4.5)
+
+
+def encode(array: NDArray[np.float32], texts: Mapping[str, str]) -> bytes:
+    """Return a JPEG of the pixels. Metadata that is too long for a comment is left out.
+
+    Args:
+        array: (height, width, 4), display values; opaque.
+        texts: The metadata by key.
+
+    Raises:
+        SaveError: A pixel is transparent, or a side is too long.
+    """
+    levels = quantise(array)
+    if not (levels[..., 3] == 255).all():
+        raise SaveError("a JPEG has no transparency: save a .png")
+    if max(levels.shape[:2]) > LARGEST_SIDE:
+        raise SaveError(f"a side of a JPEG has at most {LARGEST_SIDE} pixels: save a .png")
+    comment = json.dumps(dict(texts)).encode("ascii")
+    options: dict[str, Any] = {"comment": comment} if len(comment) <= _LONGEST_COMMENT else {}
+    buffer = io.BytesIO()
+    pixels = PillowImage.fromarray(np.ascontiguousarray(levels[..., :3]))
+    pixels.save(buffer, format="JPEG", quality=_QUALITY, subsampling="4:4:4", **options)
+    return buffer.getvalue()
+
+
+def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
+    """Return the size, the bits of a channel and the texts of a file.
+
+    Raises:
+        ReadError: It cannot be read.
+    """
+    try:
+        with PillowImage.open(path, formats=("JPEG",)) as picture:
+            size, comment = picture.size, picture.info.get("comment", b"")
+        found = json.loads(comment or b"{}")
+    except (OSError, ValueError, RecursionError, PillowImage.DecompressionBombError):
+        raise ReadError(f"{path} is broken, or its metadata is another program's") from None
+    texts = found.items() if isinstance(found, dict) else ()
+    return size, 8, {key: text for key, text in texts if isinstance(text, str)}
+
+
+def decode(data: bytes) -> NDArray[np.uint8]:
+    """Return the pixels of a file: (height, width, 3).
+
+    Raises:
+        ReadError: It cannot be read.
+    """
+    try:
+        with PillowImage.open(io.BytesIO(data), formats=("JPEG",)) as picture:
+            return np.asarray(picture.convert("RGB"))
+    except (OSError, ValueError, PillowImage.DecompressionBombError):
+        raise ReadError("it is no whole JPEG") from None

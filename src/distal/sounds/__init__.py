@@ -1,0 +1,1 @@
+"""Sounds from files: reading, and what pictures read of them."""
