@@ -20,9 +20,11 @@ _HAND_WRITTEN = {
     "distal.images.height_map": ("HeightMap",),
     "distal.images.picture": ("Picture",),
     "distal.lang.expressions": ("time",),
+    "distal.lang.places": ("cell", "place", "random_by_cell"),
     "distal.lang.units": ("cm", "foot", "inch", "metre", "mm"),
     "distal.loading": ("gallery", "load"),
     "distal.scene.looks.look": ("Look",),
+    "distal.scene.objects.alternatives": ("choose",),
     "distal.scene.objects.backgrounds": ("Background", "Environment"),
     "distal.scene.objects.copies": ("copies",),
     "distal.scene.objects.fasteners": ("Bolt", "MetricHole", "MetricThread", "Nut"),
@@ -33,21 +35,27 @@ _HAND_WRITTEN = {
     "distal.scene.objects.patterns": ("cube_map", "image_pattern", "pattern"),
     "distal.scene.objects.shape": ("Shape", "Shape2D"),
     "distal.scene.points.curves": ("circle_path", "helix_path", "points_along"),
+    "distal.scene.points.formula_curve": ("Curve",),
     "distal.scene.points.scatter": ("points_in", "points_on"),
     "distal.scene.scene": ("Scene",),
     "distal.scene.steering": ("Steering",),
+    "distal.sweeps.sweeping": ("sweep",),
 }
 _MODULE_OF = {
     **{name: module for module, names in _HAND_WRITTEN.items() for name in names},
     **{name: module for module, names in DECLARED_NAMES.items() for name in names.split()},
 }
 
-# ``compile`` is left out, so that ``from distal import *`` does not hide Python's ``compile``.
-__all__ = ["__version__", *(name for name in _MODULE_OF if name != "compile")]
+# Left out, so that ``from distal import *`` hides neither Python's ``compile`` nor its module
+# ``time``.
+_NOT_STARRED = ("compile", "time")
+__all__ = ["__version__", *(name for name in _MODULE_OF if name not in _NOT_STARRED)]
 
 
 def _unknown(name: str) -> str:
     message = f"module 'distal' has no attribute '{name}'"
+    if name in importlib.import_module("distal.lang").__all__:
+        return f"{message}; from distal.lang import {name}"
     near = importlib.import_module("difflib").get_close_matches(name, _MODULE_OF, 1)
     return f"{message}; did you mean '{near[0]}'?" if near and name[0] != "_" else message
 
@@ -65,4 +73,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_MODULE_OF})
+    return sorted({*__all__, *_NOT_STARRED})

@@ -10,6 +10,9 @@ from distal.diagnostics import LoadError as LoadError
 from distal.images.height_map import HeightMap as HeightMap
 from distal.images.picture import Picture as Picture
 from distal.lang.expressions import time as time
+from distal.lang.places import cell as cell
+from distal.lang.places import place as place
+from distal.lang.places import random_by_cell as random_by_cell
 from distal.lang.units import cm as cm
 from distal.lang.units import foot as foot
 from distal.lang.units import inch as inch
@@ -18,6 +21,7 @@ from distal.lang.units import mm as mm
 from distal.loading import gallery as gallery
 from distal.loading import load as load
 from distal.scene.looks.look import Look as Look
+from distal.scene.objects.alternatives import choose as choose
 from distal.scene.objects.backgrounds import Background as Background
 from distal.scene.objects.backgrounds import Environment as Environment
 from distal.scene.objects.copies import copies as copies
@@ -43,10 +47,12 @@ from distal.scene.objects.shape import Shape2D as Shape2D
 from distal.scene.points.curves import circle_path as circle_path
 from distal.scene.points.curves import helix_path as helix_path
 from distal.scene.points.curves import points_along as points_along
+from distal.scene.points.formula_curve import Curve as Curve
 from distal.scene.points.scatter import points_in as points_in
 from distal.scene.points.scatter import points_on as points_on
 from distal.scene.scene import Scene as Scene
 from distal.scene.steering import Steering as Steering
+from distal.sweeps.sweeping import sweep as sweep
 from distal.scene.objects.backgrounds import DeclaredBackground as _DeclaredBackground
 from distal.scene.objects.backgrounds import DeclaredSurroundings as _DeclaredSurroundings
 from distal.scene.objects.cameras import BaseCamera as _BaseCamera
@@ -1800,6 +1806,33 @@ class BoxFrame(Shape):
         thickness: Number = 0.1,
     ) -> None: ...
 
+class BrickField(Shape):
+    """Shape from distance samples that are stored only near the surface."""
+
+    @overload
+    def __init__(
+        self,
+        values: Points = ...,
+        samples: Vector = ...,
+        size: Vector | Number = ...,
+        reach: Number = 0.0,
+        scale: Number = 1.0,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        values: Points,
+        samples_x: Number,
+        samples_y: Number,
+        samples_z: Number,
+        size_x: Number,
+        size_y: Number,
+        size_z: Number,
+        /,
+        reach: Number = 0.0,
+        scale: Number = 1.0,
+    ) -> None: ...
+
 class CappedCone(Shape):
     """Upright truncated cone (frustum), centred at the origin."""
 
@@ -2053,6 +2086,11 @@ class CubicLattice(Shape):
 
     def __init__(self, cell_size: Number = 0.5, radius: Number = 0.06) -> None: ...
 
+class CurveTube(Shape):
+    """Round tube along quadratic Bézier curves, one after the other; ``Curve.tube`` makes them."""
+
+    def __init__(self, points: Points = ..., radius: Number = 0.1) -> None: ...
+
 class CutDisk(Shape2D):
     """Disc cut by a horizontal line; the part above the line."""
 
@@ -2117,6 +2155,11 @@ class Diamond(Shape):
         solid: bool = False,
     ) -> None: ...
 
+class DiamondLattice(Shape):
+    """Infinite diamond lattice: struts along the bonds of the atoms in a diamond."""
+
+    def __init__(self, cell_size: Number = 0.75, radius: Number = 0.05) -> None: ...
+
 class Disc(Shape):
     """Round plate without thickness around the y axis."""
 
@@ -2163,6 +2206,17 @@ class EquilateralTriangle(Shape2D):
 
     def __init__(self, size: Number = 1.0) -> None: ...
 
+class FRD(Shape):
+    """F-RD surface (Schoen): tubes from the corners of a cube to the middles of its faces."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        thickness: Number = 0.1,
+        offset: Number = 0.0,
+        solid: bool = False,
+    ) -> None: ...
+
 class FbmSolid(Shape):
     """Infinite rugged lumps of fractal noise (fBm): noise at several scales."""
 
@@ -2180,6 +2234,17 @@ class FccLattice(Shape):
     """Infinite lattice of struts from cube corners to face middles (face-centred cubic)."""
 
     def __init__(self, cell_size: Number = 0.5, radius: Number = 0.05) -> None: ...
+
+class FischerKochS(Shape):
+    """Fischer-Koch S surface: two labyrinths of the same form, with many crossings in each cell."""
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        thickness: Number = 0.1,
+        offset: Number = 0.0,
+        solid: bool = False,
+    ) -> None: ...
 
 class GearProfile(Shape2D):
     """Gear with involute teeth, one of them at the top; gears with equal teeth mesh."""
@@ -2293,6 +2358,16 @@ class Hexagon(Shape2D):
 
     def __init__(self, radius: Number = 0.5) -> None: ...
 
+class HexagonalLattice(Shape):
+    """Infinite honeycomb of struts: the edges of upright hexagonal prisms that fill space."""
+
+    def __init__(
+        self,
+        cell_size: Number = 0.5,
+        height: Number = 0.4,
+        radius: Number = 0.03,
+    ) -> None: ...
+
 class Hexagram(Shape2D):
     """Star with six points made of two triangles; one point is at the top."""
 
@@ -2383,6 +2458,22 @@ class IsoscelesTriangle(Shape2D):
     """Isosceles triangle with its tip at the top; y = 0 is at half of its height."""
 
     def __init__(self, width: Number = 0.8, height: Number = 1.0) -> None: ...
+
+class Isotruss(Shape):
+    """Infinite truss tube about the y axis: helical bars that make pyramids, and straight bars."""
+
+    def __init__(
+        self,
+        major: Number = 0.6,
+        height: Number = 0.6,
+        radius: Number = 0.03,
+        count: int = 8,
+    ) -> None: ...
+
+class KelvinLattice(Shape):
+    """Infinite Kelvin lattice: struts along the edges of truncated octahedra that fill space."""
+
+    def __init__(self, cell_size: Number = 0.75, radius: Number = 0.04) -> None: ...
 
 class KnurledCylinder(Shape):
     """Upright cylinder with V-shaped grooves: straight, slanted or crossed (diamonds)."""
@@ -3278,6 +3369,7 @@ class Wedge(Shape):
     def __init__(self, angle: Number = 1.0) -> None: ...
 
 __all__ = [
+    "FRD",
     "IWP",
     "AmbientLight",
     "Annulus",
@@ -3294,6 +3386,7 @@ __all__ = [
     "Box",
     "BoxCheap",
     "BoxFrame",
+    "BrickField",
     "Camera",
     "CappedCone",
     "CappedConeBetween",
@@ -3317,6 +3410,8 @@ __all__ = [
     "CubicBezier",
     "CubicBezierTube",
     "CubicLattice",
+    "Curve",
+    "CurveTube",
     "CutDisk",
     "CutHollowSphere",
     "CutSphere",
@@ -3324,6 +3419,7 @@ __all__ = [
     "CylinderBetween",
     "DeathStar",
     "Diamond",
+    "DiamondLattice",
     "Disc",
     "DistantLight",
     "Dodecahedron",
@@ -3334,6 +3430,7 @@ __all__ = [
     "EquilateralTriangle",
     "FbmSolid",
     "FccLattice",
+    "FischerKochS",
     "FisheyeCamera",
     "Gear",
     "GearProfile",
@@ -3349,6 +3446,7 @@ __all__ = [
     "HemisphereLight",
     "HexPrism",
     "Hexagon",
+    "HexagonalLattice",
     "Hexagram",
     "Honeycomb",
     "Horseshoe",
@@ -3359,6 +3457,8 @@ __all__ = [
     "InfiniteCylinder",
     "IsoscelesTrapezoid",
     "IsoscelesTriangle",
+    "Isotruss",
+    "KelvinLattice",
     "KnurledCylinder",
     "Lidinoid",
     "Link",
@@ -3479,9 +3579,11 @@ __all__ = [
     "bronze",
     "by_cell",
     "car_paint",
+    "cell",
     "charcoal",
     "checker",
     "chocolate",
+    "choose",
     "chrome",
     "circle_path",
     "clay",
@@ -3525,6 +3627,7 @@ __all__ = [
     "palette",
     "paper",
     "pattern",
+    "place",
     "plaster",
     "plastic",
     "platinum",
@@ -3533,6 +3636,7 @@ __all__ = [
     "points_on",
     "porcelain",
     "radial_gradient",
+    "random_by_cell",
     "rubber",
     "ruby",
     "sand",
@@ -3544,8 +3648,8 @@ __all__ = [
     "stripes",
     "studio",
     "sunset",
+    "sweep",
     "terracotta",
-    "time",
     "titanium",
     "union",
     "water",

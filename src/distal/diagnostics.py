@@ -151,13 +151,21 @@ class LoadError(Exception):
         message: What is wrong, and where.
         span: The place in the author's files, where it is known.
         reason: The message without its place.
+        hint: What to write instead, where it is known.
     """
 
-    def __init__(self, message: str, span: Span | None = None, reason: str | None = None) -> None:
+    def __init__(
+        self,
+        message: str,
+        span: Span | None = None,
+        reason: str | None = None,
+        hint: str | None = None,
+    ) -> None:
         super().__init__(message)
         self.message = message
         self.span = span
         self.reason = message if reason is None else reason
+        self.hint = hint
 
 
 class DeviceError(Exception):

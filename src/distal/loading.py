@@ -18,12 +18,11 @@ from pathlib import Path
 from typing import Any, Final, TypeAlias
 from weakref import WeakKeyDictionary
 
+from distal.author_errors import failure
 from distal.diagnostics import CompileError, Diagnostic, LoadError, Span
-from distal.frontend.problems import did_you_mean
 from distal.ir.nodes import EntryKind
 from distal.lang.composed import Composed
-from distal.lang.functions import Func, Image
-from distal.packages import explained
+from distal.lang.functions import FrameBuffer, Func, Image
 
 # The objects that a scene file may define.
 SceneCode: TypeAlias = Func | Composed
@@ -69,6 +68,11 @@ def gallery() -> dict[str, Path]:
     return {path.stem: path for path in sorted(_gallery_folder().glob("*.py"))}
 
 
+def frame_examples() -> dict[str, Path]:
+    """Return the paths of the examples that keep frames, by name, sorted by name."""
+    return {path.stem: path for path in sorted((_gallery_folder() / "frames").glob("*.py"))}
+
+
 def posters() -> dict[str, Path]:
     """Return the paths of small pictures of the examples by name: WebP, 320 pixels wide."""
     return {path.stem: path for path in sorted((_gallery_folder() / "posters").glob("*.webp"))}
@@ -84,7 +88,7 @@ def load(path: str | Path, name: str | None = None) -> SceneCode:
     """Load a scene from a file.
 
     Args:
-        path: A Python file, or ``example:NAME`` for an example of the gallery.
+        path: A Python file, ``FILE:NAME``, or ``example:NAME`` for an example of the gallery.
         name: The name of a function, scene or shape in the file. None selects the only scene or
             ``@image`` of the file; if there are several, the one called ``scene`` or
             ``picture``. In a file without these, None selects the only shape, or else the one
@@ -94,7 +98,9 @@ def load(path: str | Path, name: str | None = None) -> SceneCode:
         LoadError: There is no such file or name, or the file fails when run.
         CompileError: The file is not valid Python.
     """
-    file = _find(str(path))
+    if isinstance(path, str) and name is None:
+        path, name = split_source(path)
+    file = file_of(str(path))
     text = _read(file)
     module, modules = _run(file, text)
     found = _pick(module, file, name)
@@ -171,14 +177,22 @@ def digest_of(path: str | Path, neighbours: Iterable[str] = ()) -> str:
     Raises:
         LoadError: There is no such file.
     """
-    file = _find(str(path))
+    file = file_of(str(path))
     return _digest(_read(file), file.resolve().parent, neighbours)
 
 
-def _find(path: str) -> Path:
+def file_of(path: str) -> Path:
+    """Return the file of a scene.
+
+    Args:
+        path: A Python file, or ``example:NAME``.
+
+    Raises:
+        LoadError: There is no such file.
+    """
     if path.startswith(EXAMPLE_PREFIX):
         wanted = path.removeprefix(EXAMPLE_PREFIX)
-        examples = gallery()
+        examples = gallery() | frame_examples()
         if wanted not in examples:
             raise LoadError(f"there is no example '{wanted}'; examples: {', '.join(examples)}")
         return examples[wanted]
@@ -224,11 +238,11 @@ def _run(
     except SystemExit as error:
         raise LoadError(f"{file} left with sys.exit({error.code!r}) while it was loaded") from None
     except Exception as error:
-        raise _failure(file, error) from error
+        raise failure(file, error) from error
     except BaseException as error:
         if type(error).__module__ != name:  # ctrl-C and the like are not the author's
             raise
-        raise _failure(file, error) from error
+        raise failure(file, error) from error
     finally:
         if folder in sys.path:  # the author's code may have changed it
             sys.path.remove(folder)
@@ -298,63 +312,6 @@ def _syntax_error(error: SyntaxError, filename: str) -> CompileError:
     return CompileError([Diagnostic(f"this is not Python: {error.msg}", span)])
 
 
-def _failure(file: Path, error: BaseException) -> LoadError:
-    """Return the report for an error, with the line of the author's files where it was raised."""
-    name, span = str(file), None
-    folder = file.resolve().parent
-    trace = error.__traceback__
-    while trace is not None:
-        code_file = trace.tb_frame.f_code.co_filename
-        if code_file == str(file) or Path(code_file).parent == folder:
-            name, span = code_file, _place(trace)
-        trace = trace.tb_next
-    shown = name
-    if name != str(file):  # a module in the same folder: show its path in the form of the scene's
-        shown = str(file.parent / Path(name).name)
-    reason = _reason(error)
-    lines = [reason, f"  --> {shown if span is None else f'{shown}:{span.line}'}"]
-    if span is not None:
-        lines.append(f"  {span.text.strip()}")
-    return LoadError("\n".join(lines), span, reason)
-
-
-def _similar_name(error: BaseException) -> str:
-    """Return a hint with the known name most similar to an unknown one; "" if none is similar."""
-    trace = error.__traceback__
-    if not isinstance(error, NameError) or not error.name or trace is None:
-        return ""
-    while trace.tb_next is not None:
-        trace = trace.tb_next
-    frame = trace.tb_frame
-    hint = did_you_mean(error.name, {**frame.f_builtins, **frame.f_globals, **frame.f_locals})
-    return f"; {hint}" if hint else ""
-
-
-def _reason(error: BaseException) -> str:
-    kind = type(error).__name__
-    try:
-        found = explained(error) if isinstance(error, Exception) else None
-        return str(found or f"{kind}: {error}{_similar_name(error)}")
-    except Exception:  # the author's own class
-        return f"{kind}: its text cannot be made"
-
-
-def _place(trace: types.TracebackType) -> Span:
-    """Return the expression that was evaluated when an error was raised."""
-    code = trace.tb_frame.f_code
-    linecache.checkcache(code.co_filename)
-    line, col, end_col = trace.tb_lineno, 0, 0
-    text = linecache.getline(code.co_filename, line).rstrip("\n")
-    for number, (first, last, start, end) in enumerate(code.co_positions()):
-        if number == trace.tb_lasti // 2 and start is not None and end is not None:
-            if first == line:  # positions count bytes of UTF-8
-                col = len(text.encode()[:start].decode("utf-8", "replace"))
-                end_col = len(text.encode()[:end].decode("utf-8", "replace"))
-            if last != line:
-                end_col = len(text)
-    return Span(code.co_filename, line, col, max(end_col, col) or len(text), text, line)
-
-
 def _pick(module: types.ModuleType, file: Path, name: str | None) -> SceneCode:
     found = {k: v for k, v in vars(module).items() if isinstance(v, Func | Composed)}
     if name is not None:
@@ -376,6 +333,9 @@ def _offered(module: types.ModuleType) -> tuple[dict[str, SceneCode], str]:
     """Return the objects that need no name to be shown, and what they are."""
     found = {k: v for k, v in vars(module).items() if isinstance(v, Func | Composed)}
     pictures = {key: value for key, value in found.items() if _is_own_picture(value, module)}
+    # Buffers are drawn for a picture; one is shown by its name.
+    shown = {k: v for k, v in pictures.items() if not isinstance(v, FrameBuffer)}
+    pictures = shown or pictures
     shapes: dict[str, SceneCode] = {k: v for k, v in found.items() if isinstance(v, Composed)}
     return (pictures, "pictures") if pictures else (shapes, "shapes")
 

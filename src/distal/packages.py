@@ -77,6 +77,7 @@ PACKAGES: Final = (
     Package("markdown-it-py", "lessons", "pages of lessons", "markdown_it"),
     Package("pygments", "lessons", "pages of lessons"),
     Package("manifold3d", "mesh", "meshes with fewer triangles"),
+    Package("distributed", "cluster", "rendering on more than one machine"),
     Package("websockets", "studio", "the studio in a browser"),
 )
 _BY_MODULE: Final = {package.imported_as: package for package in PACKAGES}

@@ -13,9 +13,11 @@ import os
 import sys
 import warnings
 
+from distal.lang.notices import receive_notices
+
 # The commands, as --help lists them: first those that new users need.
 COMMANDS = (
-    *("render", "view", "studio", "video", "mesh", "slice", "export", "rerender"),
+    *("render", "view", "studio", "new", "video", "sweep", "mesh", "slice", "export", "rerender"),
     *("check", "probe", "measure", "compile", "examples", "doctor"),
 )
 # The others have a module of their name: one of them is imported without the rest.
@@ -27,6 +29,13 @@ def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
     from distal.cli.messages import say
 
     say(f"warning: {message}")
+
+
+def _show_notice(line: str) -> None:
+    """Print what the library says of its work in one line."""
+    from distal.cli.messages import say
+
+    say(f"note: {line}")
 
 
 def _open_what_is_closed() -> None:
@@ -45,16 +54,26 @@ def _open_what_is_closed() -> None:
         sys.stderr = open(2, "w", closefd=False)  # noqa: SIM115 (for good)
 
 
+def _is_scene(argument: str) -> bool:
+    """Return whether the first argument is a scene and no command."""
+    file, _, name = argument.rpartition(":")
+    ends = argument.endswith(".py") or (file.endswith(".py") and name.isidentifier())
+    return ends or argument.startswith("example:")
+
+
 def main() -> None:
     """Run the command line of this process."""
     try:
         _open_what_is_closed()
         # Nothing slow runs before the try, so that ctrl-C never prints a traceback.
         wanted = next(iter(sys.argv[1:]), "")
+        if _is_scene(wanted):
+            sys.argv.insert(1, wanted := "render")
         name = wanted if wanted in COMMANDS and wanted not in SHORT else "application"
         module = importlib.import_module(f"distal.cli.{name}")
 
         warnings.showwarning = _show_warning
+        receive_notices(_show_notice)
         module.application()
     except KeyboardInterrupt:
         sys.exit(130)

@@ -22,7 +22,7 @@ from distal.cli.base import SceneArgument, answer, application, load, reporting
 from distal.compiler.driver import COMPILE_TARGETS, IR_TARGET
 from distal.export.texts import with_header, write_files
 from distal.images.atomic_files import check_destination
-from distal.loading import EXAMPLE_PREFIX
+from distal.loading import EXAMPLE_PREFIX, frame_examples
 
 for _name in COMMANDS:
     if _name not in SHORT:  # importing a module adds its command
@@ -79,8 +79,8 @@ def compile(
 @application.command()
 @reporting
 def examples() -> None:
-    """List the gallery; render one as example:NAME."""
-    for name, path in sorted(distal.gallery().items()):
+    """List the gallery and the examples that keep frames; render one as example:NAME."""
+    for name, path in sorted((distal.gallery() | frame_examples()).items()):
         answer(f"example:{name}\t{path}")
 
 

@@ -9,13 +9,13 @@ from __future__ import annotations
 import functools
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from enum import StrEnum
 from typing import TYPE_CHECKING, Annotated, Final, ParamSpec
 
 import typer
 
-import distal
 from distal.cli.arguments import UsageError, read_assignments, read_scene
 from distal.cli.messages import say
 from distal.devices.memory_limit import is_limited, require
@@ -26,6 +26,7 @@ from distal.runtime import device_names
 from distal.version import __version__
 
 if TYPE_CHECKING:
+    from distal.cluster import WorkerPool
     from distal.lang.functions import Image
     from distal.lang.parameter_values import Value
     from distal.loading import SceneCode
@@ -182,6 +183,25 @@ SetOption = Annotated[
 ThreadsOption = Annotated[
     int | None, typer.Option(min=1, max=1024, help="CPU threads; one per core if not given.")
 ]
+ClusterOption = Annotated[
+    str | None,
+    typer.Option(
+        "--cluster",
+        metavar="WHERE",
+        help="Render on the workers of Dask: local, local:N, tcp://HOST:PORT or a scheduler's "
+        "file.",
+        show_default=False,
+    ),
+]
+TimeoutOption = Annotated[
+    float,
+    typer.Option(
+        "--task-timeout",
+        metavar="S",
+        min=1.0,
+        help="With --cluster: give a task that takes longer to another worker.",
+    ),
+]
 SamplesOption = Annotated[
     int | None,
     typer.Option(
@@ -245,9 +265,14 @@ def answer(text: str) -> None:
 
 
 def load(scene: str) -> SceneCode:
-    """Load the object FILE[:NAME]."""
+    """Load the object FILE[:NAME].
+
+    A file that never ends is reported after 3 s, and loaded again when it is saved.
+    """
+    from distal.load_watch import load_watched
+
     path, name = read_scene(scene)
-    return distal.load(path, name)
+    return load_watched(path, name, lambda found: say(found.text("warning")))
 
 
 def load_picture(
@@ -263,6 +288,26 @@ def load_picture(
 
     picture = checked_picture(load(scene))
     return picture, read_assignments(assignments or (), picture.parameters())
+
+
+@contextmanager
+def cluster_of(where: str | None, device: str, timeout: float) -> Iterator[WorkerPool | None]:
+    """Connect to the cluster of ``--cluster``; give None without it.
+
+    Raises:
+        UsageError: A device was chosen that workers do not have.
+        DeviceError: There is no such cluster.
+    """
+    if where is None:
+        yield None
+        return
+    if device not in (Device.CPU, Device.AUTO):
+        raise UsageError(f"workers of a cluster render on their CPU: no --device {device}")
+    from distal.cluster import connected
+
+    with connected(where, timeout=timeout, tell=say) as pool:
+        pool.check()
+        yield pool
 
 
 def check_view(seen: Viewable, view: str) -> None:

@@ -27,6 +27,7 @@ from distal.cli.base import (
     load_picture,
     reporting,
 )
+from distal.cli.mesh import check_lengths
 from distal.cli.messages import say
 
 if TYPE_CHECKING:
@@ -91,9 +92,39 @@ def export(
         bool, typer.Option("--embed", help="A fragment for other pages: the canvas alone.")
     ] = False,
     no_panel: Annotated[bool, typer.Option("--no-panel", help="A page without controls.")] = False,
+    poster: Annotated[
+        str | None,
+        typer.Option(
+            help="Of a page: the still picture before the first frame: webp, triangles (smaller, "
+            "sharp at any size, needs WebGL 2) or none.",
+            show_default="webp",
+        ),
+    ] = None,
     no_poster: Annotated[
-        bool, typer.Option("--no-poster", help="A page without a still picture.")
+        bool, typer.Option("--no-poster", help="A page without a still picture: --poster none.")
     ] = False,
+    printable: Annotated[
+        bool, typer.Option("--printable", help="A page that saves the part as 3MF and STL.")
+    ] = False,
+    inspect: Annotated[
+        bool,
+        typer.Option("--inspect", help="A page that cuts the scene open and measures distances."),
+    ] = False,
+    unit: Annotated[
+        str | None,
+        typer.Option(
+            help="Of these two pages: the length of one scene unit: um, mm, cm, m, inch or ft.",
+            show_default="mm",
+        ),
+    ] = None,
+    tolerance: Annotated[
+        float | None,
+        typer.Option(
+            metavar="LENGTH",
+            help="Of a printable page: how far the part may be from the surface, in scene units.",
+            show_default="0.002 of the largest side",
+        ),
+    ] = None,
 ) -> None:
     """Write a scene as a page that shows it, or as a shader for another program."""
     flags: dict[str, tuple[str, Any]] = {
@@ -105,19 +136,57 @@ def export(
         "--views": ("views", None if views is None else _views(views)),
         "--embed": ("embed", embed or None),
         "--no-panel": ("panel", False if no_panel else None),
+        "--poster": ("poster", poster),
         "--no-poster": ("poster", False if no_poster else None),
+        "--printable": ("printable", printable or None),
+        "--inspect": ("inspect", inspect or None),
+        "--unit": ("unit", unit),
+        "--tolerance": ("tolerance", tolerance),
     }
     given = {flag: entry for flag, entry in flags.items() if entry[1] is not None}
     # The names in ``flags`` are fields of PageOptions, which checks the values.
     options: ExportOptions = {"view": view or "color", "time": read_time(at)}
     options.update(cast("ExportOptions", dict(given.values())))
+    if poster is not None:
+        _check_poster(poster, is_left_out=no_poster)
     if scene.endswith(".md"):
         return _write_lesson(scene, output, target, [*given, *(["--set"] if assignments else [])])
-    _check(scene, output, target, {flag: name for flag, (name, _) in given.items()})
+    flags_of = {flag: name for flag, (name, _) in given.items()}
+    _check(scene, output, target, flags_of, is_without_poster=no_poster or poster == "none")
+    for flag in ("--printable", "--inspect"):
+        if flag in given:
+            _check_panel(flag, list(given))
+    if unit is not None and not (printable or inspect):
+        raise UsageError("--unit is for --printable and --inspect")
+    if printable:
+        check_lengths(tolerance=tolerance)
+    elif tolerance is not None:
+        raise UsageError("--tolerance is for --printable")
     _write(scene, output, target, assignments or [], look, options)
 
 
-def _check(scene: str, output: Path, target: str | None, given: Mapping[str, str]) -> None:
+def _check_poster(poster: str, *, is_left_out: bool) -> None:
+    """Check the kind of a page's poster.
+
+    Raises:
+        UsageError: There is none, or it is left out.
+    """
+    from distal.export.page_options import NO_POSTER, POSTERS
+
+    if poster not in POSTERS:
+        raise UsageError(f"--poster is one of {', '.join(POSTERS)}, not '{poster:.40}'")
+    if is_left_out and poster != NO_POSTER:
+        raise UsageError(f"--poster {poster} and --no-poster exclude each other")
+
+
+def _check(
+    scene: str,
+    output: Path,
+    target: str | None,
+    given: Mapping[str, str],
+    *,
+    is_without_poster: bool,
+) -> None:
     """Check that the options are valid together, before time is spent on the work.
 
     Args:
@@ -125,6 +194,7 @@ def _check(scene: str, output: Path, target: str | None, given: Mapping[str, str
         output: The file to write.
         target: The output format if the suffix does not determine it.
         given: The flags for pages that were given, and the names of their options.
+        is_without_poster: Whether no picture is rendered.
 
     Raises:
         UsageError: They are not.
@@ -142,8 +212,19 @@ def _check(scene: str, output: Path, target: str | None, given: Mapping[str, str
     if output.resolve() == Path(read_scene(scene)[0]).resolve():
         raise UsageError(f"'{output}' is the scene itself")
     check_destination(output)
-    if name == "html" and "--no-poster" not in given:
+    if name == "html" and not is_without_poster:
         check_processor()
+
+
+def _check_panel(wanted: str, given: list[str]) -> None:
+    """Check that a page has the panel that the buttons of an option stand in.
+
+    Raises:
+        UsageError: It has none.
+    """
+    for flag in ("--embed", "--no-panel"):
+        if flag in given:
+            raise UsageError(f"{wanted} has its buttons in the panel, which {flag} leaves out")
 
 
 def _write_lesson(scene: str, output: Path, target: str | None, given: list[str]) -> None:
@@ -175,6 +256,10 @@ def _write(
     from distal.scene.viewing.viewable import viewable
 
     obj, values = load_picture(scene, assignments)
+    if options.get("printable"):
+        from distal.export.printing import check_solid
+
+        check_solid(obj)
     try:
         seen = viewable(obj, values, options["time"], look).in_mode(
             options.get("mode"), caustics=options.get("caustics")
@@ -189,6 +274,8 @@ def _write(
     made = write(seen, output, target=target, **options)
     for view, reason in made.omitted.items():
         say(f"warning: the view '{view}' is left out: {reason}")
+    for part in made.unprinted:
+        say(f"{part} has no end and is left out of the saved part")
     say(made)
 
 

@@ -38,6 +38,14 @@ ToleranceOption = Annotated[
         show_default="0.002 of the largest side",
     ),
 ]
+FeatureOption = Annotated[
+    float | None,
+    typer.Option(
+        metavar="LENGTH",
+        help="The diameter of the smallest parts and gaps that must be found.",
+        show_default=False,
+    ),
+]
 
 
 @application.command()
@@ -51,14 +59,7 @@ def mesh(
         ),
     ],
     tolerance: ToleranceOption = None,
-    feature: Annotated[
-        float | None,
-        typer.Option(
-            metavar="LENGTH",
-            help="The diameter of the smallest parts and gaps that must be found.",
-            show_default=False,
-        ),
-    ] = None,
+    feature: FeatureOption = None,
     unit: Annotated[
         str, typer.Option(help="The length of one scene unit: um, mm, cm, m, inch or ft.")
     ] = "mm",

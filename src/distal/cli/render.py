@@ -15,10 +15,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from distal.cli.arguments import UsageError, read_plane, read_size, read_steering, read_time
+from distal.cli.arguments import (
+    UsageError,
+    read_plane,
+    read_scene,
+    read_size,
+    read_steering,
+    read_time,
+)
 from distal.cli.base import (
     AdapterOption,
     CausticsOption,
+    ClusterOption,
     Device,
     DeviceOption,
     LookOption,
@@ -31,13 +39,16 @@ from distal.cli.base import (
     SteeringOption,
     ThreadsOption,
     TimeOption,
+    TimeoutOption,
     application,
     check_view,
     chosen_device,
+    cluster_of,
     load_picture,
     reporting,
 )
 from distal.lang.progress_lines import COMPILING, LOADING
+from distal.loading import EXAMPLE_PREFIX
 
 if TYPE_CHECKING:
     from distal.images.picture import Picture
@@ -132,16 +143,30 @@ class ViewArguments:
                 raise UsageError(f"{option} is for scenes and shapes; '{name}' is an @image")
 
 
+def picture_beside(scene: str) -> Path:
+    """Return the picture's file for a scene: named like it, in the current folder.
+
+    Args:
+        scene: FILE[:NAME] or example:NAME[:NAME].
+    """
+    path, name = read_scene(scene)
+    stem = Path(path.removeprefix(EXAMPLE_PREFIX)).stem
+    return Path(f"{stem}.png" if name is None else f"{stem}_{name}.png")
+
+
 @application.command()
 @reporting
 def render(
     scene: SceneArgument,
     output: Annotated[
-        Path,
+        Path | None,
         typer.Option(
-            "-o", "--output", help="The picture's file: .png or .exr.", show_default=False
+            "-o",
+            "--output",
+            help="The picture's file: .png, .jpg or .exr. Without it: the scene's name with .png.",
+            show_default=False,
         ),
-    ],
+    ] = None,
     size: SizeOption = "640x480",
     at: TimeOption = "0",
     assignments: SetOption = None,
@@ -218,7 +243,7 @@ def render(
     steering: SteeringOption = None,
     bits: Annotated[
         int | None,
-        typer.Option(help="Of each channel: 8 or 16 of a PNG; 16 or 32 of an EXR."),
+        typer.Option(help="Of each channel: 8 or 16 of a PNG; 8 of a JPEG; 16 or 32 of an EXR."),
     ] = None,
     layers: Annotated[
         str | None,
@@ -232,6 +257,8 @@ def render(
     device: DeviceOption = Device.CPU,
     adapter: AdapterOption = None,
     threads: ThreadsOption = None,
+    cluster: ClusterOption = None,
+    task_timeout: TimeoutOption = 600.0,
     shown_progress: ProgressOption = ProgressKind.BAR,
     stats: Annotated[
         bool, typer.Option("--stats", help="Print one line of JSON with the figures.")
@@ -246,7 +273,10 @@ def render(
     from distal.scene.viewing.viewable import viewable
 
     width_height, seconds = read_size(size, LARGEST_SIDE_PX), read_time(at)
+    output = output or picture_beside(scene)
     suffix, _ = check_savable(output, bits)
+    if transparent and suffix == ".jpg":
+        raise UsageError("a JPEG has no transparency: -o FILE.png")
     film = output.with_name(output.name + ".film")
     progress = picture_progress(shown_progress)
     preview = PreviewFile(output, bits, film, progress)
@@ -266,7 +296,7 @@ def render(
     wanted = read_layers(layers, suffix, seen, arguments)
     check_shown(seen, arguments, wanted)
     loaded = time.perf_counter()
-    with progress, preview:
+    with cluster_of(cluster, device_name, task_timeout) as pool, progress, preview:
         options = RenderOptions(
             size=width_height,
             time=seconds,
@@ -275,6 +305,7 @@ def render(
             threads=threads,
             samples=samples,
             progress=progress,
+            cluster=pool,
         )
         picture = rendered_picture(seen, arguments, wanted, options)
     rendered = time.perf_counter()

@@ -14,6 +14,7 @@ import typer
 from distal.cli.arguments import UsageError, read_size, read_steering
 from distal.cli.base import (
     AdapterOption,
+    ClusterOption,
     Device,
     DeviceOption,
     ModeOption,
@@ -25,8 +26,10 @@ from distal.cli.base import (
     SizeOption,
     SteeringOption,
     ThreadsOption,
+    TimeoutOption,
     application,
     chosen_device,
+    cluster_of,
     load_picture,
     reporting,
 )
@@ -84,6 +87,8 @@ def video(
     device: DeviceOption = Device.CPU,
     adapter: AdapterOption = None,
     threads: ThreadsOption = None,
+    cluster: ClusterOption = None,
+    task_timeout: TimeoutOption = 600.0,
     keep_frames: Annotated[
         Path | None,
         typer.Option(metavar="DIR", help="Write every frame there as PNG besides."),
@@ -110,7 +115,7 @@ def video(
     bar.stage(LOADING)
     obj, values = load_picture(scene, assignments)
     bar.stage(COMPILING)
-    with bar:
+    with cluster_of(cluster, device_name, task_timeout) as pool, bar:
         try:
             made = record(
                 obj,
@@ -133,6 +138,7 @@ def video(
                 fresh=fresh,
                 progress=bar,
                 tell=bar.say,
+                cluster=pool,
             )
         except VideoError as error:
             raise UsageError(str(error)) from None

@@ -28,6 +28,7 @@ from distal.cli.base import (
     load_picture,
     reporting,
 )
+from distal.lang.units import UNITS
 
 
 @application.command()
@@ -50,12 +51,18 @@ def view(
     look: LookOption = None,
     mode: ModeOption = None,
     caustics: CausticsOption = True,
+    unit: Annotated[
+        str,
+        typer.Option(help="The length of one scene unit, for the ruler: um, mm, cm, m, inch, ft."),
+    ] = "mm",
 ) -> None:
     """Show a scene in a window, and reload it whenever its file is saved. H shows the keys."""
     from distal.lang.render_options import RenderOptions
     from distal.window.opening import view as show
     from distal.window.screen import LARGEST_SIDE, check_display
 
+    if unit not in UNITS:
+        raise UsageError(f"--unit is one of {', '.join(UNITS)}, not {unit!r:.40}")
     width_height, seconds = read_size(size, LARGEST_SIDE), read_time(at)
     check_display()
     path, name = read_scene(scene)
@@ -78,6 +85,7 @@ def view(
             look=look,
             mode=mode,
             caustics=caustics,
+            unit=unit,
         )
     except ValueError as error:
         raise UsageError(str(error)) from None

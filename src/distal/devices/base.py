@@ -27,6 +27,18 @@ class Cancelled(Exception):  # noqa: N818 (nothing went wrong)
     """``cancel`` stopped the work; there is no result."""
 
 
+class PartError(DeviceError):
+    """One part of the work failed, such as a frame of a film; the others can be finished.
+
+    Attributes:
+        reason: Why, as the rest of a sentence that begins with the part.
+        shared: Whether parts that were rendered at the same time may be the reason.
+    """
+
+    reason: str
+    shared: bool
+
+
 class Kernel(Protocol):
     """A compiled module.
 

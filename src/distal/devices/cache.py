@@ -30,6 +30,9 @@ except ImportError:  # Windows, where kernels are not stored (no O_NOFOLLOW)
 FOLDER_VARIABLE: Final = "DISTAL_CACHE_DIR"
 OFF: Final = "off"
 SIZE_LIMIT: Final = 256 * 2**20  # bytes; above it, the least recently used kernels are removed
+# A process reads the sizes of all kernels at its first store, and again after it has stored this
+# share of the limit. Among 3,000 kernels, reading them takes twenty times as long as storing one.
+_SHARE_BETWEEN_SCANS: Final = 1 / 16
 _SUFFIX: Final = ".kernel"
 _TEMPORARY: Final = re.compile(r"\.new-[A-Za-z0-9_]{8,16}\Z")
 # Age at which a temporary file counts as left by a killed writer. Writing takes milliseconds; a
@@ -39,6 +42,7 @@ _MAGIC: Final = b"distal kernel 2\n"
 _DIGEST = 32
 
 _warned: set[Path] = set()
+_stored_since_scan: dict[Path, int] = {}  # bytes, by folder
 
 
 def default_folder() -> Path | None:
@@ -67,7 +71,7 @@ class Cache:
 
     Attributes:
         folder: The folder; None stores nothing.
-        limit: The maximum size, in bytes.
+        limit: The maximum size, in bytes; each process may pass it by ``_SHARE_BETWEEN_SCANS``.
     """
 
     def __init__(self, folder: Path | None, limit: int = SIZE_LIMIT) -> None:
@@ -108,13 +112,24 @@ class Cache:
         with self._opened() as folder:
             if folder is None:
                 return False
-            self._drop_leftovers(folder)
+            is_due = self._scan_is_due(len(data))
+            if is_due:
+                self._drop_leftovers(folder)
             try:
                 _replace(folder, key + _SUFFIX, data)
             except OSError:
                 return False
-            self._shrink(folder)
+            if is_due:
+                self._shrink(folder)
         return True
+
+    def _scan_is_due(self, size: int) -> bool:
+        """Return whether to read the whole folder at a store of so many bytes, and count them."""
+        assert self.folder is not None
+        total = _stored_since_scan.get(self.folder, self.limit) + size
+        is_due = total > self.limit * _SHARE_BETWEEN_SCANS
+        _stored_since_scan[self.folder] = 0 if is_due else total
+        return is_due
 
     def discard(self, key: str) -> None:
         """Remove the bytes stored under a key."""

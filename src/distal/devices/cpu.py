@@ -47,6 +47,8 @@ from distal.ir.types import Buffer, Texture, Type
 
 RunPasses = Callable[[Module, Target, int], Module]
 
+# Parts of a picture begin at multiples of so many rows.
+ROWS: Final = TILE_HEIGHT
 _LARGEST_SIDE: Final = 32768  # pixels; a picture's size in bytes fits 64 bits on all systems
 
 
@@ -156,15 +158,53 @@ class CpuKernel:
         cancel: Cancel | None = None,
     ) -> NDArray[np.float32]:
         """Render a picture; arguments as for ``Kernel.render``."""
+        return self.render_rows(
+            (width, height),
+            (0, height),
+            uniforms,
+            resources,
+            threads=threads,
+            progress=progress,
+            cancel=cancel,
+        )
+
+    def render_rows(
+        self,
+        size: tuple[int, int],
+        rows: tuple[int, int],
+        uniforms: Mapping[str, Any],
+        resources: Mapping[str, Any],
+        *,
+        threads: int | None = None,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> NDArray[np.float32]:
+        """Render some rows of a picture, with the same bits as in the whole picture.
+
+        Args:
+            size: Width and height of the whole picture in pixels.
+            rows: The first row, a multiple of ``ROWS``, and the row after the last one, another
+                multiple or the height.
+            uniforms: As for ``Kernel.render``.
+            resources: As for ``Kernel.render``.
+            threads: As for ``Kernel.render``.
+            progress: As for ``Kernel.render``.
+            cancel: As for ``Kernel.render``.
+        """
         assert self._image, "a function has no picture"
+        (width, height), (top, bottom) = size, rows
         if not (0 < width <= _LARGEST_SIDE and 0 < height <= _LARGEST_SIDE):
             raise ValueError(f"a picture is 1x1 to {_LARGEST_SIDE}x{_LARGEST_SIDE} pixels")
-        picture = PICTURES.take((height, width, 4))
-        across, down = -(-width // TILE_WIDTH), -(-height // TILE_HEIGHT)
+        assert top % ROWS == 0 and (bottom % ROWS == 0 or bottom == height)
+        picture = PICTURES.take((bottom - top, width, 4))
+        across = -(-width // TILE_WIDTH)
+        first, end = across * (top // TILE_HEIGHT), across * -(-bottom // TILE_HEIGHT)
         job = _KernelCall(self, uniforms, resources, picture)
-        job.set(output=picture.ctypes.data, width=width, height=height)
-        job.set(tiles_across=across, tiles=across * down)
-        self._run(job, across * down, threads, progress, cancel)
+        job.counter[0] = first
+        # The kernel writes where the rows would be in the whole picture.
+        job.set(output=picture.ctypes.data - top * width * 16, width=width, height=height)
+        job.set(tiles_across=across, tiles=end)
+        self._run(job, end, threads, progress, cancel)
         return picture
 
     def evaluate(

@@ -16,8 +16,22 @@ from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError, printable
 from distal.ir.types import Buffer, Kind, Texture, TextureShape, component_count, kind_of
+from distal.lang.resources import AXES
 
 _COMPONENT: dict[Kind, Any] = {Kind.FLOAT: np.float32, Kind.INT: np.int32, Kind.UINT: np.uint32}
+
+
+class LoadedData:
+    """The array of a resource that another process has loaded.
+
+    Attributes:
+        data: The array, as ``load`` returns it.
+    """
+
+    __slots__ = ("data",)
+
+    def __init__(self, data: NDArray[Any]) -> None:
+        self.data = data
 
 
 def load(source: Any, type: Texture | Buffer) -> NDArray[Any]:
@@ -26,13 +40,20 @@ def load(source: Any, type: Texture | Buffer) -> NDArray[Any]:
     Raises:
         LoadError: A file cannot be read, or the data does not have the shape of such a resource.
     """
+    if isinstance(source, LoadedData):
+        return source.data
     if isinstance(type, Buffer):
         return _buffer(source.data, type)
-    return texels(source.data, type.shape)
+    return texels(source.data, type.shape, getattr(source, "axes", AXES))
 
 
-def texels(data: Any, shape: TextureShape) -> NDArray[np.float32]:
+def texels(data: Any, shape: TextureShape, axes: str = AXES) -> NDArray[np.float32]:
     """Return the texels of a texture; texel (0, 0) of a picture is at its lower left.
+
+    Args:
+        data: The path of a file, an array, or nested lists.
+        shape: The kind of texture.
+        axes: What the axes of a volume are, from the outermost to the innermost.
 
     Raises:
         LoadError: A file cannot be read, or the data does not have the shape of such a texture.
@@ -41,7 +62,9 @@ def texels(data: Any, shape: TextureShape) -> NDArray[np.float32]:
         case TextureShape.FLAT:
             return np.ascontiguousarray(_picture(data)[::-1])
         case TextureShape.VOLUME:
-            return _with_channels(_numbers(data), 3)
+            found = _with_channels(_numbers(data), 3)
+            order = [axes.index(axis) for axis in AXES]
+            return np.ascontiguousarray(found.transpose(*order, 3))
         case TextureShape.CUBE:
             # A cube's faces are seen from inside, top row first, as in OpenGL.
             faces = [_picture(face) for face in _parts(data)]

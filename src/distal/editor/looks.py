@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import Any, Final, Literal, cast
 
@@ -20,6 +21,7 @@ from distal.editor.messages import (
     LookRequest,
     Mistake,
     NumbersFound,
+    Printed,
     Progress,
     SceneFound,
     ShapePlace,
@@ -36,6 +38,7 @@ from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.parameters import Parameter, slider
+from distal.load_watch import LoadWatch
 from distal.loading import LoadedFile, load_text
 from distal.runtime.standard_executor import reads_time
 from distal.scene.viewing.viewable import COLOR, Viewable, view_label, viewable
@@ -53,7 +56,9 @@ class Looks:
         tell: Sends a message before the answer.
     """
 
-    def __init__(self, folder: Path, tell: Callable[[Progress], None] = lambda _: None) -> None:
+    def __init__(
+        self, folder: Path, tell: Callable[[Progress | Printed], None] = lambda _: None
+    ) -> None:
         self._folder, self._tell = folder, tell
         self._written: dict[str, str] = {}
         self._programs = KeptPrograms()
@@ -76,12 +81,24 @@ class Looks:
             CompileError: A file is not Python, or the scene has mistakes.
         """
         self._put(files, request.main)
-        loaded = load_text(self._folder / request.main, files[request.main], request.object, given)
+        file = self._folder / request.main
+        with LoadWatch(file, lambda found: self._hangs(request, found)):
+            loaded = load_text(file, files[request.main], request.object, given)
         obj = loaded.picture
         # From here on no code of the author runs, except functions that compute numbers.
         self._tell(Progress(id=request.id, revision=request.revision, done=0.0, label="compiling"))
         seen = viewable(obj, self._values_of(obj, request), request.time, request.look)
         return loaded, seen.in_mode(request.mode)
+
+    def _hangs(self, request: SourceRequest, found: Diagnostic) -> None:
+        """Tell where the author's code is; whoever started the worker may end it."""
+        place, span = "", found.span
+        if span is not None:
+            span = replace(span, file=Path(span.file).name)
+            place = f"line {span.line} of {span.file}: {span.text.strip():.80}"
+        text = replace(found, span=span, hint=None).text("warning")
+        number: dict[str, Any] = {"id": request.id, "revision": request.revision}
+        self._tell(Printed(**number, text=f"{text}\n", hangs=place))
 
     @staticmethod
     def _values_of(obj: Any, request: SourceRequest) -> dict[str, Any]:
@@ -207,8 +224,8 @@ class Looks:
                 return self._programs.of(module, key), module
             return self._programs.compiled(image)
 
-        # Those of the picture: a view may read fewer, and no time.
-        if request.view == COLOR:
+        # Those of the picture: a view may read fewer, and no time; its buffers may read more.
+        if request.view == COLOR and not seen.keeps_frames:
             facts = Facts(_parameters_of(module), reads_time(module))
         else:
             facts = Facts(seen.parameters, seen.animated)
@@ -284,7 +301,7 @@ def mistakes_of(error: Exception, files: Mapping[str, str]) -> tuple[Mistake, ..
     if isinstance(error, CompileError):
         return tuple(mistake_at(d, files) for d in error.diagnostics)
     if isinstance(error, LoadError):
-        return (mistake_at(Diagnostic(error.reason, error.span), files),)
+        return (mistake_at(Diagnostic(error.reason, error.span, error.hint), files),)
     return (Mistake(severity="error", message=str(error)),)
 
 

@@ -16,12 +16,14 @@ class Exported:
         parts: The sizes of its parts in bytes, by name.
         beside: Further files that were written.
         omitted: Views that the target cannot show, and why.
+        unprinted: Of a printable page: what has no end and is not saved, in words.
     """
 
     path: Path
     parts: Mapping[str, int]
     beside: tuple[Path, ...] = ()
     omitted: Mapping[str, str] = field(default_factory=dict)
+    unprinted: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         """Return one line: the file, its size, and the sizes of its parts in kB."""

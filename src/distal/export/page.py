@@ -17,22 +17,29 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from distal.diagnostics import CompileError
 from distal.export.exported import Exported
-from distal.export.page_options import PageOptions
-from distal.export.payload import payload
+from distal.export.page_options import NO_POSTER, TRIANGLE_POSTER, WEBP, PageOptions
+from distal.export.payload import PagePrograms, payload, view_names
 from distal.images.atomic_files import replacement
 from distal.lang.lazy_module import LazyModule
 from distal.scene.viewing.viewable import Viewable
 from distal.version import __version__
 
 if TYPE_CHECKING:
-    from distal.export import poster
+    from distal.export import inspecting, poster, printing
 else:
+    inspecting = LazyModule("distal.export.inspecting")  # most pages do not need it
+    printing = LazyModule("distal.export.printing")  # needs NumPy
     poster = LazyModule("distal.export.poster")  # needs NumPy and Pillow
 
 PLAYER: Final = Path(__file__).with_name("player.js")
 # The same player, which also traces paths: 4 kB that other pages do not need.
 PATH_PLAYER: Final = Path(__file__).with_name("path_player.js")
+# The same player for pictures that read earlier frames, the keyboard, the date: 7 kB more.
+FRAME_PLAYER: Final = Path(__file__).with_name("frame_player.js")
+# Draws a poster of triangles. It runs before the player, so it is seen while shaders compile.
+TRIANGLES: Final = Path(__file__).with_name("triangle_poster.js")
 # In a page that resets all styles, the text of scripts would be visible without this.
 _UNSEEN: Final = ' style="display:none"'
 # A module, to keep its names out of the page. The script that it inserts must be invisible too.
@@ -55,7 +62,7 @@ _STYLE: Final = (
     "body{background:light-dark(#f4f4f2,#151517);color:light-dark(#222,#ddd);"
     "font:14px/1.5 system-ui,sans-serif}"
     ".distal{display:block;position:relative;height:100vh;height:100dvh}"
-    ".distal>img{display:block;width:100%;height:100%;object-fit:contain}"
+    ".distal>:is(img,canvas){display:block;width:100%;height:100%;object-fit:contain}"
     "noscript{position:absolute;inset:auto 0 0;padding:.6em;text-align:center;background:Canvas}"
 )
 # A circle with a ring around it, so that no browser requests /favicon.ico.
@@ -82,11 +89,15 @@ def write(seen: Viewable, path: Path, options: PageOptions) -> Exported:
     for name in (options.view, *(options.views or ())):
         seen.image(name)  # raises if there is no such view
     seen = seen.in_mode(options.mode, caustics=options.caustics)
-    shown = poster.poster(seen, options) if options.poster else b""
-    made = page(seen, options, shown)
+    if options.printable:
+        printing.printed_node(seen, options)  # raises before time is spent on the poster
+    if options.inspect:
+        inspecting.check_inspected(seen, options)
+    shown = poster.poster(seen, options) if options.poster != NO_POSTER else b""
+    made = page(seen, options, shown, str(options.poster))
     with replacement(path) as file:
         file.write(made.text.encode("utf-8"))
-    return Exported(path, made.parts, (), made.omitted)
+    return Exported(path, made.parts, (), made.omitted, made.unprinted)
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,40 +108,63 @@ class Page:
         text: The HTML.
         parts: Characters by the name of the part.
         omitted: Views that WebGL 2 cannot show, and why.
+        unprinted: What has no end and is not saved by the page, in words.
     """
 
     text: str
     parts: dict[str, int]
     omitted: dict[str, str]
+    unprinted: tuple[str, ...] = ()
 
 
-def page(seen: Viewable, options: PageOptions, shown: bytes, media_type: str = "webp") -> Page:
+def page(seen: Viewable, options: PageOptions, shown: bytes, media_type: str = WEBP) -> Page:
     """Return a page. Needs the standard library alone, if the scene has no textures.
 
     Args:
         seen: The object to show, in its mode.
         options: The options of the page.
         shown: The picture before the first frame; empty for none.
-        media_type: The format of that picture: "webp", "png" ...
+        media_type: The format of that picture: "webp", "png" ... or "triangles".
 
     Raises:
         CompileError: WebGL 2 cannot show the first view.
         ValueError: There is no such view or parameter, or a value is out of range.
     """
-    player = player_script(player_of(seen))
+    script = inspecting.SCRIPT if options.inspect else player_of(seen)
+    behind = printing.SCRIPT if options.printable else None
+    alone = player = player_script(script, behind)
+    if shown and media_type == TRIANGLE_POSTER:
+        player = player_script(script, behind, TRIANGLES)
     omitted: dict[str, str] = {}
-    content = payload(
-        seen, options, lambda name, error: omitted.update({name: error.diagnostics[0].message})
-    )
+    unprinted: tuple[str, ...] = ()
+    if options.printable:
+        node, endless = printing.printed_node(seen, options)
+        unprinted = tuple(endless)
+    if options.inspect:
+        inspecting.check_inspected(seen, options)
+
+    def omit(name: str, error: CompileError) -> None:
+        omitted[name] = error.diagnostics[0].message
+
+    def more(programs: PagePrograms, name: str) -> dict[str, Any]:
+        found: dict[str, Any] = {}
+        if options.printable:
+            found["printing"] = printing.printing(node, name, programs, options)
+        if options.inspect:
+            views = [v for v in view_names(seen, options) if v not in omitted]
+            found["inspect"] = inspecting.inspecting(seen, views, programs, options, omit)
+        return found
+
+    content = payload(seen, options, omit, more=more)
     held = stage(content, shown, media_type)
     text = _fragment(held, player) if options.embed else _document(held, content, player)
     parts = {
-        "player": len(player.text),
+        "player": len(alone.text),
         "shaders": len(json.dumps(content["programs"])),
         "textures": len(json.dumps(content["resources"])) if content["resources"] else 0,
-        "poster": len(base64.b64encode(shown)),
+        "poster": len(base64.b64encode(shown)) + len(player.text) - len(alone.text),
     }
-    return Page(text, parts, omitted)
+    return Page(text, parts, omitted, unprinted)
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,16 +182,26 @@ class PlayerScript:
 
 def player_of(seen: Viewable) -> Path:
     """Return the file of the player for an object."""
-    return PATH_PLAYER if seen.mode == "path" else PLAYER
+    if seen.mode == "path":
+        return PATH_PLAYER
+    return FRAME_PLAYER if seen.keeps_frames else PLAYER
 
 
 @cache
-def player_script(file: Path = PLAYER) -> PlayerScript:
+def player_script(
+    file: Path = PLAYER, behind: Path | None = None, before: Path | None = None
+) -> PlayerScript:
     """Return the compressed player: a page of 60 kB becomes one of 36 kB.
 
     Decompression needs no newer browser than the player itself.
+
+    Args:
+        file: The player's script.
+        behind: A script that stands behind it.
+        before: A script that runs before it.
     """
-    player = file.read_text(encoding="utf-8").strip()
+    files = [each for each in (before, file, behind) if each is not None]
+    player = "\n".join(each.read_text(encoding="utf-8").strip() for each in files)
     press = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS, 9)
     packed = press.compress(player.encode("utf-8")) + press.flush()
     text = _UNPACK % (base64.b64encode(packed).decode("ascii"), TOO_OLD)
@@ -182,7 +226,7 @@ def escaped(text: str) -> str:
     return html.escape(text.encode("utf-8", "replace").decode("utf-8"), quote=True)
 
 
-def stage(content: Mapping[str, Any], poster: bytes, media_type: str = "webp") -> str:
+def stage(content: Mapping[str, Any], poster: bytes, media_type: str = WEBP) -> str:
     """Return the element in which the player draws, and its data.
 
     Args:
@@ -196,10 +240,18 @@ def stage(content: Mapping[str, Any], poster: bytes, media_type: str = "webp") -
     if poster:
         encoded = base64.b64encode(poster).decode("ascii")
         fill = ' style="display:block;width:100%;height:100%;object-fit:contain"'
-        shown = (
-            f'<img src="data:image/{media_type};base64,{encoded}" width="{width}" height="{height}"'
-            f' alt="{description}"{fill if content["embed"] else ""}>'
-        )
+        style = fill if content["embed"] else ""
+        extent = f'width="{width}" height="{height}"'
+        if media_type == TRIANGLE_POSTER:
+            shown = (
+                f'<canvas data-triangles="{encoded}" {extent} role="img"'
+                f' aria-label="{description}"{style}></canvas>'
+            )
+        else:
+            shown = (
+                f'<img src="data:image/{media_type};base64,{encoded}" {extent}'
+                f' alt="{description}"{style}>'
+            )
     own = unseen = ""
     if content["embed"]:
         unseen = _UNSEEN

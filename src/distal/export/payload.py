@@ -23,6 +23,7 @@ from distal.backends.base import Artifact
 from distal.compiler.driver import run_passes
 from distal.diagnostics import CompileError
 from distal.export.page_options import PageOptions
+from distal.export.pasted_code import code_around
 from distal.export.tables import plain_resource, table
 from distal.frontend import lower
 from distal.ir.nodes import Module
@@ -31,7 +32,9 @@ from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
 from distal.lang.lazy_module import LazyModule
+from distal.lang.live_textures import ImageInput, SoundFile, keyboard, microphone
 from distal.lang.parameters import Parameter
+from distal.lang.runtime_access import executor
 from distal.passes.entry import FRAME_OFFSET
 from distal.render import photons
 from distal.render.live_film import FILM
@@ -79,6 +82,8 @@ def payload(
     packed: bool = True,
     facts: Facts | None = None,
     guided: bool = True,
+    variable: str | None = None,
+    more: Callable[[PagePrograms, str], dict[str, Any]] | None = None,
 ) -> dict[str, Any]:
     """Return all data that the player needs.
 
@@ -86,21 +91,20 @@ def payload(
         seen: The object to show.
         options: The options of the page.
         omit: Called with the name and error of each view that WebGL 2 cannot show.
+        variable: The variable that holds the object in a notebook; None if that is not known.
         compile: Compiles each program; None: ``compiled``.
         packed: Whether to compress the programs.
         facts: What is known of the object; None: what ``seen`` finds out.
         guided: Whether the camera's guide is among the programs.
+        more: Adds programs; returns further entries. It gets the programs and the page's name.
 
     Raises:
         CompileError: WebGL 2 cannot show the first view.
         ValueError: There is no such view or parameter, or a value is out of range.
     """
     programs = PagePrograms(seen, compile)
-    names = list(dict.fromkeys(options.views or seen.views))
-    if options.view not in names:
-        names.insert(0, options.view)
     shown = []
-    for name in names:
+    for name in view_names(seen, options):
         try:
             number = programs.add(name)
         except CompileError as error:
@@ -114,10 +118,15 @@ def payload(
             shown[-1]["film"] = programs.add_film(*seen.film)
     name = options.title or name_of(seen)
     facts = facts or Facts(seen.parameters, seen.animated)
+    further = {} if more is None else more(programs, name)
+    if seen.keeps_frames:
+        further = {**further, "frames": programs.add_frames()}
     return {
+        **further,
         "format": FORMAT,
         "distal": __version__,
         "name": name,
+        "code": code_around(seen, options.size, variable),
         "description": description_of(seen, name),
         "size": list(options.size),
         "embed": options.embed,
@@ -137,6 +146,12 @@ def payload(
         "programs": _packed(programs.made) if packed else _plain_programs(programs.made),
         "resources": programs.resources,
     }
+
+
+def view_names(seen: Viewable, options: PageOptions) -> list[str]:
+    """Return the names of the views that a page is asked to have."""
+    names = list(dict.fromkeys(options.views or seen.views))
+    return names if options.view in names else [options.view, *names]
 
 
 def _steering(seen: Viewable, programs: PagePrograms, *, guided: bool) -> dict[str, Any] | None:
@@ -262,6 +277,8 @@ class PagePrograms:
         self.files: list[str] = []
         self.resources: dict[str, Any] = {}
         self._names: dict[tuple[int, str], str] = {}  # resource -> its name in all programs
+        self._image_inputs: list[dict[str, str]] = []
+        self._sounds: dict[SoundFile, str] = {}
 
     def add(self, view: str) -> int:
         """Add the program of a view and return its index.
@@ -273,9 +290,7 @@ class PagePrograms:
         scene = self._seen.steers
         # Of a scene, the player takes several samples where the picture rests.
         sampled = self._seen.is_sampled(view)
-        return self._added_program(
-            self._seen.image(view, steered=scene, encoded=True, sampled=sampled)
-        )
+        return self.add_image(self._seen.image(view, steered=scene, encoded=True, sampled=sampled))
 
     def add_film(self, added: Composed, shown: Composed) -> dict[str, Any]:
         """Add the programs of a picture by paths; return their indices and the film's name.
@@ -287,38 +302,67 @@ class PagePrograms:
         Raises:
             CompileError: WebGL 2 cannot run them.
         """
-        trace, show = (self._added_program(image) for image in (added, shown))
+        trace, show = (self.add_image(image) for image in (added, shown))
         name = self._resource("Film", FILM, TEXTURE_2D)
         made: dict[str, Any] = {"trace": trace, "show": show, "name": name}
         if added.photons is not None:
             made["photons"] = self._photons(added.photons)
         return made
 
+    def add_frames(self) -> dict[str, Any]:
+        """Add the programs that each frame draws before the picture; return their indices."""
+        image = self._seen.image(COLOR, encoded=True)
+        read = executor().parts(image).read
+        passes = [self._frame_pass(buffer) for buffer in read.buffers]
+        itself = None if read.itself is None else self._frame_pass(read.itself)
+        return {
+            "passes": passes,
+            "itself": itself,
+            "keyboard": self._found_name(keyboard),
+            "microphone": self._found_name(microphone),
+            "sounds": [resources.sound(name, source) for source, name in self._sounds.items()],
+            "images": self._image_inputs,
+        }
+
+    def _frame_pass(self, image: Image) -> dict[str, Any]:
+        number = self.add_image(image)
+        name = self._resource(image.name, image.last_frame, TEXTURE_2D)
+        return {"program": number, "name": name}
+
+    def _found_name(self, source: Any) -> str | None:
+        """Return the name of a resource; None if no program reads it."""
+        return next((name for (key, _), name in self._names.items() if key == id(source)), None)
+
     def _photons(self, programs: tuple[Composed, Composed]) -> dict[str, Any]:
         """Add the programs of photons; return their indices, tables and numbers."""
-        plan, deposits = (self._added_program(image) for image in programs)
+        plan, deposits = (self.add_image(image) for image in programs)
         tables = (photons.PLACES, photons.ARRIVALS, photons.STARTS)
         return {
             "plan": plan,
             "deposits": deposits,
-            "tables": [self._named(table) for table in tables],
+            "tables": [self.name_of(table) for table in tables],
             "of_sample": photons.OF_A_SAMPLE,
             "fewest": photons.FEWEST,
             "most": photons.MOST_OF_A_PAGE,
         }
 
-    def _named(self, source: Any) -> str:
+    def name_of(self, source: Any) -> str:
         """Return the name of a resource that a program already reads."""
         return next(name for (key, _), name in self._names.items() if key == id(source))
 
     def add_guide(self, guide: Guide) -> int:
         """Add the program that guides the camera; -1 if WebGL 2 cannot run it."""
         try:
-            return self._added_program(guide.image)
+            return self.add_image(guide.image)
         except CompileError:
             return -1
 
-    def _added_program(self, image: Func | Composed) -> int:
+    def add_image(self, image: Func | Composed) -> int:
+        """Add the program of an image and return its index.
+
+        Raises:
+            CompileError: WebGL 2 cannot run it.
+        """
         artifact, module = self._compile(image)
         program = self.program(artifact, module)
         if program not in self.made:
@@ -356,6 +400,10 @@ class PagePrograms:
         """Return a resource's name in the payload; equal names in two views may differ there."""
         key = (id(source), str(type))
         if key not in self._names:
+            if isinstance(source, SoundFile):
+                self._sounds[source] = name
+            if isinstance(source, ImageInput):
+                self._image_inputs.append({"name": name, "wrap": source.wrap})
             assert isinstance(type, Texture | Buffer)
             made = plain_resource(source, type) or resources.resource(source, type)
             self._names[key] = self._added(name, made)

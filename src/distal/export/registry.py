@@ -20,9 +20,11 @@ from distal.lang.presentable import ExportOptions
 from distal.scene.viewing.viewable import viewable
 
 if TYPE_CHECKING:
-    from distal.export import page, texts
+    from distal.export import page, printing, shadertoy, texts
 else:
+    printing = LazyModule("distal.export.printing")  # needs NumPy
     page = LazyModule("distal.export.page")
+    shadertoy = LazyModule("distal.export.shadertoy")
     texts = LazyModule("distal.export.texts")
 
 
@@ -82,9 +84,13 @@ def export(
         raise TypeError(f"'{unknown[0]}' is no option of {name}; options: {known}")
     check_destination(destination)
     chosen = PageOptions(**options)
+    if chosen.printable:
+        printing.check_solid(obj)
     seen = viewable(obj, chosen.params, chosen.time)
     if name == "html":
         return page.write(seen, destination, chosen)
+    if name == shadertoy.TARGET and shadertoy.has_passes(seen, chosen):
+        return shadertoy.write(seen, destination, chosen)
     return texts.write(seen, destination, name, chosen)
 
 

@@ -7,6 +7,8 @@ format that shows the same picture. Does not depend on pages or programs.
 from __future__ import annotations
 
 import base64
+import zlib
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -14,6 +16,8 @@ from numpy.typing import NDArray
 
 from distal.devices.resources import load
 from distal.ir.types import Buffer, Texture, TextureShape
+from distal.lang.live_textures import SoundFile
+from distal.sounds.analysis import table_of
 
 LEVELS: Final = 256
 
@@ -26,6 +30,22 @@ def resource(source: Any, type: Texture | Buffer) -> dict[str, Any]:
     """
     data = load(source, type)
     return _buffer(data) if isinstance(type, Buffer) else _texture(data, type)
+
+
+def sound(name: str, source: SoundFile) -> dict[str, Any]:
+    """Return the payload entry of a sound file: its texels at each time, and the file.
+
+    Raises:
+        LoadError: The file cannot be read.
+    """
+    packer = zlib.compressobj(9, zlib.DEFLATED, -15)
+    rows = packer.compress(table_of(source).tobytes()) + packer.flush()
+    return {
+        "name": name,
+        "loop": source.loop,
+        "rows": base64.b64encode(rows).decode("ascii"),
+        "file": base64.b64encode(Path(source.path).read_bytes()).decode("ascii"),
+    }
 
 
 def _buffer(data: NDArray[Any]) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from distal.ir.types import INT, UINT, Buffer, Texture
+from distal.lang.live_textures import LiveTexture
 from distal.lang.values import VectorValue
 from distal.render.live_film import FILM
 
@@ -40,7 +41,7 @@ def plain_resource(source: Any, type: Texture | Buffer) -> dict[str, Any] | None
     Returns:
         The entry; None for all that needs NumPy: files, arrays, pictures, numbers out of range.
     """
-    if source is FILM:
+    if source is FILM or isinstance(source, LiveTexture):
         texel = base64.b64encode(bytes(4)).decode("ascii")
         entry = {"type": str(type), "size": [1, 1], "components": 4, "format": "rgba8"}
         return {**entry, "data": texel}

@@ -123,7 +123,7 @@ def text(seen: Viewable, target: str, options: TextOptions) -> Artifact:
     description = TEXT_TARGETS[target]
     text_of = image.text() if isinstance(image, Composed) else image
     module = lower(text_of, table_from=TEXT_TABLE_FROM if description.buffers else None)
-    artifact = emit(run_passes(_set(module, values), description), description)
+    artifact = emit(run_passes(with_values(module, values), description), description)
     name = seen.file.name if seen.file is not None else ""
     return replace(artifact, text=with_header(artifact, target, name))
 
@@ -159,7 +159,7 @@ def write_files(
     return tuple(files)
 
 
-def _set(module: Module, values: Mapping[str, Any]) -> Module:
+def with_values(module: Module, values: Mapping[str, Any]) -> Module:
     """Return the module with these values as the defaults of its parameters."""
     uniforms = tuple(
         replace(u, default=values[u.name])

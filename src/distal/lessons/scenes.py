@@ -94,10 +94,14 @@ def _scene(lesson: Lesson, name: str, line: int) -> Viewable:
         # As the author would write it, so that messages name it so.
         path = str(lesson.file.parent / path)
     try:
-        return viewable(load(path, wanted), None, lesson.head.time)
+        seen = viewable(load(path, wanted), None, lesson.head.time)
     except LoadError as error:
         hint = "name a .py file in the lesson's folder, or example:NAME"
         raise _fail(lesson, line, str(error), hint) from error
+    if seen.keeps_frames:
+        message = f"'{name}' reads earlier frames or keys, which a lesson's picture has not"
+        raise _fail(lesson, line, message, "show it on a page: distal export FILE -o page.html")
+    return seen
 
 
 def _view(lesson: Lesson, seen: Viewable, name: str, line: int) -> str:

@@ -8,6 +8,7 @@ the browser draws.
 from __future__ import annotations
 
 import inspect
+import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Unpack
@@ -15,6 +16,7 @@ from typing import Any, Unpack
 import anywidget
 import traitlets
 
+from distal.diagnostics import CompileError, LoadError, printable_lines
 from distal.export.page import PLAYER, player_of
 from distal.export.page_options import PageOptions
 from distal.export.payload import payload
@@ -90,7 +92,10 @@ class LiveView(anywidget.AnyWidget):
             raise ValueError(f"there is no view '{view}'; views: {', '.join(self._seen.views)}")
         values = self._checked(params)
         # The widget's own trait, not the payload, determines the initial view.
-        made = payload(self._seen, PageOptions(size=size, params=values, time=time, panel=panel))
+        variable = variable_of(obj)
+        title = None if variable in (None, "scene", "_") else variable.replace("_", " ")
+        options = PageOptions(size=size, params=values, time=time, panel=panel, title=title)
+        made = payload(self._seen, options, variable=variable)
         # Without views that WebGL cannot show.
         self._views = [shown["name"] for shown in made["views"]]
         if (player := player_of(self._seen)) != PLAYER:
@@ -123,7 +128,7 @@ class LiveView(anywidget.AnyWidget):
         progress: Progress | None = None,
         cancel: Cancel | None = None,
         mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
-        index: int = 0,
+        index: int | None = None,
         seed: int = 0,
         samples: int | None = None,
         time_limit: float | None = None,
@@ -138,7 +143,7 @@ class LiveView(anywidget.AnyWidget):
             progress: Called with the finished fraction.
             cancel: Stops the rendering early.
             mouse: The frame's mouse.
-            index: The number of the frame.
+            index: The number of the frame; None: as for ``Image.render``.
             seed: The seed of random numbers.
             samples: Samples in each pixel.
             time_limit: In mode "path": seconds after which no more samples are begun.
@@ -188,6 +193,29 @@ class LiveView(anywidget.AnyWidget):
     @traitlets.validate("steering")
     def _check_steering(self, proposal: Any) -> dict[str, Any]:
         return _as_dict(_as_steering(proposal["value"]))
+
+
+def variable_of(obj: object) -> str | None:
+    """Return the notebook's variable that holds an object; None if there is none."""
+    ipython = sys.modules.get("IPython")
+    shell = None if ipython is None else ipython.get_ipython()
+    names = {} if shell is None else dict(shell.user_ns)
+    return next((n for n, v in names.items() if v is obj and not n.startswith("_")), None)
+
+
+def bundle_of(obj: Any) -> Any:
+    """Return what a cell that ends with an object shows: it is live, or a text says why not.
+
+    In a terminal nothing is compiled: there its text is shown.
+    """
+    ipython = sys.modules.get("IPython")
+    shell = None if ipython is None else ipython.get_ipython()
+    if shell is not None and not hasattr(shell, "kernel"):
+        return None
+    try:
+        return LiveView(obj)._repr_mimebundle_()
+    except (CompileError, LoadError, ValueError, TypeError) as error:
+        return {"text/plain": printable_lines(f"{obj!r}\n{error}")}
 
 
 def _as_steering(value: Mapping[str, Any] | Steering) -> Steering:

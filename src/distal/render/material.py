@@ -34,6 +34,8 @@ class Surface:
             the weights divide the rest.
         dispersion: How much the index depends on the wavelength: 20 divided by Abbe's number (crown
             glass 0.3, flint 0.6, diamond 0.36), 0 for not at all. Only paths show it.
+        height: How high the surface seems to be, in scene units, where a bump is painted on it.
+        tilt: The gradient of the height in the scene's space, which ``bump`` turns the normal by.
     """
 
     color: vec3 = WHITE
@@ -47,6 +49,8 @@ class Surface:
     absorption: vec3 = BLACK
     fresnel: float = 0.0
     dispersion: float = 0.0
+    height: float = 0.0
+    tilt: vec3 = BLACK
 
 
 @material("matte")
@@ -163,6 +167,8 @@ def mix_surfaces(a: Surface, b: Surface, t: float) -> Surface:
         absorption=mix(a.absorption, b.absorption, t),
         fresnel=mix(a.fresnel, b.fresnel, t),
         dispersion=mix(a.dispersion, b.dispersion, t),
+        height=mix(a.height, b.height, t),
+        tilt=mix(a.tilt, b.tilt, t),
     )
 
 
@@ -181,6 +187,8 @@ def choose_surface(a: Surface, b: Surface, is_second: bool) -> Surface:
         absorption=b.absorption if is_second else a.absorption,
         fresnel=b.fresnel if is_second else a.fresnel,
         dispersion=b.dispersion if is_second else a.dispersion,
+        height=b.height if is_second else a.height,
+        tilt=b.tilt if is_second else a.tilt,
     )
 
 

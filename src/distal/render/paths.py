@@ -21,6 +21,7 @@ from typing import Final
 from distal.fields.guarantees import UNBOUNDED, Bounds
 from distal.lang import (
     abs,
+    dot,
     exp,
     func,
     max,
@@ -235,7 +236,7 @@ def path_light(
         if bodies > 1 and not met.is_boundary:
             start = straight_on(vertex, here.direction)
             continue
-        meeting = meet(material, -here.direction, vertex.n, met.inside)
+        meeting = meet(material, -here.direction, vertex.shown, met.inside)
         # From where a path meets glass with dispersion its light has one wavelength.
         if material.dispersion > 0.0 and not is_tinted:
             throughput = throughput * color_of(wavelength)
@@ -255,6 +256,9 @@ def path_light(
             color += throughput * select(left, vec3(0.0), direct.color)
             lost = merged(lost, select(direct.lost, SHADOWS, 0))
         onward = sample_from(meeting, triple(stream, decision + DIRECTION))
+        # Light that a bump's normal mirrors into the surface is lost, and likewise.
+        if dot(onward.direction, vertex.shown) * dot(onward.direction, vertex.n) < 0.0:
+            break
         throughput = throughput * onward.weight
         likely = 1.0
         if i >= SURE:

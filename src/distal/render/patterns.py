@@ -13,6 +13,7 @@ from distal.fields.noise.lattice import fraction, lattice_hash, next_octave
 from distal.fields.noise.space import gradient_noise
 from distal.lang import (
     Texture2D,
+    Texture3D,
     TextureCube,
     abs,
     atan2,
@@ -33,6 +34,7 @@ from distal.lang import (
     vec2,
     vec3,
 )
+from distal.lang.srgb import decode_srgb
 from distal.render.averages import noise_fade, ramp_mean, square_mean, wave_fade
 from distal.render.declarations import ExtraParameter, pattern
 from distal.render.footprint import POINT, TAPS, Footprint, extent, tap
@@ -375,6 +377,19 @@ def cube_map(p: vec3, image: TextureCube, footprint: Footprint = POINT) -> vec3:
     for i in range(TAPS):
         total += sample(image, p + tap(footprint, i)).rgb
     return total / float(TAPS)
+
+
+@func
+def volume_colors(p: vec3, colors: Texture3D, middle: vec3, size: vec3) -> vec3:
+    """Colors from a volume, as they are displayed: those of a mesh.
+
+    Args:
+        p: Point.
+        colors: The colors, at the centres of equal cells.
+        middle: The middle of the volume.
+        size: Its size.
+    """
+    return decode_srgb(sample(colors, (p - middle) / size + 0.5).rgb)
 
 
 @pattern("waves", extras=_sides(), requires=_has_layers)

@@ -338,13 +338,15 @@ def deposit(
         if bodies > 1 and not met.is_boundary:
             start = straight_on(vertex, here.direction)
             continue
-        meeting = meet(material, -here.direction, vertex.n, met.inside)
+        meeting = meet(material, -here.direction, vertex.shown, met.inside)
         if material.dispersion > 0.0 and not is_tinted:
             power = power * color_of(wavelength)
             is_tinted = True
         decision = TARGET_DECISIONS + DECISIONS * i
         onward = sample_from(meeting, triple(stream, decision + DIRECTION))
         ending = single(stream, decision + ENDING)
+        if dot(onward.direction, vertex.shown) * dot(onward.direction, vertex.n) < 0.0:
+            break
         if not bundles(material):
             # It ends where a path would scatter, and goes on where a path would be mirrored.
             mirror = meeting.lobes.mirror_specular

@@ -26,6 +26,7 @@ from distal.lang import (
     struct,
     vec3,
 )
+from distal.render.bump import bumped_normal
 from distal.render.camera import Ray
 from distal.render.footprint import Cone, Footprint, footprint_at
 from distal.render.heightfield_march import ENOUGH, Stride, march_heightfield
@@ -304,6 +305,7 @@ def surface_point(
         n = facing_normal(field, ray, hit, numbers, normals, normal_step)
         slope = abs(field(p + step * n) - field(p - step * n)) / (2.0 * step)
     material = surface(p, footprint_at(cone, ray.direction, hit.t, n), hit.part)
+    n = bumped_normal(n, hit.side * material.tilt, -ray.direction)
     return SurfacePoint(
         hit.t, inside, p, n, material, shares(material, -dot(n, ray.direction), inside), slope
     )

@@ -15,6 +15,7 @@ from distal.lang import (
     struct,
     vec3,
 )
+from distal.render.bump import bumped_normal
 from distal.render.camera import Ray
 from distal.render.footprint import (
     Cone,
@@ -37,6 +38,7 @@ class Vertex:
         t: How far the path came on its last ray.
         p: The place.
         n: The unit normal on the side that the path came from.
+        shown: The normal that shading uses: ``n``, turned by a bump.
         slope: |gradient| of the field.
         part: The part that has the surface (``Hit.part``).
         within: The bodies in which the path came.
@@ -46,6 +48,7 @@ class Vertex:
     t: float
     p: vec3
     n: vec3
+    shown: vec3
     slope: float
     part: int
     within: int
@@ -94,7 +97,8 @@ def vertex_at(
     footprint = footprint_at(cone, ray.direction, place.t, n)
     own = surface(place.p, footprint, hit.part)
     met = interface_at(own, place.p, footprint, hit, within, surface, bodies, common, wavelength)
-    return Vertex(place.t, place.p, n, place.slope, hit.part, within, met)
+    shown = bumped_normal(n, hit.side * own.tilt, -ray.direction)
+    return Vertex(place.t, place.p, n, shown, place.slope, hit.part, within, met)
 
 
 @struct

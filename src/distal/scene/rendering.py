@@ -19,6 +19,7 @@ from distal.scene.checks.warnings import (
     shows,
     warn_of_black,
     warn_of_camera,
+    warn_of_darkness,
     warn_of_functions,
     warn_of_lost_rays,
 )
@@ -51,6 +52,7 @@ def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Pic
     sliced, moved = view.slice_settings, view.steering_settings
     check_slopes(scene.shape, options.params, options.time)
     warn_of_functions(scene.shape, options.params, options.time)
+    warn_of_darkness(scene)
     refinement = view.refinement(scene.mode, options.samples, scene.shutter)
     computed = [name for name in view.layers if name not in OF_SAMPLES]
     shares = _shares(options.progress, 1 + len(computed))
@@ -92,6 +94,7 @@ def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Pic
         paths={} if refinement is None else view.recorded,
         transparent=view.transparent,
         plane=tuple(sliced.values()) or None,
+        section=None if view.section is None else view.section.numbers,
         steering=None if view.steering is None else view.steering.numbers,
         stage=scene.staged,
         layers=view.layers,

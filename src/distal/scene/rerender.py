@@ -15,13 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LONGEST_MESSAGE, LoadError, printable
-from distal.images import exr, png
+from distal.images import exr, jpeg, png
+from distal.images.atomic_files import SaveError
 from distal.images.metadata import Provenance, ReadError
 from distal.images.picture import Picture
 from distal.images.picture_files import Record, read
 from distal.lang.render_options import Cancel, Progress, RenderOptions
 from distal.loading import EXAMPLE_PREFIX, SceneCode, digest_of, load, split_source
 from distal.scene.rendering import render_scene
+from distal.scene.section import CutPlane
 from distal.scene.steering import Steering
 from distal.scene.view_options import RECORDED, ViewOptions
 from distal.scene.viewing.viewable import viewable
@@ -116,6 +118,13 @@ def plan_rerender(path: Path, *, source: str | None = None, force: bool = False)
     if record.version != __version__:
         version = printable(record.version, _LONGEST_PART)
         notes.append(f"{path} was made by distal {version}, this is {__version__}")
+    if origin.live:
+        notes.append(
+            f"{path} was drawn frame by frame by hand, of which it does not tell: its earlier "
+            "frames are computed with its last keys, mouse and parameters"
+        )
+    if origin.ruler is not None:
+        notes.append(f"the ruler that is drawn over {path} is not rendered again")
     return RerenderPlan(path, record, file, name, source or origin.source, tuple(notes))
 
 
@@ -158,6 +167,10 @@ def rerender(
             progress=progress,
             cancel=cancel,
             mouse=origin.mouse,
+            buttons=origin.buttons,
+            keys=origin.keys,
+            delta=origin.delta,
+            date=origin.date,
             index=origin.index,
             seed=origin.seed,
             samples=origin.samples if samples is None else samples,
@@ -177,11 +190,15 @@ def _rendered(obj: SceneCode, origin: Provenance, options: RenderOptions) -> Pic
     if origin.steering is not None:
         yaw, pitch, zoom, *pan = origin.steering
         moved = Steering(yaw, pitch, zoom, (pan[0], pan[1]))
+    section = None
+    if origin.section is not None:
+        section, scene = CutPlane.of(origin.section), scene.sectioned
     view = ViewOptions(
         mode=origin.mode if origin.view == "color" else None,
         view=origin.view,
         transparent=origin.transparent,
         steering=moved,
+        section=section,
         layers=origin.layers,
         **_recorded(origin),
     )
@@ -236,9 +253,14 @@ def _channels(plan: RerenderPlan, picture: Picture) -> Iterator[tuple[NDArray[An
             now = png.decode(png.encode(picture.array, {}, bits)) / most
             yield from ((then[..., i], now[..., i]) for i in range(4))
             return
+        if plan.record.format == "jpg":
+            then = jpeg.decode(stored) / 255.0
+            now = jpeg.decode(jpeg.encode(picture.array, {})) / 255.0
+            yield from ((then[..., i], now[..., i]) for i in range(3))
+            return
         held = exr.decode(stored)
         made = exr.decode(exr.encode(picture.linear, picture.layers, {}, bits))
-    except (OSError, ReadError) as error:
+    except (OSError, ReadError, SaveError) as error:
         raise ReadError(f"cannot compare {plan.path}: {error}") from None
     if held.keys() != made.keys():
         raise ReadError(f"cannot compare {plan.path}: it was rewritten with other channels")

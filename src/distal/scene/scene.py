@@ -34,6 +34,8 @@ from distal.scene.lowering.layers import Layer, PathLayer
 from distal.scene.lowering.photon_functions import casts_caustics
 from distal.scene.lowering.photons import scene_photons
 from distal.scene.lowering.picture import NORMALS, RANGED, SceneLowering
+from distal.scene.lowering.section import sectioned
+from distal.scene.objects.field import BaseShape
 from distal.scene.scene_arguments import (
     checked_exposure,
     checked_glow,
@@ -43,15 +45,19 @@ from distal.scene.scene_arguments import (
     whole,
 )
 from distal.scene.steering import Steering
+from distal.scene.tree.shown_numbers import placed
 from distal.scene.tree.source_places import author_place
 from distal.scene.view_options import MODES, ViewOptions
 
 if TYPE_CHECKING:
+    from distributed import Client
+
+    from distal.cluster.pool import WorkerPool
     from distal.images.picture import Picture
     from distal.mesh.scene_parts import SceneParts
     from distal.scene import rendering
     from distal.scene.looks.look import Look
-    from distal.scene.objects.argument_types import Color, Number, Varying
+    from distal.scene.objects.argument_types import Color, Number, ParameterValues, Varying, Vector
     from distal.scene.objects.backgrounds import Background, Surroundings
     from distal.scene.objects.cameras import BaseCamera
     from distal.scene.objects.lights import Light
@@ -231,7 +237,7 @@ class Scene(Composed, Presentable):
 
     @classmethod
     def of_shape(
-        cls, shape: Shape, params: Mapping[str, Any], time: float, look: str | None = None
+        cls, shape: Shape, params: ParameterValues, time: float, look: str | None = None
     ) -> Scene:
         """Return ``Scene(shape)``, framed for other values of the shape's parameters.
 
@@ -266,6 +272,12 @@ class Scene(Composed, Presentable):
             raise AttributeError("a scene does not change; make another: Scene(shape, …)")
         object.__setattr__(self, name, value)
 
+    def __repr__(self) -> str:
+        parts, lights = self.shape.node.parts, len(self.lights)
+        made = f"{parts} part{'s' * (parts != 1)}, {lights} light{'s' * (lights != 1)}"
+        place = "" if self.place is None else f", {placed(self.place)}"
+        return f"<Scene '{self.name}': {made}, {type(self.camera).__name__}{place}>"
+
     @cached_property
     def renderer(self) -> str:
         """The name of the cheapest renderer that supports all materials."""
@@ -281,13 +293,13 @@ class Scene(Composed, Presentable):
         self,
         size: tuple[int, int] = (640, 480),
         time: float = 0.0,
-        params: Mapping[str, Any] | None = None,
+        params: ParameterValues | None = None,
         device: str = "cpu",
         threads: int | None = None,
         progress: Progress | None = None,
         cancel: Cancel | None = None,
         mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
-        index: int = 0,
+        index: int | None = None,
         seed: int = 0,
         *,
         samples: int | None = None,
@@ -301,13 +313,14 @@ class Scene(Composed, Presentable):
         shutter: float | None = None,
         clamp: float | None = None,
         denoise: bool = False,
-        preview: Callable[[Picture], Any] | None = None,
+        preview: Callable[[Picture], object] | None = None,
         view: str = "color",
         transparent: bool = False,
-        plane: tuple[Any, float] = ((0.0, 0.0, 1.0), 0.0),
+        plane: tuple[Vector, float] = ((0.0, 0.0, 1.0), 0.0),
         freeze: bool = False,
         steering: Steering | None = None,
         layers: Sequence[str] = (),
+        cluster: Client | WorkerPool | None = None,
     ) -> Picture:
         """Render the picture.
 
@@ -322,7 +335,9 @@ class Scene(Composed, Presentable):
             cancel: An event, or a function without arguments, that ends the work early.
             mouse: ``frame.mouse``: x and y in pixels from the lower left, then the click position
                 as in Shadertoy.
-            index: ``frame.index``, the frame number; wraps at 32 bits.
+            index: ``frame.index``, the frame number; wraps at 32 bits. A picture that reads
+                earlier frames is rendered from frame 0 to this one. None: as many frames as
+                ``time`` has steps of ``delta`` for such a picture, else 0.
             seed: ``frame.seed``, the seed of random numbers; wraps at 32 bits.
             samples: Samples in each pixel, which are averaged. None: one of an ``@image``; one of a
                 scene, and eight more where the pixel differs from its neighbours.
@@ -356,6 +371,8 @@ class Scene(Composed, Presentable):
             steering: How a person has moved the camera; None if it was not moved.
             layers: Layers to compute for ``Picture.layers``: "depth", "normal", "albedo",
                 "material"; in mode "path" also "samples" and "variance".
+            cluster: A ``dask.distributed.Client`` whose workers render it, with the same bits; None
+                renders it in this process. Needs ``distal[cluster]``.
 
         Raises:
             CompileError: The scene has mistakes, or its camera is inside a solid.
@@ -394,6 +411,7 @@ class Scene(Composed, Presentable):
             seed=seed,
             samples=samples,
             freeze=freeze,
+            cluster=cluster,
         )
         return rendering.render_scene(self, shown, options)
 
@@ -509,7 +527,7 @@ class Scene(Composed, Presentable):
         path: str | PathLike[str],
         tolerance: float | None = None,
         feature: float | None = None,
-        params: Mapping[str, Any] | None = None,
+        params: ParameterValues | None = None,
         time: float = 0.0,
         progress: Progress | None = None,
         cancel: Cancel | None = None,
@@ -562,6 +580,23 @@ class Scene(Composed, Presentable):
         given = {"exposure": exposure, "tone_map": tone_map}
         said = {name: value for name, value in given.items() if value is not None}
         made.asked_display = {**self.asked_display, **said}
+        made._pictures = {}
+        made._whole = True
+        copy_loaded_from(self, made)
+        return made
+
+    @cached_property
+    def sectioned(self) -> Scene:
+        """The same scene, with solids that end at the plane of a ``CutPlane``.
+
+        Its programs read the uniforms of ``CutPlane.settings``; camera and light are those of the
+        whole scene.
+        """
+        made = Scene.__new__(Scene)
+        kept = ("_whole", "sectioned", "renderer")
+        made.__dict__.update({n: v for n, v in self.__dict__.items() if n not in kept})
+        made.shape = BaseShape._of(sectioned(self.shape.node))
+        made.display = DisplayEncoding(made)
         made._pictures = {}
         made._whole = True
         copy_loaded_from(self, made)

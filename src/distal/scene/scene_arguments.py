@@ -17,7 +17,7 @@ from distal.scene.objects.cameras import BaseCamera
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.lights import Light
 from distal.scene.tree.arguments import arguments
-from distal.scene.tree.conversion import Asked, choice, number
+from distal.scene.tree.conversion import Asked, number, plain_choice
 from distal.scene.tree.errors import refuse, refuse_kind
 
 _LIMITS: Final = {
@@ -105,7 +105,7 @@ def whole(name: str, value: Any, limit: Limit, place: Span | None) -> int:
         limit: The limit of the count.
         place: The author's line.
     """
-    return choice(value, Asked(name, "Scene", INT, limit, place=place))
+    return plain_choice(value, Asked(name, "Scene", INT, limit, place=place))
 
 
 def one_of(what: str, name: Any, known: Sequence[str], place: Span | None) -> str:

@@ -17,6 +17,7 @@ from distal.ir.types import FLOAT, VEC3
 from distal.lang.render_options import MOST_SAMPLES, PATH_SAMPLES, Refinement, checked_samples
 from distal.render import filters, path_film
 from distal.scene.lowering.layers import OF_SAMPLES, checked_layers
+from distal.scene.section import CutPlane
 from distal.scene.steering import Steering
 from distal.scene.tree.conversion import Asked, number
 from distal.scene.tree.errors import refuse_kind
@@ -62,6 +63,7 @@ class ViewOptions:
         plane: The plane that the view "slice" shows: its normal, of length 1, and its distance from
             the origin along the normal.
         steering: How a person has moved the camera; None if it was not moved.
+        section: The plane of a scene that is cut open (``Scene.sectioned``); None if it is whole.
         layers: Layers to compute for ``Picture.layers``: "depth", "normal", "albedo", "material";
             in mode "path" also "samples" and "variance".
 
@@ -84,6 +86,7 @@ class ViewOptions:
     transparent: bool = False
     plane: tuple[Any, float] = ((0.0, 0.0, 1.0), 0.0)
     steering: Steering | None = None
+    section: CutPlane | None = None
     layers: Sequence[str] = ()
 
     def __post_init__(self) -> None:
@@ -159,8 +162,9 @@ class ViewOptions:
 
     @property
     def steering_settings(self) -> dict[str, Any]:
-        """The uniforms of a steered view; empty if the camera was not moved."""
-        return {} if self.steering is None else self.steering.settings
+        """The uniforms of a steered view and of a section; empty without them."""
+        moved = {} if self.steering is None else self.steering.settings
+        return moved if self.section is None else {**moved, **self.section.settings}
 
     @property
     def slice_settings(self) -> dict[str, Any]:

@@ -14,21 +14,40 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from distal.diagnostics import CompileError, DeviceError, LoadError, printable, printable_lines
+from distal.diagnostics import (
+    CompileError,
+    DeviceError,
+    Diagnostic,
+    LoadError,
+    printable,
+    printable_lines,
+)
 from distal.images.atomic_files import SaveError
+from distal.images.metadata import Ends
 from distal.lang.number_text import shown as number_text
-from distal.loading import EXAMPLE_PREFIX
+from distal.load_watch import LoadWatch
+from distal.loading import EXAMPLE_PREFIX, file_of
+from distal.saved_files import PERIOD_S, FileWatcher
 from distal.scene.steering import STILL
 from distal.scene.viewing import interaction
 from distal.scene.viewing.guide import point_text
 from distal.scene.viewing.viewable import view_label
 from distal.window.frame_renderers import FrameRenderer, RenderedFrame, picture, render_options
 from distal.window.frame_scheduler import FrameRequest, FrameScheduler
-from distal.window.keys import REPEATED, Action, action_of_character, action_of_key
+from distal.window.keys import (
+    BUTTON_BITS,
+    REPEATED,
+    Action,
+    action_of_character,
+    action_of_key,
+    code_of_key,
+)
 from distal.window.log import Log
 from distal.window.overlay import Overlay
 from distal.window.overlay_content import OverlayContent, overlay_content
-from distal.window.reload import PERIOD_S, FileWatcher, ReloadedScene, files_in, load_again
+from distal.window.panels import Panel, blended, clipped
+from distal.window.reload import ReloadedScene, files_in, load_again
+from distal.window.ruler_panels import ruler_panels
 from distal.window.screen import copy_text, set_full_screen
 from distal.window.screenshots import free_name
 from distal.window.session import Session
@@ -91,7 +110,8 @@ class Application:
         self._scheduler = FrameScheduler(renderer, self._worker, self._finished, self._failed)
         self._overlay = Overlay()
         self._watch = FileWatcher(source.files)
-        self._has_begun = self._is_loading = False
+        self._has_begun = False
+        self._loading: LoadWatch | None = None  # the file that is being loaded
         self._busy_since: float | None = None
         self._trouble_of_file = self._trouble_of_frame = ""
         self._last_report = ""
@@ -101,6 +121,7 @@ class Application:
         self._wake_at: float | None = None
         self._held: Action | None = None
         self._full_screen_from: tuple[int, ...] | None = None
+        session.ruler.compile_aside(lambda: loop.call_soon_threadsafe(self.wake))
         self._listen()
 
     # The loop
@@ -165,7 +186,11 @@ class Application:
         if shown is not None:
             is_final = self._scheduler.is_final(shown)
             facts = {**_facts(shown), "is_final": is_final}
-            self._log("drawn", size=size, shown=facts, trouble=self._trouble)
+            ruler, hint = self._shown_content.ruler, self._session.ruler.hint
+            lines = [] if ruler is None else list(ruler.lines)
+            self._log(
+                "drawn", size=size, shown=facts, trouble=self._trouble, ruler=lines, hint=hint
+            )
 
     # Frames
 
@@ -177,6 +202,8 @@ class Application:
             self._surface.show(made)
             if request.shot.mouse == self._session.mouse:
                 self._session.frame_begun()
+            if self._session.playing and request.shot.keys is self._session.keys:
+                self._session.keys = self._session.keys.settled()
             self._log("frame", **_facts(request), ms=made.seconds * 1000)
             self._canvas.request_draw()
         self.wake()
@@ -248,6 +275,9 @@ class Application:
             elif shown.shot.mode == "path":
                 words.append("direct light")
         words.append(self._scheduler.renderer.device)
+        section = session.section(now)
+        if section is not None:
+            words.append(session.plane.text(section))
         place = session.camera.known_place(session.moment(now))
         if place is not None and session.steering != STILL and not session.playing:
             words.append(f"camera {point_text(place.position, place)}")
@@ -279,22 +309,52 @@ class Application:
     def _look_at_files(self) -> None:
         if self._canvas.get_closed():
             return
-        if not self._is_loading and self._watch.has_changed():
+        overdue = self._loading is not None and self._loading.is_overdue
+        if (overdue or not self._is_loading) and self._watch.has_changed():
+            if overdue:
+                self._end_loading()
             self._load()
         self._loop.call_later(PERIOD_S, self._look_at_files)
 
+    @property
+    def _is_loading(self) -> bool:
+        return self._loading is not None
+
     def _load(self) -> None:
-        self._is_loading = True
         source, session = self._source, self._session
         shot, renderer = session.shot(time.monotonic()), self._scheduler.renderer
+        post = self._loop.call_soon_threadsafe
+        watch = LoadWatch(
+            file_of(source.path), lambda found: post(lambda: self._hangs(watch, found))
+        )
+        self._loading = watch
 
         def job(_: object) -> ReloadedScene:
             return load_again(
-                source.path, source.name, shot, renderer, source.look, source.caustics
+                source.path, source.name, shot, renderer, watch, source.look, source.caustics
             )
 
+        # A frame of what the file was before may never end either.
+        self._worker.cancel()
         self._submit(job, self._loaded)
         self.wake()
+
+    def _hangs(self, watch: LoadWatch, found: Diagnostic) -> None:
+        """Show where the scene's file is after some seconds; the picture before it stays."""
+        if watch is self._loading:
+            text = printable_lines(found.text("warning"))
+            self._trouble_of_file = text
+            print(text, file=sys.stderr, flush=True)
+            self._log("hangs", text=text)
+            self._canvas.request_draw()
+            self.wake()
+
+    def _end_loading(self) -> None:
+        """Give up a file that does not end; the thread that runs it is left alone if it must be."""
+        assert self._loading is not None
+        self._loading.interrupt()
+        self._loading = None
+        self._worker.abandon()
 
     def _submit(self, job: Job, done: Done) -> None:
         """Run a job, which does not wait for the refinement of a still."""
@@ -302,7 +362,7 @@ class Application:
         self._scheduler.postpone_refinement()
 
     def _loaded(self, result: ReloadedScene | BaseException) -> None:
-        self._is_loading = False
+        self._loading = None
         if isinstance(result, BaseException):
             self._trouble_of_file = self._report(result)
             self._watch.watch([*self._source.files, *files_in(result, self._source.files[0])])
@@ -339,15 +399,32 @@ class Application:
     def _key_down(self, event: dict[str, Any]) -> None:
         shift = "Shift" in event["modifiers"]
         modified = shift or "Control" in event["modifiers"]
+        if self._takes_key(event, down=True):
+            return
         action = action_of_key(event["key"], modified=modified)
         if action is None:
             return
+        if action is Action.QUIT and self._session.ruler.is_on:
+            action = Action.RULER  # Esc removes the ruler first
         self._act(action, shift=shift)
         if action in REPEATED:
             self._held = action
             self._loop.call_later(_REPEAT_AFTER_S, self._repeat, action, shift)
 
+    def _takes_key(self, event: dict[str, Any], *, down: bool) -> bool:
+        """Give a key to a picture that reads the keyboard; return whether it is taken."""
+        if not self._session.viewable.reads_keyboard:
+            return False
+        modified = not {"Control", "Alt", "Meta"}.isdisjoint(event["modifiers"])
+        code = code_of_key(event["key"], modified=modified)
+        if code is not None:
+            self._session.key_changed(code, down=down)
+            self.wake()
+        return code is not None
+
     def _key_up(self, event: dict[str, Any]) -> None:
+        if self._takes_key(event, down=False):
+            return
         if action_of_key(event["key"]) is self._held:
             self._held = None
 
@@ -357,6 +434,8 @@ class Application:
             self._loop.call_later(_REPEAT_S, self._repeat, action, shift)
 
     def _typed(self, event: dict[str, Any]) -> None:
+        if self._session.viewable.reads_keyboard:
+            return
         action = action_of_character(event["data"])
         if action is not None:
             self._act(action)
@@ -372,12 +451,17 @@ class Application:
         elif action is Action.FULL_SCREEN:
             self._toggle_full_screen()
         else:
+            refusal = self._session.refusal(action)
+            if refusal:
+                self._notify(refusal)
+                self._log("refused", text=refusal)
             self._session.act(action, time.monotonic(), shift=shift)
         self.wake()
 
     def _pressed(self, event: dict[str, Any]) -> None:
         shift = "Shift" in event["modifiers"]
         x, y, button = event["x"], event["y"], event["button"]
+        self._session.buttons |= BUTTON_BITS.get(button, 0)
         self._session.press(x, y, button, time.monotonic(), shift=shift)
         self.wake()
 
@@ -386,6 +470,7 @@ class Application:
         self.wake()
 
     def _released(self, event: dict[str, Any]) -> None:
+        self._session.buttons &= ~BUTTON_BITS.get(event.get("button", 1), 0)
         self._session.release(time.monotonic())
         self.wake()
 
@@ -406,25 +491,40 @@ class Application:
         renderer, title, film = self._scheduler.renderer, self._source.title, self._scheduler.film
         samples = renderer.samples[-1] if viewable.is_sampled(shot.view) else 1
         options = render_options(shot, size, renderer.device, samples=samples)
+        panels, ends = self._ruler_of_picture(size)
+        options = renderer.history.added(viewable, options)
 
         def job(_: object) -> Path:
             path = free_name(Path.cwd(), title, shot)
             if shot.mode == "path":
-                film.picture(viewable, shot, size).save(path)
+                made = film.picture(viewable, shot, size)
             else:
-                picture(viewable.in_mode("direct"), shot, options).save(path)
+                made = picture(viewable.in_mode("direct"), shot, options)
+            if ends:
+                made = replace(made, array=blended(made.array, panels), light=None)
+            made.with_provenance(ruler=ends).save(path)
             return path
 
         def done(result: Path | BaseException) -> None:
             if isinstance(result, BaseException):
                 self._notify(self._report(result).splitlines()[0])
             else:
-                self._notify(f"saved {result.name}")
+                self._notify(f"saved {result.name}{', with the ruler' if ends else ''}")
                 print(printable_lines(f"saved {result}"), file=sys.stderr, flush=True)
                 self._log("saved", path=str(result))
             self.wake()
 
         self._submit(job, done)
+
+    def _ruler_of_picture(self, size: tuple[int, int]) -> tuple[list[Panel], Ends | None]:
+        """Return the panels of the ruler on a picture of this size, and the ends to record."""
+        session = self._session
+        shown = overlay_content(session, time.monotonic()).ruler
+        if shown is None or not shown.lines:
+            return [], None
+        panels = ruler_panels(shown, size, size[1] / max(session.size[1], 1.0))
+        start, end = (end.point for end in session.ruler.ends)
+        return [clipped(panel, size) for panel in panels], (start, end)
 
     def _copy_camera(self) -> None:
         """Copy the camera as Python to the clipboard."""
@@ -441,6 +541,7 @@ class Application:
 def _facts(request: FrameRequest) -> dict[str, Any]:
     shot, steering = request.shot, request.shot.steering
     return {
+        "section": None if shot.section is None else shot.section.settings,
         "time": shot.time,
         "view": shot.view,
         "parameters": dict(shot.parameters),

@@ -106,10 +106,13 @@ class FilmRenderer:
     def _passes(
         self, viewable: Viewable, shot: Shot, size: tuple[int, int], cancel: threading.Event
     ) -> Passes:
+        viewable = viewable.shown_with(shot.section)
         assert viewable.scene is not None
         steering = STILL if shot.steering is None else shot.steering
         options = render_options(shot, size, self.device)
-        options = replace(options, cancel=cancel, settings=viewable.settings(steering))
+        options = replace(
+            options, cancel=cancel, settings=viewable.settings(steering, shot.section)
+        )
         image = viewable.scene.view(shot.view, steered=True, paths=True, caustics=viewable.caustics)
         return executor().passes(image, options)
 

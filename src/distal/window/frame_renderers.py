@@ -9,6 +9,7 @@ from __future__ import annotations
 import threading
 import time
 from dataclasses import dataclass, replace
+from datetime import datetime
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
@@ -20,6 +21,7 @@ from distal.lang.render_options import RenderOptions
 from distal.lang.runtime_access import executor
 from distal.render.film import SAMPLES
 from distal.runtime.executor import DrawTarget
+from distal.runtime.frame_history import LiveFrames
 from distal.scene.view_ranges import with_range
 from distal.window.session import Shot
 
@@ -58,11 +60,13 @@ class FrameRenderer(Protocol):
 
     Attributes:
         device: Its name, as for ``render``.
+        history: The frames that it has shown of a picture that reads earlier ones.
         samples: The samples in a pixel of the first frame of a still, and of the finer ones that
             follow it where a view has several samples (``Viewable.is_sampled``); None: adaptive.
     """
 
     device: str
+    history: LiveHistory
     samples: tuple[int | None, ...]
 
     def prepare(self, viewable: Viewable, shot: Shot) -> None:
@@ -111,9 +115,39 @@ def render_options(
         params=dict(shot.parameters),
         mouse=shot.mouse.pixels(size),
         index=shot.index,
+        keys=shot.keys,
+        buttons=shot.buttons,
         samples=samples,
         device=device,
     )
+
+
+class LiveHistory:
+    """The frames that a window has shown of one object."""
+
+    def __init__(self) -> None:
+        self._viewable: Viewable | None = None
+        self._frames = LiveFrames()
+
+    def added(self, viewable: Viewable, options: RenderOptions) -> RenderOptions:
+        """Return the options with the frames that an object reads; unchanged for most objects."""
+        if not viewable.keeps_frames:
+            return options
+        if self._viewable is not viewable:
+            self._viewable, self._frames = viewable, LiveFrames()
+        return replace(options, history=self._frames, date=_date())
+
+
+def first_frame(viewable: Viewable, options: RenderOptions) -> RenderOptions:
+    """Return the options for compiling, which draw no earlier frames."""
+    return replace(options, index=0) if viewable.keeps_frames else options
+
+
+def _date() -> tuple[float, float, float, float]:
+    """Return ``frame.date``."""
+    now = datetime.now()
+    midnight = now.replace(hour=0, minute=0, second=0, microsecond=0)
+    return (float(now.year), now.month - 1.0, float(now.day), (now - midnight).total_seconds())
 
 
 def picture(viewable: Viewable, shot: Shot, options: RenderOptions) -> Picture:
@@ -124,7 +158,7 @@ def picture(viewable: Viewable, shot: Shot, options: RenderOptions) -> Picture:
         shot: Time, parameters, view and camera.
         options: The options for rendering, of ``render_options``.
     """
-    return viewable.render(options, view=shot.view, steering=shot.steering)
+    return viewable.render(options, view=shot.view, steering=shot.steering, section=shot.section)
 
 
 class PixelRenderer:
@@ -134,11 +168,13 @@ class PixelRenderer:
 
     def __init__(self, device: str) -> None:
         self.device = device
+        self.history = LiveHistory()
 
     def prepare(self, viewable: Viewable, shot: Shot) -> None:
         """Compile what a shot needs."""
         direct = viewable.in_mode("direct")
-        picture(direct, shot, render_options(shot, _SMALLEST, self.device))
+        options = render_options(shot, _SMALLEST, self.device)
+        picture(direct, shot, first_frame(viewable, options))
 
     def render(
         self,
@@ -170,6 +206,7 @@ class PixelRenderer:
         options = render_options(shot, size, self.device, samples=samples)
         try:
             options = replace(options, cancel=cancel, progress=progress)
+            options = self.history.added(viewable, options)
             made = picture(viewable.in_mode("direct"), shot, options)
         except Cancelled:
             return RenderedFrame(seconds=time.perf_counter() - begin, share=min(done, 0.999))
@@ -198,18 +235,20 @@ class TextureRenderer:
         self.device = device
         self._gpu = gpu
         self._adapter = adapter
-        self._ready: tuple[Viewable | None, set[str]] = (None, set())
+        self.history = LiveHistory()
+        self._ready: tuple[Viewable | None, set[tuple[str, bool]]] = (None, set())
         self._finished: Any = None  # the texture of the last finished frame
         self._spare: Any = None  # the texture that the next frame is drawn into
 
     def prepare(self, viewable: Viewable, shot: Shot) -> None:
         """Compile what a shot needs, by drawing a few pixels of it."""
         known, views = self._ready
-        if known is viewable and shot.view in views:
+        program = (shot.view, shot.section is not None)
+        if known is viewable and program in views:
             return
-        options = render_options(shot, _SMALLEST, self.device)
+        options = first_frame(viewable, render_options(shot, _SMALLEST, self.device))
         self._draw(viewable, shot, self._texture(_SMALLEST), options)
-        self._ready = (viewable, {shot.view, *(views if known is viewable else ())})
+        self._ready = (viewable, {program, *(views if known is viewable else ())})
 
     def render(
         self,
@@ -239,6 +278,7 @@ class TextureRenderer:
         if self._spare is None or self._spare.size[:2] != size:
             self._spare = self._texture(size)
         options = render_options(shot, size, self.device, samples=samples)
+        options = self.history.added(viewable, options)
         begin = time.perf_counter()
         try:
             self._draw(
@@ -251,9 +291,10 @@ class TextureRenderer:
         return RenderedFrame(texture=self._finished, seconds=time.perf_counter() - begin)
 
     def _draw(self, viewable: Viewable, shot: Shot, texture: Any, options: RenderOptions) -> None:
+        viewable = viewable.shown_with(shot.section)
         is_steered, is_sampled = shot.steering is not None, viewable.is_sampled(shot.view)
         image = viewable.image(shot.view, steered=is_steered, encoded=True, sampled=is_sampled)
-        settings = viewable.settings(shot.steering) if shot.steering else {}
+        settings = viewable.settings(shot.steering, shot.section) if shot.steering else {}
         if is_sampled:
             settings = {**settings, SAMPLES: options.samples}
         target = DrawTarget(texture.create_view(), TEXTURE_FORMAT, self._adapter)

@@ -131,7 +131,7 @@ class FrameScheduler:
             early enough, or if nothing is left to do.
         """
         if self.shown is not None and (
-            self.shown.viewable is not viewable or self.shown.shot.view != shot.view
+            self.shown.viewable is not viewable or _program(self.shown.shot) != _program(shot)
         ):
             self._forget(viewable, shot)
         request = self._next_request(viewable, shot, size, is_moving=is_moving)
@@ -155,6 +155,8 @@ class FrameScheduler:
         shown = self.shown if self.shown is not None and self.shown.shows_the_same(best) else None
         is_first = shown is None or shown.share < _PREVIEWED
         share = self._resolution.share(size, is_moving=is_moving, is_first=is_first)
+        if viewable.keeps_frames:  # frames build on one another: all have one size
+            share = 1.0
         refinement = 0
         if shown is not None and shown.share == 1.0 and not is_moving:
             refinement = min(shown.refinement + 1, self._last_refinement(shown))
@@ -179,7 +181,8 @@ class FrameScheduler:
     def _forget(self, viewable: Viewable, shot: Shot) -> None:
         assert self.shown is not None
         current = self._in_progress
-        if current is None or current.viewable is not viewable or current.shot.view != shot.view:
+        is_other = current is None or current.viewable is not viewable
+        if is_other or (current is not None and _program(current.shot) != _program(shot)):
             self._resolution.forget()
 
     def _is_wanted(self, request: FrameRequest) -> bool:
@@ -224,3 +227,8 @@ class FrameScheduler:
             self.shown, self.made, self.failed = request, result, None
             self._times.append(time.monotonic())
         self._on_finished(request, result)
+
+
+def _program(shot: Shot) -> tuple[str, bool]:
+    """Return what decides which program of an object draws a shot."""
+    return shot.view, shot.section is not None

@@ -9,6 +9,7 @@ from __future__ import annotations
 from enum import Enum
 from typing import Final
 
+from distal.lang.live_textures import Key
 from distal.scene.viewing.key_bindings import BINDINGS
 
 
@@ -40,6 +41,11 @@ class Action(Enum):
     FASTER = "faster"
     NEXT_VIEW = "next_view"
     LAST_VIEW = "last_view"
+    SECTION = "section"
+    SECTION_SIDE = "section_side"
+    SECTION_BACK = "section_back"
+    SECTION_FORTH = "section_forth"
+    RULER = "ruler"
     MODE = "mode"
     PARAMETERS = "parameters"
     SCREENSHOT = "screenshot"
@@ -64,8 +70,45 @@ _OPPOSITES: Final = {
 }
 # How the canvas names the digits of the numeric keypad: by the code of glfw.
 _KEYPAD: Final = {chr(320 + digit): str(digit) for digit in range(10)}
+# The canvas's number of a button -> its bit in ``frame.buttons``.
+BUTTON_BITS: Final = {1: 1, 2: 2, 3: 4}
+# Keys that stay the window's where a picture reads the keyboard.
+_OF_WINDOW: Final = frozenset({"Escape", "Tab"})
+_CODES: Final = {
+    "ArrowLeft": Key.LEFT,
+    "ArrowRight": Key.RIGHT,
+    "ArrowUp": Key.UP,
+    "ArrowDown": Key.DOWN,
+    "PageUp": Key.PAGE_UP,
+    "PageDown": Key.PAGE_DOWN,
+    "Home": Key.HOME,
+    "End": Key.END,
+    "Enter": Key.ENTER,
+    "Backspace": Key.BACKSPACE,
+    "Shift": Key.SHIFT,
+}
 # Actions that repeat while the key is held; the system itself repeats typed characters.
-REPEATED: Final = frozenset({Action.LEFT, Action.RIGHT, Action.UP, Action.DOWN})
+REPEATED: Final = frozenset(
+    {
+        *(Action.LEFT, Action.RIGHT, Action.UP, Action.DOWN),
+        *(Action.SECTION_BACK, Action.SECTION_FORTH),
+    }
+)
+
+
+def code_of_key(key: str, *, modified: bool = False) -> int | None:
+    """Return the code of a key that a picture reads; None for one that stays the window's.
+
+    Args:
+        key: The name of the key, such as "ArrowLeft", "a" or " ".
+        modified: Whether ctrl or alt is held.
+    """
+    key = _KEYPAD.get(key, key)
+    if modified or key in _OF_WINDOW:
+        return None
+    if len(key) == 1 and key.isascii() and (key.isalnum() or key == " "):
+        return ord(key.upper())
+    return _CODES.get(key)
 
 
 def action_of_key(key: str, *, modified: bool = False) -> Action | None:

@@ -32,6 +32,7 @@ def view(
     look: str | None = None,
     mode: str | None = None,
     caustics: bool = True,
+    unit: str = "mm",
 ) -> tuple[int, bool]:
     """Show a loaded object until the window is closed.
 
@@ -47,6 +48,7 @@ def view(
         look: The name of a look to show it in; None for its own.
         mode: How light is computed: "direct" or "path"; None: as the scene says.
         caustics: Whether photons find the caustics of paths.
+        unit: The length of one scene unit, which the ruler names.
 
     Returns:
         The exit code, 0 or 130, and whether all threads have ended: a running compilation cannot
@@ -76,13 +78,16 @@ def view(
             guided=True,
             mode=mode,
             now=time.monotonic(),
+            unit=unit,
         )
         loop = canvas._rc_canvas_group.get_loop()
         application = Application(session, origin, maker, canvas, surface, loop, scale=scale)
         interrupted = _run(application, canvas, loop)
     finally:
         canvas.close()
-    ended = application.stop(_PATIENCE_S) and not session.camera.is_preparing
+    ended = application.stop(_PATIENCE_S) and not (
+        session.camera.is_preparing or session.ruler.is_preparing
+    )
     return (130 if interrupted else 0), ended
 
 

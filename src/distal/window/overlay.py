@@ -21,6 +21,9 @@ from distal.scene.viewing.key_bindings import HELP
 from distal.window import layout
 from distal.window.lettering import fixed_font, plain_font, shortened, shortened_inside, width
 from distal.window.overlay_content import OverlayContent, ParameterRow
+from distal.window.panels import Panel, clipped
+from distal.window.ruler_panels import ruler_panels
+from distal.window.ruler_tool import ShownRuler
 
 _TEXT_SIZE: Final = 13
 _BACK: Final = (16, 18, 24, 196)
@@ -35,26 +38,12 @@ _ROUND: Final = 6
 _SWATCH: Final = 14
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Panel:
-    """A small picture over the large one.
-
-    Attributes:
-        x: Pixels from the left of the window.
-        y: Pixels from the top of the window.
-        pixels: uint8, (height, width, 4), straight alpha.
-    """
-
-    x: int
-    y: int
-    pixels: NDArray[np.uint8]
-
-
 class Overlay:
     """Draws the overlay's content; keeps the panel of a part while its content is the same."""
 
     def __init__(self) -> None:
         self._kept: dict[str, tuple[Hashable, Panel]] = {}
+        self._ruler: tuple[Hashable, list[Panel]] = (None, [])
 
     def panels(self, read: OverlayContent, size: tuple[int, int], ratio: float) -> list[Panel]:
         """Return the panels, the lowest first.
@@ -83,24 +72,26 @@ class Overlay:
         if read.note:
             parts.append(("note", read.note, lambda: _note(read.note, place)))
         drawn = [self._part(name, (place, key), draw, size) for name, key, draw in parts]
-        return [panel for panel in drawn if panel.pixels.size]
+        ruler = self._ruler_panels(read.ruler, size, ratio)
+        return [panel for panel in (*ruler, *drawn) if panel.pixels.size]
+
+    def _ruler_panels(
+        self, ruler: ShownRuler | None, size: tuple[int, int], ratio: float
+    ) -> list[Panel]:
+        if ruler is None:
+            return []
+        if self._ruler[0] != (ruler, size, ratio):
+            made = [clipped(panel, size) for panel in ruler_panels(ruler, size, ratio)]
+            self._ruler = ((ruler, size, ratio), made)
+        return self._ruler[1]
 
     def _part(
         self, name: str, key: Hashable, draw: Callable[[], Panel], size: tuple[int, int]
     ) -> Panel:
         known = self._kept.get(name)
         if known is None or known[0] != key:
-            known = self._kept[name] = (key, _clipped(draw(), size))
+            known = self._kept[name] = (key, clipped(draw(), size))
         return known[1]
-
-
-def _clipped(panel: Panel, size: tuple[int, int]) -> Panel:
-    """Clip a panel to a window of the given size in pixels."""
-    left, top = max(panel.x, 0), max(panel.y, 0)
-    pixels = panel.pixels[top - panel.y : size[1] - panel.y, left - panel.x : size[0] - panel.x]
-    if left >= size[0] or top >= size[1]:
-        pixels = panel.pixels[:0]
-    return Panel(left, top, pixels)
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from distal.window.dials import Line
+from distal.window.ruler_tool import ShownRuler
 from distal.window.session import Session
 
 
@@ -46,6 +47,7 @@ class OverlayContent:
         help: Whether the help is shown.
         trouble: The text of an error, or "".
         note: A short message, or "".
+        ruler: The ruler on the scene; None if there is none.
     """
 
     status: str = ""
@@ -56,6 +58,7 @@ class OverlayContent:
     help: bool = False
     trouble: str = ""
     note: str = ""
+    ruler: ShownRuler | None = None
 
 
 def _row(session: Session, line: Line) -> ParameterRow:
@@ -98,5 +101,6 @@ def overlay_content(
         is_paused=not session.playing,
         help=session.shows_help,
         trouble=trouble,
-        note=note,
+        note=note or session.ruler.hint,
+        ruler=session.ruler.shown(session.sight(now)),
     )

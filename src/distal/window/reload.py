@@ -1,22 +1,17 @@
-"""Detect that the files of a scene were saved, and reload the scene.
+"""Reload a scene whose files were saved.
 
-Input: paths, and the current shot. Output: whether files have changed and are completely written; a
-scene that is compiled and ready to replace the old one.
-
-The times of files are read four times a second. That costs a few microseconds per file and works
-on every file system. Notifications of the operating system do not work on shared folders, and for
-an editor that saves by renaming they would also need a watch on the folder.
+Input: paths, and the current shot. Output: a scene that is compiled and ready to replace the old
+one; the files that may have to change to fix an error.
 """
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING
 
 from distal.diagnostics import CompileError
+from distal.load_watch import LoadWatch
 from distal.loading import load, loaded_from
 from distal.scene.steering import STILL
 from distal.scene.viewing.guide import Moment
@@ -25,52 +20,6 @@ from distal.window.session import Shot, valid_values
 
 if TYPE_CHECKING:
     from distal.window.frame_renderers import FrameRenderer
-
-PERIOD_S: Final = 0.25
-
-Signature: TypeAlias = "tuple[tuple[int, ...] | None, ...]"
-
-
-class FileWatcher:
-    """Watches a set of files, and of folders whose entries may change."""
-
-    def __init__(self, files: Iterable[Path]) -> None:
-        self._paths: tuple[Path, ...] = ()
-        self._known: Signature = ()
-        self._last: Signature = ()
-        self.watch(files)
-
-    def watch(self, files: Iterable[Path]) -> None:
-        """Watch these files from now on.
-
-        A file that was already watched keeps its last known state, so that a save during loading is
-        detected.
-        """
-        known = dict(zip(self._paths, self._known, strict=True))
-        self._paths = tuple(dict.fromkeys(files))
-        self._known = tuple(known[p] if p in known else _state(p) for p in self._paths)
-        self._last = self._known
-
-    def has_changed(self) -> bool:
-        """Return whether something was saved since this last returned True, and is now unchanged.
-
-        A file that is still being written changes between two calls; then the result is False.
-        """
-        state = tuple(map(_state, self._paths))
-        at_rest, self._last = state == self._last, state
-        if not at_rest or state == self._known:
-            return False
-        self._known = state
-        return True
-
-
-def _state(path: Path) -> tuple[int, ...] | None:
-    """Return values that change when a file is saved or replaced, or a folder's entries change."""
-    try:
-        found = os.stat(path)
-    except OSError:
-        return None
-    return found.st_mtime_ns, found.st_size, found.st_ino
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,6 +42,7 @@ def load_again(
     name: str | None,
     shot: Shot,
     maker: FrameRenderer,
+    watch: LoadWatch,
     look: str | None = None,
     caustics: bool = True,
 ) -> ReloadedScene:
@@ -103,6 +53,7 @@ def load_again(
         name: The name of the object in the file; None for the default.
         shot: The current shot.
         maker: Compiles and renders the frames.
+        watch: Says where the file is if it takes long, and ends it.
         look: The name of a look to show it in; None for its own.
         caustics: Whether photons find the caustics of paths.
 
@@ -110,7 +61,9 @@ def load_again(
         LoadError, CompileError: There is a mistake; the scene that was loaded before still works.
         DeviceError: The device was lost.
     """
-    obj = checked_picture(load(path, name))
+    with watch:
+        loaded = load(path, name)
+    obj = checked_picture(loaded)
     origin = loaded_from(obj)
     assert origin is not None, "it was loaded just now"
     values = valid_values(obj.parameters(), dict(shot.parameters))

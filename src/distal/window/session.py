@@ -7,13 +7,16 @@ devices or threads.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 from typing import TYPE_CHECKING, Final
 
+from distal.lang.live_textures import NO_KEYS, Keys
 from distal.lang.parameter_values import Value
 from distal.lang.parameters import Parameter
+from distal.scene.section import CutPlane
 from distal.scene.steering import Steering
 from distal.scene.viewing import interaction
 from distal.scene.viewing.guide import Moment
@@ -24,6 +27,8 @@ from distal.window.gestures import Mouse, on_picture, orbited, panned, zoomed
 from distal.window.guided_camera import SHOWN, GuidedCamera
 from distal.window.keys import Action
 from distal.window.layout import Table, time_bar, time_track
+from distal.window.ruler_tool import NEEDS_SOLID, RulerTool, Sight
+from distal.window.section_plane import SectionPlane
 
 if TYPE_CHECKING:
     from distal.scene.viewing.viewable import Viewable
@@ -31,6 +36,12 @@ if TYPE_CHECKING:
 # How long after the last input a picture counts as moving; notches of a wheel come in bursts.
 _SETTLING_S: Final = 0.25
 _LEFT, _RIGHT, _MIDDLE = 1, 2, 3
+# A pointer that moves farther while the button is down drags; else it clicks.
+_CLICK: Final = 4.0
+_CUTS: Final = (
+    *(Action.SECTION, Action.SECTION_SIDE),
+    *(Action.SECTION_BACK, Action.SECTION_FORTH),
+)
 # The directions of the arrow keys: right and up.
 _ARROWS: Final = {
     Action.LEFT: (-1, 0),
@@ -51,6 +62,9 @@ class Shot:
         steering: The movement of the camera; None if there is no movable camera.
         mouse: The pointer for an ``@image``.
         mode: How light is computed: "direct" or "path".
+        section: The plane that cuts the scene open; None if it is whole.
+        keys: The keyboard, for an ``@image`` that reads it.
+        buttons: The buttons of the mouse that are down, for an ``@image``.
     """
 
     time: float
@@ -59,6 +73,9 @@ class Shot:
     steering: Steering | None
     mouse: Mouse
     mode: str = "direct"
+    section: CutPlane | None = None
+    keys: Keys = NO_KEYS
+    buttons: int = 0
 
     @property
     def index(self) -> int:
@@ -86,6 +103,8 @@ class Session:
         values: The parameters that a person moved, by name.
         view: The name of the view.
         mode: How light is computed at rest: "direct" or "path"; None: as the scene says.
+        plane: How the scene is cut open.
+        ruler: The ruler on the scene.
         dials: The controls of the parameters.
         lines: The rows of their table: the controls, and the names of groups.
         chosen: The index of the control that keys move.
@@ -106,6 +125,7 @@ class Session:
         guided: bool = False,
         mode: str | None = None,
         now: float = 0.0,
+        unit: str = "mm",
     ) -> None:
         """Make the state of a window that has just opened.
 
@@ -119,13 +139,18 @@ class Session:
                 compiles the scene's guide.
             mode: How light is computed: "direct" or "path"; None: as the scene says.
             now: The reading of the clock, in seconds.
+            unit: The unit of length, which the ruler names.
         """
         self.clock = Clock(time, running=False, now=now)
         self.camera = GuidedCamera(viewable, is_guided=guided)
         self.mouse = Mouse()
+        self.keys = Keys()
+        self.buttons = 0
         self.values: dict[str, Value] = dict(values or {})
         self.view = view
         self.mode = mode
+        self.plane = SectionPlane()
+        self.ruler = RulerTool(viewable, unit)
         self.chosen = 0
         self.size = (640.0, 480.0)
         self.shows_parameters = self.shows_help = False
@@ -133,7 +158,8 @@ class Session:
         self._begin = time
         self._wants_time = not paused
         self._grab: Grab | None = None
-        self._at = (0.0, 0.0)
+        self._at = self._pressed_at = (0.0, 0.0)
+        self._clicks = False  # whether the pressed button clicks if the pointer stays
         self._last_time = interaction.last_time(time, time, None)
         self._moving_until = float("-inf")
         self.adopt(viewable, now)
@@ -155,6 +181,7 @@ class Session:
         if self.view not in viewable.views:
             self.view = viewable.views[0]
         self.camera.adopt(viewable)
+        self.ruler.adopt(viewable)
         # The object of the drag may no longer exist.
         self._grab = None
         self.clock.run(self._wants_time and self.animated, now)
@@ -180,6 +207,7 @@ class Session:
     def shot(self, now: float) -> Shot:
         """Return the current shot."""
         self.camera.settle(self.moment(now))
+        self.ruler.settle()
         time = self.clock.time(now)
         if self._grab is not Grab.TIME:
             self._last_time = interaction.last_time(time, self._begin, None)
@@ -190,7 +218,17 @@ class Session:
             steering=self.steering if self.viewable.steers else None,
             mouse=self.mouse,
             mode=self.shown_mode,
+            section=self.section(now),
+            keys=self.keys,
+            buttons=self.buttons if self.viewable.keeps_frames else 0,
         )
+
+    def section(self, now: float) -> CutPlane | None:
+        """Return the plane that cuts the scene open; None if it is whole or cannot be cut."""
+        scene = self.viewable.scene
+        if scene is None or self.plane.axis is None or not self.viewable.is_sectionable:
+            return None
+        return self.plane.section(scene, self.moment(now))
 
     @property
     def shown_mode(self) -> str:
@@ -198,6 +236,10 @@ class Session:
         if self.viewable.scene is None or self.view != COLOR:
             return "direct"
         return self.viewable.mode if self.mode is None else self.mode
+
+    def key_changed(self, code: int, *, down: bool) -> None:
+        """Take a key that the picture reads."""
+        self.keys = self.keys.with_key(code, down=down)
 
     def frame_begun(self) -> None:
         """Record that a frame has shown the press of the button, which is then no longer fresh."""
@@ -248,6 +290,15 @@ class Session:
                 self.clock.change_speed(1 if action is Action.FASTER else -1, now)
             case Action.NEXT_VIEW | Action.LAST_VIEW:
                 self._turn_views(1 if action is Action.NEXT_VIEW else -1)
+            case Action.SECTION:
+                self.plane = self.plane.turned()
+            case Action.SECTION_SIDE:
+                self.plane = self.plane.other_side()
+            case Action.SECTION_BACK | Action.SECTION_FORTH:
+                self.plane = self.plane.moved(1 if action is Action.SECTION_FORTH else -1)
+                self._moving_until = now + _SETTLING_S
+            case Action.RULER:
+                self.ruler.toggle(self.sight(now))
             case Action.MODE:
                 if self.viewable.scene is not None and self.view == COLOR:
                     self.mode = "direct" if self.shown_mode == "path" else "path"
@@ -264,6 +315,16 @@ class Session:
                 self.shows_overlay = not self.shows_overlay
             case Action.SCREENSHOT | Action.COPY_CAMERA | Action.FULL_SCREEN | Action.QUIT:
                 pass
+
+    def refusal(self, action: Action) -> str:
+        """Return why an action does nothing; "" if it does what its key says."""
+        if action in _CUTS:
+            reason = self.viewable.uncut_reason
+            starts = action is Action.SECTION or self.plane.axis is not None
+            return reason or ("" if starts else "press X first, which cuts the scene open")
+        if action is Action.RULER and self.viewable.scene is None:
+            return NEEDS_SOLID
+        return ""
 
     def _pause(self, now: float) -> None:
         if self.animated:
@@ -300,6 +361,10 @@ class Session:
     def moment(self, now: float) -> Moment:
         """Return what the camera's surroundings depend on."""
         return Moment(self.size, self.clock.time(now), dict(self.values))
+
+    def sight(self, now: float) -> Sight:
+        """Return how the scene is seen."""
+        return Sight(self.moment(now), self.steering, self.section(now))
 
     def _go(self, goal: Steering, now: float) -> None:
         self.camera.go(goal, self.moment(now))
@@ -344,8 +409,9 @@ class Session:
             now: The reading of the clock, in seconds.
             shift: Whether the shift key is held.
         """
-        self._at = (x, y)
+        self._at = self._pressed_at = (x, y)
         self._grab = self._held(x, y, button, shift)
+        self._clicks = self._grab is Grab.ORBIT
         if self._grab is Grab.MOUSE:
             place = self._place(x, y)
             self.mouse = Mouse(place, place, down=True, fresh=True)
@@ -394,6 +460,10 @@ class Session:
             y: Position of the pointer, from the top.
             now: The reading of the clock, in seconds.
         """
+        if math.dist(self._pressed_at, (x, y)) > _CLICK:
+            self._clicks = False
+        if self._clicks and self.ruler.is_on:
+            return  # the camera stays while a place is clicked
         height = max(self.size[1], 1.0)
         right, down = (x - self._at[0]) / height, (y - self._at[1]) / height
         self._at = (x, y)
@@ -420,6 +490,10 @@ class Session:
             self.mouse = replace(self.mouse, down=False)
         if self._grab is Grab.TIME:
             self.clock.run(self._wants_time and self.animated, now)
+        if self._clicks:
+            self._clicks = False
+            (x, y), (width, height) = self._pressed_at, self.size
+            self.ruler.click(x / max(width, 1.0), y / max(height, 1.0), self.sight(now))
         self._grab = None
 
     def double_click(self, x: float, y: float, now: float) -> None:
@@ -430,7 +504,7 @@ class Session:
             y: Position of the pointer, from the top.
             now: The reading of the clock, in seconds.
         """
-        if self.viewable.steers and self.is_free(x, y):
+        if self.viewable.steers and self.is_free(x, y) and not self.ruler.is_on:
             self.act(Action.RESET_CAMERA, now)
 
     def wheel(self, notches: float, now: float) -> None:

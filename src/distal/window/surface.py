@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.window.frame_renderers import TEXTURE_FORMAT, RenderedFrame
-from distal.window.overlay import Panel
+from distal.window.panels import Panel
 
 _SHADER: Final = """
 @group(0) @binding(0) var image: texture_2d<f32>;

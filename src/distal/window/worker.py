@@ -6,6 +6,7 @@ in the order of the jobs. Does not depend on what jobs do.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import queue
 import threading
@@ -15,6 +16,7 @@ from typing import Any, Final, TypeAlias
 # Called in the window's thread with a result, or with the exception that was raised.
 Done: TypeAlias = "Callable[[Any], None]"
 Job: TypeAlias = "Callable[[threading.Event], Any]"
+Jobs: TypeAlias = "queue.SimpleQueue[tuple[Job, Done] | None]"
 
 _END: Final = None
 
@@ -30,11 +32,17 @@ class Worker:
         """Start the thread; ``post`` runs a function in the window's thread, from any thread."""
         self.waiting = 0
         self._post = post
-        self._jobs: queue.SimpleQueue[tuple[Job, Done] | None] = queue.SimpleQueue()
-        self._cancel = threading.Event()
         self._ended = False
+        self._abandoned: list[threading.Thread] = []
+        self._begin()
+
+    def _begin(self) -> None:
+        self._jobs: Jobs = queue.SimpleQueue()
+        self._cancel = threading.Event()
         # A daemon thread, because a compiler cannot be interrupted.
-        self._thread = threading.Thread(target=self._run, name="distal-window", daemon=True)
+        self._thread = threading.Thread(
+            target=self._run, args=(self._jobs, self._cancel), name="distal-window", daemon=True
+        )
         self._thread.start()
 
     def submit(self, job: Job, done: Done) -> None:
@@ -46,27 +54,44 @@ class Worker:
         """Ask the running job to end early; it may also finish."""
         self._cancel.set()
 
+    def abandon(self) -> None:
+        """Run the jobs that wait in another thread: the one that runs may never end.
+
+        Nothing is done with its result.
+        """
+        left, self.waiting = self._jobs, self.waiting - 1
+        self._cancel.set()
+        self._abandoned.append(self._thread)
+        self._begin()
+        with contextlib.suppress(queue.Empty):
+            while True:
+                self._jobs.put(left.get_nowait())
+        left.put(_END)
+
     def stop(self, patience_s: float) -> bool:
-        """End the thread; return whether it ended within ``patience_s`` seconds."""
+        """End the threads; return whether they ended within ``patience_s`` seconds."""
         self._ended = True
         self._cancel.set()
         self._jobs.put(_END)
         self._thread.join(patience_s)
-        return not self._thread.is_alive()
+        return not any(thread.is_alive() for thread in (self._thread, *self._abandoned))
 
-    def _run(self) -> None:
-        while (work := self._jobs.get()) is not _END:
+    def _run(self, jobs: Jobs, cancel: threading.Event) -> None:
+        while (work := jobs.get()) is not _END:
             job, done = work
-            self._cancel.clear()
+            cancel.clear()
             if self._ended:  # set before ``clear`` above, which would lose the request
                 return
             try:
-                result = job(self._cancel)
+                result = job(cancel)
             except BaseException as error:  # the window reports every exception
                 result = error
+            if jobs is not self._jobs:  # abandoned
+                return
             if not self._ended:
-                self._post(functools.partial(self._finish, done, result))
+                self._post(functools.partial(self._finish, jobs, done, result))
 
-    def _finish(self, done: Done, result: Any) -> None:
-        self.waiting -= 1
-        done(result)
+    def _finish(self, jobs: Jobs, done: Done, result: Any) -> None:
+        if jobs is self._jobs:  # else it was abandoned after it had ended
+            self.waiting -= 1
+            done(result)

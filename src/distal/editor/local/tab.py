@@ -77,6 +77,7 @@ class StudioTab:
         self._waiting: dict[int, int] = {}  # the revision by id, in the order of arrival
         self._ends = 0.0
         self._has_run = False  # the author's code, for the first request that waits
+        self._hangs = ""  # the line that it is at after some seconds
         self._is_over = False
         with self._lock:  # the worker's lines wait until it is known
             self._worker = self._started(early)
@@ -182,7 +183,9 @@ class StudioTab:
         if kind in _ANSWERS:
             if number is not None and self._waiting.pop(number, None) is not None:
                 self._ends = time.monotonic() + self._limit
-                self._has_run = False
+                self._has_run, self._hangs = False, ""
+        elif kind == "printed":
+            self._hangs = str(found.get("hangs") or "") or self._hangs
         elif kind == "progress" and not self._has_run:
             # Once: code that says it again and again would never be ended.
             self._ends = time.monotonic() + WORK_S
@@ -196,7 +199,9 @@ class StudioTab:
             with self._lock:
                 if self._waiting and time.monotonic() > self._ends and not self._is_over:
                     self._worker.kill()
-                    self._restart(f"the scene's code gave no answer within {self._limit:g} s")
+                    where = f"; it was at {self._hangs}" if self._hangs else ""
+                    limit = f"{self._limit:g} s"
+                    self._restart(f"the scene's code gave no answer within {limit}{where}")
 
     def _restart(self, reason: str) -> None:
         """Start another worker; the first request that waits is the one that was not answered."""
@@ -206,7 +211,7 @@ class StudioTab:
             if other is not None:
                 self._tell(Dropped(id=other, revision=self._waiting[other]))
         self._waiting.clear()
-        self._has_run = False
+        self._has_run, self._hangs = False, ""
         try:
             self._worker = self._started()
         except OSError as error:  # tried again when the next request has waited

@@ -14,7 +14,7 @@ from typing import Any, Final
 
 from distal.diagnostics import Diagnostic
 from distal.fields.boxes import given_slope
-from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive
+from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive, ended
 from distal.scene.checks.bounds_report import NodeBounds, bounds_of_nodes
 from distal.scene.checks.measuring import Measured, Region, measure
 from distal.scene.checks.place_json import place_json
@@ -338,7 +338,7 @@ def _endless(row: ShapeReport, finding: Any) -> CheckFinding:
         hint = f"growth=1 for '{unknown.name}' if it is at least the distance to its bounds"
         grown: CheckFinding = finding(Severity.WARNING, "no-growth", message, hint)
         return grown
-    message = f"{described(row.node)} has no bounding box, so every ray has to look for it"
+    message = f"{described(row.node)} has no finite bounding box, so every ray has to look for it"
     if is_own(row.node):
         hint = "give its corners: bounds=((x, y, z), (x, y, z))"
         found: CheckFinding = finding(Severity.WARNING, "no-box", message, hint)
@@ -398,12 +398,12 @@ def described(node: Node) -> str:
 
 
 def _shown(plain: float | tuple[float, ...]) -> str:
-    return shown_point(plain) if isinstance(plain, tuple) else f"{plain:.4g}"
+    return shown_point(plain) if isinstance(plain, tuple) else f"{ended(plain):.4g}"
 
 
 def shown_point(p: Sequence[float]) -> str:
     """Return a point as text."""
-    return f"({', '.join(f'{c:.4g}' for c in p)})"
+    return f"({', '.join(f'{ended(c):.4g}' for c in p)})"
 
 
 def _rounded_up(slope: float) -> str:

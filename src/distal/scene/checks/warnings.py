@@ -203,7 +203,8 @@ def warn_of_black(scene: Any, picture: Any, params: Mapping[str, Any], time: flo
     if shut and executor().call(eye, (), {}, params=_read(eye, params), time=time) < 0.0:
         where, hint = hidden_camera(scene)
         refuse(f"the camera is {where}, and all around it is dark", hint, scene.place)
-    _warn("the picture is black: no light comes from what the camera sees", scene)
+    if not _is_dark(scene):  # which is said already
+        _warn("the picture is black: no light comes from what the camera sees", scene)
 
 
 def hidden_camera(scene: Any) -> tuple[str, str]:
@@ -229,6 +230,25 @@ def warn_of_camera(scene: Any) -> None:
         _warn("the camera's aperture blurs in mode='path' only: everything is sharp", scene)
     if scene.shutter > 0.0:
         _warn("the scene's shutter blurs in mode='path' only: nothing moves", scene)
+
+
+def warn_of_darkness(scene: Any) -> None:
+    """Warn of a scene without lights whose shapes neither emit, mirror nor refract light.
+
+    Args:
+        scene: The scene.
+    """
+    if _is_dark(scene):
+        _warn(
+            "the scene has no lights: its shapes are black; leave out lights= for usual ones", scene
+        )
+
+
+def _is_dark(scene: Any) -> bool:
+    if scene.lights or scene.renderer != "plain":
+        return False
+    given = (m for n in scene.shape.node.walk() for m in (n.material, n.cut_material))
+    return not any(m.emits for m in (scene.material, *given) if m is not None)
 
 
 def warn_of_lost_rays(scene: Any, lost: Mapping[str, float]) -> None:

@@ -203,7 +203,8 @@ class _BoxesAt(Composed):
         composer = BoundsComposer(values)
         corners: list[Expr] = []
         for node in self._nodes:
-            box = body.let("box", composer.of(body, node, values.all(node)).bounds)
+            found = composer.of(body, node, values.all(node)).emptied(body, assembly.call)
+            box = body.let("box", found.bounds)
             corners += [field(box, "low"), field(box, "high")]
         body.statements.append(Return(Construct(tuple(corners), self.result)))
         return assembly.define(self.name, (), self.result, body.statements)

@@ -10,6 +10,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ClassVar
 
+from distal.fields.combine.alternatives import SELECT
+from distal.fields.deform.offsets import SECTION
 from distal.fields.guarantees import Operator, Primitive
 from distal.ir.build import add, builtin, cast, compare, field, index, multiply, number, select
 from distal.ir.nodes import Call, CompareOp, Expr, Gradient, Read
@@ -24,14 +26,17 @@ from distal.render.footprint import (
     step_along,
 )
 from distal.render.material import Surface, choose_surface, mix_surfaces
+from distal.render.section import cut_surface
 from distal.scene.lowering.part_functions import POINT
 from distal.scene.lowering.parts.kinds import PartKind, materials_in, paths_to_leaves
 from distal.scene.lowering.parts.table import TableNode
-from distal.scene.lowering.shapes import ShapeComposer
+from distal.scene.lowering.shapes import ShapeComposer, existing
 from distal.scene.lowering.smooth.cells import CellNode
+from distal.scene.section import HATCH
 from distal.scene.tree.calls import FACING, FOOTPRINT
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
+from distal.scene.tree.varying import host_number
 
 
 class Attribute(ABC):
@@ -73,6 +78,15 @@ class Attribute(ABC):
             node: The root of the subtree that cuts.
             site: The place at which the attribute is evaluated.
         """
+
+    def sectioned(self, given: Mapping[str, Expr], of_solid: Expr) -> Expr:
+        """Return the attribute where a section ends a solid.
+
+        Args:
+            given: The place ``p``, the solid's distance ``d`` there, and the plane, by name.
+            of_solid: The solid's attribute.
+        """
+        return of_solid
 
     def averages(self, node: Node) -> bool:
         """Return whether the attribute of the subtree depends on the footprint of the pixel."""
@@ -155,18 +169,55 @@ def _visit_here(
     given, shares = composer.given(body, node, site.p, site.cell, site.values)
     if rule.around is not None:
         return _around(body, kind, node, site, given, measured=measured)
+    if rule is SELECT:
+        return _selected(body, kind, node, site, (given["second"], shares), measured=measured)
     p, cell = composer.moved(body, rule, given)
     moved = _footprint(body, kind, node, site, given, p, rule.point)
     sites = [AttributePoint(p, cell, share, moved) for share in shares]
     joins = rule.combine is not None and len(sites) > 1
     first = node.children[0]
-    d, result = _visit(body, kind, first, sites[0], measured=measured or joins)
+    needed = measured or joins or rule is SECTION
+    d, result = _visit(body, kind, first, sites[0], measured=needed)
     if joins:
         assert d is not None
         d, result = _joined(body, kind, node, sites, given, (d, result))
+    if rule is SECTION:
+        assert d is not None
+        result = body.let("shown", kind.sectioned({**given, "p": site.p, "d": d}, result))
     if measured and rule.finish is not None:
         assert d is not None
         d = body.let("d", composer.call(rule.finish, {**given, "d": d}))
+    return d if d is None else existing(body, given, d), result
+
+
+def _selected(
+    body: StatementList,
+    kind: Attribute,
+    node: Node,
+    site: AttributePoint,
+    given: tuple[Expr, Sequence[Sequence[Expr]]],
+    *,
+    measured: bool,
+) -> tuple[Expr | None, Expr]:
+    """Return the attribute of one of two shapes; arguments as for ``_visit``.
+
+    Args:
+        body: The statements to add to.
+        kind: The attribute.
+        node: The node.
+        site: The place at which the attribute is evaluated.
+        given: Whether it is the second shape, and the numbers of each.
+        measured: Whether the distance is needed.
+    """
+    second, shares = given
+    found: list[Expr] = []
+    for child, share in zip(node.children, shares, strict=True):
+        there = AttributePoint(site.p, site.cell, share, site.footprint)
+        found.append(_visit(body, kind, child, there, measured=False)[1])
+    a, b = found
+    result = a if a is b else body.let("shown", kind.chosen(a, b, second))
+    composer = kind.composer
+    d = composer.distance(body, node, site.p, site.cell, site.values) if measured else None
     return d, result
 
 
@@ -230,14 +281,16 @@ def _around(
     composer, rule, child = kind.composer, node.rule, node.children[0]
     assert isinstance(rule, Operator) and rule.around is not None
     _, (values,) = composer.values.split(node, site.values)
-    given["field"] = composer.field(child, values, site.cell)
+    given["field"] = composer.field_around(node, child, values, site.cell)
     p, cell = site.p, site.cell
     if rule.site is not None:
         p, cell = composer.site(body, composer.call(rule.site, given), site.cell)
     moved = _footprint(body, kind, node, site, given, p, rule.site)
     inner = AttributePoint(p, cell, values, moved)
     _, result = _visit(body, kind, child, inner, measured=False)
-    return body.let("d", composer.call(rule.around, given)) if measured else None, result
+    if not measured:
+        return None, result
+    return existing(body, given, body.let("d", composer.call(rule.around, given))), result
 
 
 def _footprint(
@@ -313,8 +366,11 @@ def _more_shown(a: Expr, b: Expr, share: Expr) -> Expr:
 
 
 def paints(node: Node) -> bool:
-    """Return whether any node of a subtree has a material."""
-    return any(n.material is not None or n.cut_material is not None for n in node.walk())
+    """Return whether any node of a subtree has a material, or the look of a cut."""
+    return any(
+        n.material is not None or n.cut_material is not None or n.rule is SECTION
+        for n in node.walk()
+    )
 
 
 class SurfaceAttribute(Attribute):
@@ -347,6 +403,11 @@ class SurfaceAttribute(Attribute):
     def chosen(self, a: Expr, b: Expr, is_second: Expr) -> Expr:
         """Choose one of two surfaces."""
         return self.composer.call(choose_surface, {"a": a, "b": b, "is_second": is_second})
+
+    def sectioned(self, given: Mapping[str, Expr], of_solid: Expr) -> Expr:
+        """Return the surface of a cut face, or that of the solid."""
+        hatch = host_number(self.composer.assembly, HATCH)
+        return self.composer.call(cut_surface, {**given, "surface": of_solid, "hatch": hatch})
 
     def cutter(self, body: StatementList, node: Node, site: AttributePoint) -> Expr | None:
         """Return the cutter's ``cut_material``."""
@@ -431,6 +492,10 @@ class ListedMaterial(SurfaceAttribute):
     def result(self) -> Type:
         """The type of the attribute."""
         return FLOAT
+
+    def sectioned(self, given: Mapping[str, Expr], of_solid: Expr) -> Expr:
+        """Return the number of the solid's material."""
+        return of_solid
 
     def blended(self, a: Expr, b: Expr, share: Expr) -> Expr:
         """Return the number with the larger share."""

@@ -7,12 +7,14 @@ which every target computes once per frame.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Final, assert_never
 
 from distal.fields.boxes import everywhere, everywhere2, hull, hull2
+from distal.fields.combine.alternatives import NOTHINGS, SELECT, box_if
+from distal.fields.combine.joins import COMPLEMENT
 from distal.fields.guarantees import (
     BOUNDS_OF_CHILD,
     UNBOUNDED,
@@ -24,12 +26,14 @@ from distal.fields.guarantees import (
     Primitive,
     Rule,
 )
-from distal.ir.build import builtin, field, multiply
+from distal.fields.repeat.varied import IN_CELLS
+from distal.ir.build import builtin, field, multiply, select
 from distal.ir.build import number as constant_number
 from distal.ir.contents import contents
 from distal.ir.nodes import Call, Const, Construct, Expr, Return
 from distal.ir.types import FLOAT, VEC2, VEC3, Type, tuple_type
 from distal.lang.functions import Func
+from distal.scene.lowering.existence import NEVER, exists_after, exists_of_either
 from distal.scene.lowering.parts.table import PartTable, TableNode
 from distal.scene.lowering.smooth.cells import CellNode, MemberGrid
 from distal.scene.tree.node import Node
@@ -46,6 +50,8 @@ class ShapeBounds:
         bounds: ``Bounds`` or ``Bounds2`` around the surface and the inside.
         growth: How far from the box a point may be, at most, for each unit of its value.
         side_growth: The same for each side of the box.
+        exists: Whether there is anything, a bool; None if there always is. Where there is nothing,
+            the others are those of what would be there, or of what it is united with.
     """
 
     slope: Expr
@@ -53,6 +59,19 @@ class ShapeBounds:
     bounds: Expr
     growth: Expr
     side_growth: Expr
+    exists: Expr | None = None
+
+    def emptied(self, body: StatementList, call: Callable[..., Expr]) -> ShapeBounds:
+        """Return the bounds with a box that contains no point where there is nothing.
+
+        Args:
+            body: The statements to add to.
+            call: Adds a call of a library function (``Assembly.call``).
+        """
+        if self.exists is None:
+            return self
+        box = body.let("bounds", call(box_if, {"bounds": self.bounds, "exists": self.exists}))
+        return replace(self, bounds=box)
 
     def packed(self, body: StatementList) -> Expr:
         """Return (slope, divisor, low, high, growth, side_growth) as one ``packed_type``."""
@@ -77,6 +96,9 @@ UNKNOWN: Final = constant_number(UNBOUNDED)
 
 # The most children of an operator whose bounds are composed in one function.
 AT_ONCE: Final = 16
+
+# The names of ``packed`` as attributes.
+PARTS_OF_BOUNDS: Final = ("slope", "divisor", "bounds", "growth", "side_growth")
 
 # The parts of bounds that are numbers, and constant for many shapes.
 NUMBERS: Final = ("slope", "divisor", "growth", "side_growth")
@@ -161,6 +183,8 @@ class BoundsComposer:
         box = inside.let("bounds", found.bounds)
         numbers = {n: getattr(found, n) for n in NUMBERS}
         varying = {n: e for n, e in numbers.items() if not isinstance(e, Const)}
+        if found.exists is not None:
+            varying["exists"] = found.exists
         parts = (field(box, "low"), field(box, "high"), *varying.values())
         packed = tuple_type(tuple(part.type for part in parts))
         inside.statements.append(Return(Construct(parts, packed)))
@@ -210,6 +234,9 @@ class BoundsComposer:
         """
         if len(inner) == 1:
             return self._one(body, rule, inner[0], own)
+        if rule is SELECT:
+            first, second = inner
+            return self.either(body, first, second, own["second"])
         if not _folds(rule):
             return self._halved(body, rule, inner, own)
         result = inner[0]
@@ -236,6 +263,8 @@ class BoundsComposer:
     ) -> dict[str, Expr]:
         """Return the children's bounds, by the parameter names of an operator's functions.
 
+        ``exists`` is among them if there may be nothing below an operator on one shape.
+
         Args:
             body: The statements to add to.
             node: The operator's node.
@@ -244,7 +273,10 @@ class BoundsComposer:
         inner = [
             self.of(body, child, share) for child, share in zip(node.children, shares, strict=True)
         ]
-        return _named(inner[0], inner[1] if len(inner) > 1 else None)
+        found = _named(inner[0], inner[1] if len(inner) > 1 else None)
+        if len(inner) == 1 and inner[0].exists is not None and node.rule is not COMPLEMENT:
+            found["exists"] = inner[0].exists
+        return found
 
     def of_primitive(
         self, body: StatementList, rule: Primitive, own: Mapping[str, Expr], *, flat: bool
@@ -258,11 +290,12 @@ class BoundsComposer:
             flat: Whether the shape lies in the plane.
         """
         slope = self._number(body, "slope", rule.slope, own)
+        exists = NEVER if rule in NOTHINGS else None
         whole = everywhere2 if flat else everywhere
         bounds = body.let("bounds", self._call(rule.bounds or whole, own))
         lower = Guarantee.LOWER_BOUND in rule.claims
         growth, side_growth = self._growth_of_leaf(body, rule, own)
-        return ShapeBounds(slope, ONE if lower else slope, bounds, growth, side_growth)
+        return ShapeBounds(slope, ONE if lower else slope, bounds, growth, side_growth, exists)
 
     def _growth_of_leaf(
         self, body: StatementList, rule: Primitive, own: Mapping[str, Expr]
@@ -285,6 +318,11 @@ class BoundsComposer:
     def _one(
         self, body: StatementList, rule: Operator, child: ShapeBounds, own: Mapping[str, Expr]
     ) -> ShapeBounds:
+        if rule is IN_CELLS:
+            # The box of one cell is not that of all: the operator's numbers are.
+            box = Construct((own["low"], own["high"]), child.bounds.type)
+            numbers = {name: own[name] for name in NUMBERS}
+            return ShapeBounds(bounds=box, exists=child.exists, **numbers)
         given = {**own, **_named(child, None)}
         slope = self._slope(body, rule, child.slope, given)
         bounds = child.bounds
@@ -292,7 +330,9 @@ class BoundsComposer:
             bounds = body.let("bounds", self._call(rule.bounds, given))
         kept = Guarantee.LOWER_BOUND in rule.keeps
         growth, side_growth = self._growth(body, rule, (child,), bounds, given)
-        return ShapeBounds(slope, child.divisor if kept else slope, bounds, growth, side_growth)
+        divisor = child.divisor if kept else slope
+        exists = None if rule is COMPLEMENT else child.exists
+        return ShapeBounds(slope, divisor, bounds, growth, side_growth, exists)
 
     def _two(
         self,
@@ -302,6 +342,9 @@ class BoundsComposer:
         b: ShapeBounds,
         own: Mapping[str, Expr],
     ) -> ShapeBounds:
+        exists = exists_after(rule, a.exists, b.exists)
+        # Where there is no first shape, the second counts twice, and likewise.
+        a, b = self._filled(body, a, b), self._filled(body, b, a)
         larger = _larger(body, "slope", a.slope, b.slope)
         side_growth = _larger(body, "side_growth", a.side_growth, b.side_growth)
         given = {**own, **_named(a, b), "side_growth": side_growth}
@@ -314,7 +357,36 @@ class BoundsComposer:
         if Guarantee.LOWER_BOUND in rule.keeps:
             divisor = _larger(body, "divisor", a.divisor, b.divisor)
         growth, side_growth = self._growth(body, rule, (a, b), bounds, given)
-        return ShapeBounds(slope, divisor, bounds, growth, side_growth)
+        return ShapeBounds(slope, divisor, bounds, growth, side_growth, exists)
+
+    def _filled(self, body: StatementList, a: ShapeBounds, b: ShapeBounds) -> ShapeBounds:
+        """Return the bounds of a shape; where it does not exist, those of another."""
+        if a.exists is None:
+            return a
+        return self.either(body, b, replace(a, exists=None), a.exists)
+
+    def either(
+        self, body: StatementList, a: ShapeBounds, b: ShapeBounds, second: Expr
+    ) -> ShapeBounds:
+        """Return the bounds of one of two shapes.
+
+        Args:
+            body: The statements to add to.
+            a: The bounds of the first.
+            b: The bounds of the second.
+            second: Whether it is the second.
+        """
+        exists = exists_of_either(a.exists, b.exists, second)
+        if b.exists is NEVER:
+            return replace(a, exists=exists)
+        if a.exists is NEVER:
+            return replace(b, exists=exists)
+        parts = {
+            name: one if one is other else body.let(name, select(second, other, one))
+            for name in PARTS_OF_BOUNDS
+            for one, other in ((getattr(a, name), getattr(b, name)),)
+        }
+        return ShapeBounds(**parts, exists=exists)
 
     def _growth(
         self,

@@ -1,18 +1,22 @@
 """Chords of subtrees: where a line is inside of a convex solid, in closed form.
 
-Input: a subtree of one primitive that declares its chord, under rigid moves and uniform scales.
+Input: a subtree of one primitive that declares its chord, under rigid moves and uniform scales, or
+of several of which conditions select one.
 Output: an expression, the distances along the line at which it enters and leaves the solid.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
+from distal.fields.combine.alternatives import SELECT
 from distal.fields.guarantees import Primitive
 from distal.ir.build import swizzle
 from distal.ir.nodes import Compose, Expr
 from distal.ir.types import VEC2
+from distal.scene.lowering.selection import selected
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
 
@@ -25,6 +29,8 @@ def has_chord(node: Node) -> bool:
     rule = node.rule
     if isinstance(rule, Primitive):
         return rule.chord is not None
+    if rule is SELECT:
+        return all(map(has_chord, node.children))
     return rule.turn is not None and has_chord(node.children[0])
 
 
@@ -52,6 +58,12 @@ def chord_of(
     if isinstance(rule, Primitive):
         assert rule.chord is not None
         return body.let("chord", composer.call(rule.chord, {**given, "direction": direction}))
+    if rule is SELECT:
+        first, second = (
+            partial(chord_of, composer, node=child, line=line, cell=cell, values=share)
+            for child, share in zip(node.children, shares, strict=True)
+        )
+        return selected(body, given["second"], first, second, type=VEC2)
     assert rule.turn is not None
     turned = body.let("way", composer.call(rule.turn, {**given, "p": direction}))
     moved, _ = composer.moved(body, rule, given)

@@ -5,15 +5,21 @@ Input: a tree. Output: objects that the executor runs.
 
 from __future__ import annotations
 
+from typing import Final
+
 from distal.frontend import Assembly
 from distal.ir.nodes import Call, Gradient, Param, Read, Return
 from distal.ir.types import FLOAT, VEC2, VEC3, tuple_type
 from distal.lang.composed import Composed
 from distal.scene.lowering.bounds import BoundsComposer, packed_types
-from distal.scene.lowering.parts.table import rolled_for
+from distal.scene.lowering.parts.table import rolled_for, split_table
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values, plain_name
+
+# With more parts that move, the box is one for all times and all values of parameters: its function
+# would be long.
+MOST_MOVING: Final = 512
 
 
 class DistanceOf(Composed):
@@ -72,7 +78,11 @@ class BoundsOf(Composed):
         It returns (slope, divisor, low, high, growth, side_growth).
         """
         body, node = StatementList(), rolled_for(assembly, self._node)
+        table, _ = split_table(node)
+        if table is not None and table.table.moves and self._node.parts <= MOST_MOVING:
+            node = self._node  # the box of a table holds its parts at all times
         values = Values(assembly)
         found = BoundsComposer(values).of(body, node, values.all(node))
+        found = found.emptied(body, assembly.call)
         body.statements.append(Return(found.packed(body)))
         return assembly.define("bounds", (), self.result, body.statements, node.place)

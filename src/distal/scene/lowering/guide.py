@@ -26,7 +26,6 @@ from distal.scene.tree.values import StatementList
 
 if TYPE_CHECKING:
     from distal.scene.scene import Scene
-    from distal.scene.tree.node import Node
 
 
 class GuideImage(Composed):
@@ -55,7 +54,7 @@ class GuideImage(Composed):
             "lens": made.camera.lens(body, size),
             "now": made.camera.steer(body, steering.PREFIX),
             "goal": made.camera.steer(body, steering.GOAL_PREFIX),
-            "box": _finite_box(made, body, node),
+            "box": box_of_finite(made, body, guide.box_of),
             "field": composer.safe_field(node, values, ZERO_CELL),
         }
         action = {**given, "action": assembly.number(steering.ACTION, INT, 0)}
@@ -70,12 +69,18 @@ class GuideImage(Composed):
         return self._scene.functions()
 
 
-def _finite_box(made: SceneLowering, body: StatementList, root: Node) -> Expr:
-    """Return the box around all parts of the scene that are finite; planes have no part in it."""
+def box_of_finite(made: SceneLowering, body: StatementList, box: Func) -> Expr:
+    """Return the box around the parts of the scene that are finite; planes have no part in it.
+
+    Args:
+        made: The scene.
+        body: Takes the statements.
+        box: ``guide.box_of``, without the ground, or ``ruler.box_of_all``.
+    """
     composer = made.composer
     parts = body.let("parts", composer.call(guide.no_parts, {}))
     # The last part first: of boxes of the same size the first one counts.
-    for node in reversed(list(parts_of(root))):
+    for node in reversed(list(parts_of(made.node))):
         part = composer.bounds.of(body, node, composer.values.all(node)).bounds
         parts = body.let("parts", composer.call(guide.with_part, {"parts": parts, "bounds": part}))
-    return composer.call(guide.box_of, {"parts": parts})
+    return composer.call(box, {"parts": parts})

@@ -7,11 +7,12 @@ operators of the same kind share: making a shape does not compile its children a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 from weakref import WeakKeyDictionary
 
+from distal.fields.combine.alternatives import NOTHINGS, SELECT
 from distal.fields.guarantees import Bounds, Bounds2, Primitive
 from distal.frontend import Assembly
 from distal.ir.nodes import Construct, Param, Read, Return
@@ -22,6 +23,7 @@ from distal.lang.resources import Buffer, TextureValue
 from distal.lang.runtime_access import executor
 from distal.packages import imported
 from distal.scene.lowering.bounds import PACKED, BoundsComposer, ShapeBounds, packed_types
+from distal.scene.tree.conversion import NO_VALUES
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values
 
@@ -58,7 +60,20 @@ def known_bounds_of(node: Node) -> KnownBounds:
     return _known[node]
 
 
+def bounds_with(node: Node, name: str, value: float) -> KnownBounds:
+    """Return a node's bounds with another value of one of its numbers.
+
+    Args:
+        node: The node, an operator on one shape.
+        name: The name of the number.
+        value: Its value.
+    """
+    return _call(node, [known_bounds_of(child) for child in node.children], {name: value})
+
+
 def _computed(node: Node) -> KnownBounds:
+    if (shown := _shown(node)) is not None:
+        return known_bounds_of(shown)
     inner = [known_bounds_of(child) for child in node.children]
     if len(inner) < 2:
         return _call(node, inner)
@@ -69,14 +84,26 @@ def _computed(node: Node) -> KnownBounds:
     return result
 
 
-def _call(node: Node, inner: Sequence[KnownBounds]) -> KnownBounds:
+def _shown(node: Node) -> Node | None:
+    """Return the shape that is selected, or nothing is: a shape is checked as if it were shown."""
+    if node.rule is not SELECT:
+        return None
+    first, second = node.children
+    if first.rule in NOTHINGS:
+        return second
+    return first if second.rule in NOTHINGS else None
+
+
+def _call(
+    node: Node, inner: Sequence[KnownBounds], changed: Mapping[str, float] = NO_VALUES
+) -> KnownBounds:
     np = imported("numpy")  # only what runs scene code needs it
 
     args: list[Any] = []
     for bounds in inner:
         args += [getattr(bounds, part) for part in PACKED]
-    args += [_plain(number.value) for number in node.numbers.values()]
-    doubles = tuple(np.asarray(arg, np.float64)[None] for arg in args)
+    args += [changed.get(n, _plain(number.value)) for n, number in node.numbers.items()]
+    doubles = tuple(np.asarray(arg, _dtype(arg, np))[None] for arg in args)
     found = executor().call(_bounds_step(node, len(inner)), doubles, {}, device="reference")
     # A shape without numbers is a function without arguments: its results have no axis of rows.
     first = [np.asarray(part, np.float64)[0 if doubles else ...].tolist() for part in found]
@@ -84,11 +111,17 @@ def _call(node: Node, inner: Sequence[KnownBounds]) -> KnownBounds:
     return KnownBounds(slope, divisor, tuple(low), tuple(high), growth, side_growth)
 
 
+def _dtype(value: Any, np: Any) -> Any:
+    if isinstance(value, bool):
+        return np.bool_
+    return np.int32 if isinstance(value, int) else np.float64
+
+
 def _plain(value: Any) -> Any:
     if not isinstance(value, Expression):
         return value
     found = executor().value(value, {}, 0.0)
-    return found if isinstance(found, float) else tuple(found)
+    return found if isinstance(found, float | int) else tuple(found)
 
 
 def _bounds_step(node: Node, count: int) -> _BoundsStep:

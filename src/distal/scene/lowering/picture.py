@@ -53,6 +53,7 @@ from distal.scene.lowering.attributes import (
     of_part,
 )
 from distal.scene.lowering.bodies import BodyFunctions, bodies_of, largest_of, members_of
+from distal.scene.lowering.bumps import has_bump, tilted
 from distal.scene.lowering.camera_functions import CameraFunctions
 from distal.scene.lowering.glass_shadows import colored_shadow, split_glass
 from distal.scene.lowering.light_functions import LightFunctions
@@ -61,9 +62,9 @@ from distal.scene.lowering.photon_functions import PhotonFunctions
 from distal.scene.lowering.ray_functions import RayFunctions, step_limit, united
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.lowering.thin_sheets import with_insides
-from distal.scene.tree.calls import expression_of
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
+from distal.scene.tree.varying import expression_of
 
 if TYPE_CHECKING:
     from distal.scene.scene import Scene
@@ -377,6 +378,26 @@ class SceneLowering:
             given |= self._lights.lamps(scene.shape.node)
         return given
 
+    def given_of_layers(
+        self, body: StatementList, resolution: Expr, *, steered: bool
+    ) -> dict[str, Expr]:
+        """Return the values of ``given`` for programs that read the field at surfaces.
+
+        Args:
+            body: The statements to add to.
+            resolution: Size of the picture in pixels.
+            steered: Whether the camera is moved by the numbers of a ``Steering``.
+        """
+        given = self.given(body, resolution, steered=steered)
+        if self._shown_node is not self.node:
+            given["field"] = self._shown_field()
+        return given
+
+    def _shown_field(self) -> FunctionRef:
+        """Return the author's field, which views and layers show."""
+        values = self.composer.values.all(self._shown_node)
+        return self.composer.field(self._shown_node, values, ZERO_CELL)
+
     def _shadow(self, body: StatementList, given: Mapping[str, Expr]) -> FunctionRef:
         """Return the function ``(origin, light, sample, samples) -> Opening``."""
         scene, composer = self._scene, self.composer
@@ -463,8 +484,7 @@ class SceneLowering:
                 values = self.composer.values.all(self.node)
                 asked["field"] = self.composer.safe_field(self.node, values, ZERO_CELL)
             elif self._shown_node is not self.node:
-                values = self.composer.values.all(self._shown_node)
-                asked["field"] = self.composer.field(self._shown_node, values, ZERO_CELL)
+                asked["field"] = self._shown_field()
             if shown is VIEWS.get(view):
                 asked |= self._shown_numbers(view, body, asked)
             if shown is layers.layer_material:
@@ -580,7 +600,10 @@ class SceneLowering:
 
         footprint = self._assembly.struct(Footprint)
         params = (("p", VEC3), ("footprint", footprint), ("part", INT))
-        return self._function("surface_of_hit", params, make)
+        found = self._function("surface_of_hit", params, make)
+        if not has_bump(node, self._scene.material):
+            return found
+        return tilted(self._assembly, self._function, found, params)
 
     def _material_number(self, kind: MaterialNumber) -> FunctionRef:
         """Return the function ``(p) -> float``: the number of the material at a place."""

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from distal.fields.boxes import given_slope
+from distal.fields.combine.alternatives import SELECT
 from distal.fields.combine.joins import DIFFERENCE, INTERSECTION, UNION, XOR
 from distal.fields.guarantees import Guarantee, Primitive
 from distal.fields.place.flat import SCALE_FLAT
@@ -21,7 +22,7 @@ from distal.scene.tree.node import Node
 
 # The operators whose zero set depends only on the signs of their children, and those that only
 # scale the child's value: to divide a child by its own divisor does not move the surface.
-SIGNS_ONLY: Final = frozenset((UNION, INTERSECTION, DIFFERENCE, XOR))
+SIGNS_ONLY: Final = frozenset((UNION, INTERSECTION, DIFFERENCE, XOR, SELECT))
 SCALES_VALUE: Final = frozenset((SCALE, SCALE_FLAT))
 
 

@@ -14,11 +14,13 @@ function if no part needs a divisor.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any, Final
 
+from distal.fields.combine.alternatives import NOWHERE, SELECT
 from distal.fields.guarantees import BOUNDS_OF_CHILDREN, Operator, Primitive
 from distal.frontend import Assembly
-from distal.ir.build import builtin, divide, multiply
+from distal.ir.build import builtin, divide, multiply, select
 from distal.ir.build import field as field_of
 from distal.ir.build import number as constant_number
 from distal.ir.nodes import Call, Expr, FunctionRef, Param, Read, Return
@@ -29,14 +31,15 @@ from distal.scene.lowering.bounds import BoundsComposer
 from distal.scene.lowering.part_functions import PartFunctions
 from distal.scene.lowering.parts.table import TableNode
 from distal.scene.lowering.safe_parts import SafeParts
+from distal.scene.lowering.selection import selected
 from distal.scene.lowering.smooth.cells import CellNode, MemberGrid
 from distal.scene.lowering.smooth.functions import MemberFunctions
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values, plain_name
+from distal.scene.tree.varying import ZERO_CELL as ZERO_CELL
+from distal.scene.tree.varying import VaryingNumber
 
-# The cell outside of any repetition.
-ZERO_CELL: Final = constant_number(0.0, VEC3)
 ONE: Final = constant_number(1.0)
 
 
@@ -53,6 +56,7 @@ class ShapeComposer:
         self._known_keys: dict[Any, int] = {}
         self._functions: dict[tuple[int, str, int | None, bool], str] = {}
         self._uses_cell: dict[int, bool] = {}
+        self._in_cells: dict[str, str] = {}
         self._count: dict[int, int] = {}
         self._kinds: dict[int, set[int]] = {}
         self._count_kinds(root_nodes)
@@ -90,7 +94,8 @@ class ShapeComposer:
         found = self._uses_cell.get(id(node))
         if found is None:
             names = {n for f in rule_functions(node) for n in self.assembly.parameter_names(f)}
-            found = "cell" in names or any(map(self.uses_cell, node.children))
+            varies = any(isinstance(v, VaryingNumber) for v in node.constants.values())
+            found = varies or "cell" in names or any(map(self.uses_cell, node.children))
             self._uses_cell[id(node)] = found
         return found
 
@@ -121,6 +126,41 @@ class ShapeComposer:
         name, captures = self._function(node, values, cell)
         point = VEC2 if node.flat else VEC3
         return FunctionRef(name, captures, FunctionType((point,), FLOAT))
+
+    def field_around(
+        self, node: Node, child: Node, values: Sequence[Expr], cell: Expr
+    ) -> FunctionRef:
+        """Return the child's distance as the functions around it take it.
+
+        Of a repetition it is a function of the point and the cell: in each cell, the child may be
+        another.
+
+        Args:
+            node: The node, whose rule evaluates the child at several points.
+            child: The child.
+            values: The numbers of the child.
+            cell: The index of the repetition around the node.
+        """
+        of_point = self.field(child, values, cell)
+        rule = node.rule
+        assert isinstance(rule, Operator)
+        if not rule.repeats:
+            return of_point
+        captures = of_point.captures[:-1] if self.uses_cell(child) else of_point.captures
+        point = Param("p", VEC2 if child.flat else VEC3)
+        passed = [Param(f"value_{i}", value.type) for i, value in enumerate(captures)]
+        own = [Read(param.name, param.type) for param in (point, *passed)]
+        if self.uses_cell(child):
+            own.append(Read("cell", VEC3))
+        made = of_point.name
+        if made not in self._in_cells:
+            params = (point, Param("cell", VEC3), *passed)
+            result = Return(Call(of_point.name, tuple(own), FLOAT))
+            self._in_cells[made] = self.assembly.define(
+                f"{of_point.name}_in_cell", params, FLOAT, (result,), node.place
+            )
+        type = FunctionType((point.type, VEC3), FLOAT)
+        return FunctionRef(self._in_cells[made], captures, type)
 
     def safe_field(self, node: Node, values: Sequence[Expr], cell: Expr) -> FunctionRef:
         """Return a subtree's safe field, as a function of the point alone.
@@ -276,10 +316,16 @@ class ShapeComposer:
                 refuse(message, None, node.place)
             return body.let("d", value)
         if rule.around is not None:
-            given["field"] = self.field(node.children[0], shares[0], cell)
-            return body.let("d", self.call(rule.around, given))
-        inner_p, inner_cell = self.moved(body, rule, given)
+            given["field"] = self.field_around(node, node.children[0], shares[0], cell)
+            return existing(body, given, body.let("d", self.call(rule.around, given)))
         of_children = self.parts.shared_out(node, factors)
+        if rule is SELECT:
+            first, second = (
+                partial(self.distance, node=child, p=p, cell=cell, values=share, factors=own)
+                for child, share, own in zip(node.children, shares, of_children, strict=True)
+            )
+            return selected(body, given["second"], first, second)
+        inner_p, inner_cell = self.moved(body, rule, given)
         parts = (
             self.distance(body, child, inner_p, inner_cell, share, own)
             for child, share, own in zip(node.children, shares, of_children, strict=True)
@@ -292,7 +338,7 @@ class ShapeComposer:
                 result = body.let("d", result)
         if rule.finish is not None:
             result = body.let("d", self.call(rule.finish, {**given, "d": result}))
-        return result
+        return existing(body, given, result)
 
     def _unchanged(self, node: Node, rule: Primitive, given: Mapping[str, Expr]) -> FunctionRef:
         """Return an author's function as a function of the point alone, before it is normalized.
@@ -323,11 +369,12 @@ class ShapeComposer:
 
         Arguments as for ``distance``.
         """
-        own, shares = self.values.split(node, values)
-        given = {**own, "p": p, "cell": cell}
-        taken = {n for f in rule_functions(node) for n in self.assembly.parameter_names(f)}
-        if node.children and taken & BOUNDS_OF_CHILDREN:
-            given |= self.bounds.given(body, node, shares)
+        with self.values.in_cell(cell):
+            own, shares = self.values.split(node, values)
+            given = {**own, "p": p, "cell": cell}
+            taken = {n for f in rule_functions(node) for n in self.assembly.parameter_names(f)}
+            if node.children and taken & BOUNDS_OF_CHILDREN:
+                given |= self.bounds.given(body, node, shares)
         return given, shares
 
     def moved(
@@ -358,6 +405,21 @@ class ShapeComposer:
         return body.let("q", place), cell
 
 
+def existing(body: StatementList, given: Mapping[str, Expr], d: Expr) -> Expr:
+    """Return the distance of an operator; where there is nothing below it, that to nothing.
+
+    An operator that knows the box of its child never returns more than the distance to some box.
+
+    Args:
+        body: The statements to add to.
+        given: The values for the operator's functions, by name.
+        d: The distance.
+    """
+    if "exists" not in given:
+        return d
+    return body.let("d", select(given["exists"], d, constant_number(NOWHERE)))
+
+
 def rule_functions(node: Node) -> tuple[Func, ...]:
     """Return the functions of a node's rule that are called for each point."""
     rule = node.rule
@@ -369,7 +431,7 @@ def rule_functions(node: Node) -> tuple[Func, ...]:
 def _identity(value: Any) -> Any:
     if isinstance(value, bool | int):
         return (type(value), value)
-    if isinstance(value, TextureValue | Buffer):
+    if isinstance(value, TextureValue | Buffer | VaryingNumber):
         return id(value)
     return (value.type, value.value)
 

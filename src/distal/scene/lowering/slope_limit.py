@@ -12,12 +12,16 @@ from dataclasses import replace
 from typing import Final, NoReturn, TypeAlias
 
 from distal.fields.guarantees import ENDLESS, Operator, Primitive
+from distal.ir.types import INT
+from distal.lang.expressions import Expression
 from distal.lang.runtime_access import executor
 from distal.packages import PackageError, imported
 from distal.scene.lowering.derived import GradientOf
-from distal.scene.lowering.known_bounds import known_bounds_of
+from distal.scene.lowering.known_bounds import bounds_with, known_bounds_of
+from distal.scene.tree.conversion import Number
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
+from distal.scene.tree.whole_numbers import whole_ends
 
 # The low and the high corner.
 Box: TypeAlias = "tuple[tuple[float, ...], tuple[float, ...]]"
@@ -42,6 +46,21 @@ def check_slope(node: Node) -> None:
     if not slope < ENDLESS:
         boxes = [known_bounds_of(child) for child in node.children]
         refuse_steepness(node, [(box.low, box.high) for box in boxes])
+    for name, number in node.numbers.items():
+        if number.type is INT:
+            _check_slope_at_ends(node, name, number)
+
+
+def _check_slope_at_ends(node: Node, name: str, number: Number) -> None:
+    """Refuse a count at whose largest or smallest value an operator has no bound on its slope."""
+    assert isinstance(number.value, Expression)
+    ends = whole_ends(number.value)
+    assert ends is not None, "checked on conversion"
+    for end in ends:
+        if not bounds_with(node, name, end).slope < ENDLESS:
+            boxes = [known_bounds_of(child) for child in node.children]
+            corners = [(box.low, box.high) for box in boxes]
+            refuse_steepness(node, corners, f" where '{name}' is {end}")
 
 
 def check_gradient(node: Node) -> None:
@@ -89,10 +108,16 @@ def loses_slope(slope: float, inner: Sequence[float]) -> bool:
     return not slope < ENDLESS and all(of_child < ENDLESS for of_child in inner)
 
 
-def refuse_steepness(node: Node, boxes: Sequence[Box]) -> NoReturn:
-    """Raise the error for an operator on children with these boxes, at its line."""
+def refuse_steepness(node: Node, boxes: Sequence[Box], where: str = "") -> NoReturn:
+    """Raise the error for an operator on children with these boxes, at its line.
+
+    Args:
+        node: The operator.
+        boxes: The boxes.
+        where: For which value of a number, with a space before it; "" for all.
+    """
     assert isinstance(node.rule, Operator)
-    message = f"{node.rule.name} gives this shape no bound on its slope"
+    message = f"{node.rule.name} gives this shape no bound on its slope{where}"
     hint = f"{node.rule.name} needs {node.rule.needs}{_boxed(boxes)}"
     refuse(message, hint, node.place)
 

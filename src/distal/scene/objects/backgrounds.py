@@ -41,7 +41,7 @@ from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.scene.objects import images as image_files
-    from distal.scene.objects.argument_types import Color, Image, Number
+    from distal.scene.objects.argument_types import Argument, Color, Image, Number
 else:
     image_files = LazyModule("distal.scene.objects.images")  # needs NumPy
 
@@ -69,7 +69,7 @@ class Background(CalledObject):
     noun: ClassVar[str] = "background"
     light: Light | None
 
-    def __init__(self, what: Color | Func, **numbers: Any) -> None:
+    def __init__(self, what: Color | Func, **numbers: Argument) -> None:
         place = author_place()
         if isinstance(what, Func):
             call = _own(what, numbers, place)

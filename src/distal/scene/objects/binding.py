@@ -19,6 +19,7 @@ from distal.frontend.signatures.signatures import read_signature
 from distal.ir.types import FLOAT, VEC2, VEC3, Vector
 from distal.lang.functions import Func
 from distal.lang.lazy_module import LazyModule
+from distal.lang.places import CELL
 from distal.lang.resources import Texture2D
 from distal.scene.tree.arguments import RESERVED, RESERVED_OF_SHAPES, arguments
 from distal.scene.tree.calls import result_of
@@ -32,6 +33,8 @@ else:
     measuring = LazyModule("distal.scene.objects.measuring")
 
 
+# What numbers of shapes may depend on.
+_VARIES: Final = frozenset((CELL,))
 # The functions that normalize, by ``flat`` and by whether there are bounds.
 _NORMALIZED: Final[Mapping[tuple[bool, bool], Func]] = {
     (False, False): normalizing.normalized,
@@ -66,6 +69,9 @@ def bound(
         requires=rule.requires,
         place=place,
         reserved=reserved,
+        changing=True,
+        varies=_VARIES,
+        endless=rule.endless if isinstance(rule, Primitive) else (),
     )
     if isinstance(rule, Primitive):
         for name, texture in rule.measured.items():

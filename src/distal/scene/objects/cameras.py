@@ -27,11 +27,12 @@ from distal.scene.objects.declared import (
     scene_call,
 )
 from distal.scene.objects.scene_object import CalledObject
-from distal.scene.tree.calls import Composer, FunctionCall
+from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import Asked, number
 from distal.scene.tree.conversion import Number as CheckedNumber
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.source_places import author_place
+from distal.scene.tree.varying import Composer
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Number, Vector

@@ -28,6 +28,7 @@ from distal.scene.tree.conversion import NO_VALUES, Asked, Number, is_scalar, nu
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
 from distal.scene.tree.source_places import author_place
+from distal.scene.tree.varying import varied_in
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Columns, Vector
@@ -114,6 +115,12 @@ def copied(what: str, shapes: Sequence[BaseShape], given: CopyColumns, place: Sp
             refuse_kind(f"{what} takes shapes, not {shape!r:.60}", place=place)
         if shape.flat:
             refuse(f"{what} takes solid shapes", ".extrude(height) first", place)
+        if varied := varied_in(shape.node):
+            refuse(
+                f"'{varied[0].label}' depends on the cell, and copies with columns have none",
+                "array(positions) alone has cells; or give each copy its number in a column",
+                place,
+            )
     with _garbage_collection_paused():
         return PLAIN[False]._of(_union(what, shapes, given, place))
 

@@ -21,6 +21,7 @@ from distal.frontend.signatures.signatures import MISSING
 from distal.ir.types import BOOL, FLOAT, INT, Texture, Type
 from distal.ir.types import Buffer as BufferType
 from distal.lang.functions import Func
+from distal.lang.places import PLACES
 from distal.render.declarations import Declaration, ExtraParameter, Family
 from distal.scene.tree.arguments import Accept, FunctionParameter, arguments, slots_of, takes_color
 from distal.scene.tree.calls import FunctionCall
@@ -192,6 +193,7 @@ def scene_call(
         reserved=family.site,
         colors=family.colors,
         accept=accept,
+        varies=PLACES & frozenset(family.site) if family.varies else frozenset(),
     )
     return FunctionCall(what, function, values, place)
 

@@ -97,7 +97,7 @@ def extents_of(
         refuse(message, "cut it first: shape & Box(…)", place)
     size = max(b - a for a, b in zip(low, high, strict=True))
     measure = _from_far if Guarantee.EXACT_OUTSIDE in shape.claims else _searched
-    found = measure(shape, low, high, size, params, time)
+    found = measure(shape, low, high, size, params, time) if size >= 0.0 else None
     if found is None:
         message = f"{what} found nothing of '{shape.name}' in its box"
         refuse(message, "is something left of it? Look at it with distal view", place)

@@ -7,8 +7,9 @@ library's threads, prisms and cones. Does not contain formulas of distances.
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
+from distal.fields.solids.threads import DEPTH
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.metric_sizes import MetricSize, metric_size
 from distal.scene.objects.shape import Shape
@@ -16,6 +17,9 @@ from distal.scene.objects.shapes import made_of
 from distal.scene.tree.conversion import is_scalar
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.source_places import author_place
+
+if TYPE_CHECKING:
+    from distal.scene.objects.argument_types import Amount
 
 # Depth of a thread for a pitch of 1, and so the usual chamfer at its end.
 _CHAMFER: Final = 0.6
@@ -39,7 +43,7 @@ class MetricThread(Shape):
     """
 
     def __init__(
-        self, size: str, length: Any = 20.0, *, pitch: Any = None, left: bool = False
+        self, size: str, length: Amount = 20.0, *, pitch: float | None = None, left: bool = False
     ) -> None:
         row = metric_size(size, "MetricThread", author_place())
         pitch = row.pitch if pitch is None else pitch
@@ -66,11 +70,11 @@ class MetricHole(Shape):
     def __init__(
         self,
         size: str,
-        length: Any = 10.0,
+        length: Amount = 10.0,
         *,
-        clearance: Any = 0.1,
+        clearance: Amount = 0.1,
         threaded: bool = True,
-        pitch: Any = None,
+        pitch: float | None = None,
         left: bool = False,
         through: bool = True,
     ) -> None:
@@ -96,7 +100,7 @@ class Bolt(Shape):
         size: "M2" to "M20"; the head is that of ISO 4014.
         length: Length below the head in millimetres.
         thread: Length of the thread; None for twice the diameter plus 6 mm, as ISO 888, or the
-            whole length.
+            whole length. Before a shank, the depth of the last pitch falls to 0.
         left: Whether the thread is left-handed.
 
     Raises:
@@ -104,7 +108,7 @@ class Bolt(Shape):
     """
 
     def __init__(
-        self, size: str, length: Any = 20.0, *, thread: Any = None, left: bool = False
+        self, size: str, length: Amount = 20.0, *, thread: Amount | None = None, left: bool = False
     ) -> None:
         place = author_place()
         row = metric_size(size, "Bolt", place)
@@ -121,6 +125,7 @@ class Bolt(Shape):
         if not isinstance(plain, float | int) or plain > 0.0:
             shank = made_of("Cylinder", 0.5 * row.diameter, plain + 0.5 * row.head)
             parts.append(shank.translate(0.0, 0.25 * row.head - 0.5 * plain, 0.0))
+            parts.append(_run_out(row).translate(0.0, -0.5 * row.pitch - plain, 0.0))
         head = _hexagon(row, row.head, both=False).translate(0.0, 0.5 * row.head, 0.0)
         BaseShape.__init__(self, head.union(*parts).named("Bolt").node)
 
@@ -140,7 +145,7 @@ class Nut(Shape):
     pitch: float
     left: bool
 
-    def __init__(self, size: str, *, clearance: Any = 0.1, left: bool = False) -> None:
+    def __init__(self, size: str, *, clearance: Amount = 0.1, left: bool = False) -> None:
         row = metric_size(size, "Nut", author_place())
         sink = _SINK * row.diameter
         self.__dict__.update(pitch=row.pitch, left=left)
@@ -148,7 +153,7 @@ class Nut(Shape):
         made = _hexagon(row, row.nut, both=True) - hole
         BaseShape.__init__(self, made.named("Nut").node)
 
-    def screwed(self, height: Any) -> Shape:
+    def screwed(self, height: Amount) -> Shape:
         """Return the nut with its middle at a height on its bolt, turned as the thread turns it.
 
         ``height`` may be a parameter, or follow the time.
@@ -161,6 +166,12 @@ def _screwed(shape: Any, height: Any, pitch: Any, left: bool) -> Any:
     """Return a thread that is moved along its axis and turned, so that its grooves stay."""
     turn = (-math.tau if left else math.tau) / pitch
     return shape.translate(0.0, height, 0.0).rotate(y=turn * height)
+
+
+def _run_out(row: MetricSize) -> Any:
+    """Return what fills the grooves of the last pitch before a shank: their depth falls to 0."""
+    crest = 0.5 * row.diameter
+    return made_of("CappedCone", crest - DEPTH * row.pitch, crest, row.pitch)
 
 
 def _threaded_length(row: MetricSize, length: Any, thread: Any, place: Any) -> Any:

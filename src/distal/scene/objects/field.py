@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from os import PathLike
-from typing import Any, ClassVar, Final, NoReturn, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeVar, Unpack, overload
 
 from distal.diagnostics import Span
 from distal.fields.combine import blends, joins
@@ -21,26 +21,55 @@ from distal.ir.nodes import Call, Param, Read, Return
 from distal.ir.types import FLOAT, INT, VEC3, Type
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
+from distal.lang.places import CELL
 from distal.lang.presentable import Presentable
-from distal.lang.runtime_access import executor
+from distal.lang.runtime_access import executor, viewing
 from distal.scene.lowering.derived import BoundsOf, GradientOf
 from distal.scene.lowering.parts.table import rolled_for
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.lowering.slope_limit import check_gradient, check_slope
+from distal.scene.lowering.varied_cells import with_bounds_of_cells
 from distal.scene.objects.binding import bound, own_node
 from distal.scene.objects.materials import as_material
 from distal.scene.objects.other_names import instead
 from distal.scene.objects.proving import proved
 from distal.scene.objects.vm_shapes import vm_node
 from distal.scene.tree.arguments import RESERVED, slots_of
-from distal.scene.tree.conversion import Asked, Number, choice, number
+from distal.scene.tree.conversion import Asked, number, plain_choice
+from distal.scene.tree.conversion import Number as Checked
+from distal.scene.tree.described import described
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
 from distal.scene.tree.source_places import author_place
 from distal.scene.tree.values import plain_name
 
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from distal.images.picture import Picture
+    from distal.lang import vec2, vec3
+    from distal.scene.objects.argument_types import (
+        Argument,
+        ArrayLike,
+        BlendNumbers,
+        Box,
+        Corners,
+        Number,
+        Painted,
+        ParameterValues,
+        Place2,
+        Place3,
+        Rows,
+    )
+    from distal.scene.steering import Steering
+
 # The most primitives in a tree: a hundred thousand take some hundred megabytes.
 MOST_PARTS: Final = 1_000_000
+
+
+# The class of the receiver. jedi takes Self for the class that defines the method.
+S = TypeVar("S", bound="BaseShape")
 
 
 class BaseShape(Composed, Presentable):
@@ -65,10 +94,15 @@ class BaseShape(Composed, Presentable):
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a {type(self).__name__} does not change; make another")
 
-    def __getattr__(self, name: str) -> NoReturn:
-        of_others = not name.startswith("_") and hasattr(PLAIN[not self.flat], name)
-        message = instead(type(self).__name__, name, flat=self.flat, of_others=of_others)
-        raise AttributeError(message, name=name, obj=self)
+    if not TYPE_CHECKING:  # a checker reports an unknown name itself
+
+        def __getattr__(self, name):
+            of_others = not name.startswith("_") and hasattr(PLAIN[not self.flat], name)
+            message = instead(type(self).__name__, name, flat=self.flat, of_others=of_others)
+            raise AttributeError(message, name=name, obj=self)
+
+    def __repr__(self) -> str:
+        return described(type(self).__name__, self.node)
 
     @property
     def name(self) -> str:  # type: ignore[override]
@@ -101,8 +135,21 @@ class BaseShape(Composed, Presentable):
         """Yield the scene functions that the shape calls."""
         return self.node.functions()
 
+    @overload
     def __call__(
-        self, *points: Any, params: Mapping[str, Any] | None = None, time: float = 0.0
+        self, point: Place2 | Place3, /, *, params: ParameterValues | None = None, time: float = 0.0
+    ) -> float: ...
+    @overload
+    def __call__(
+        self,
+        points: ArrayLike | Rows,
+        /,
+        *,
+        params: ParameterValues | None = None,
+        time: float = 0.0,
+    ) -> NDArray[np.floating[Any]]: ...
+    def __call__(
+        self, *points: Any, params: ParameterValues | None = None, time: float = 0.0
     ) -> Any:
         """Return the signed distance at points, negative inside.
 
@@ -117,8 +164,71 @@ class BaseShape(Composed, Presentable):
         """
         return self._asked(self, points, params, time)
 
+    def render(
+        self,
+        size: tuple[int, int] = (640, 480),
+        time: float = 0.0,
+        params: ParameterValues | None = None,
+        device: str = "cpu",
+        *,
+        samples: int | None = None,
+        mode: str | None = None,
+        view: str = "color",
+        transparent: bool = False,
+        steering: Steering | None = None,
+    ) -> Picture:
+        """Render a picture of the shape alone: its camera, light and background are chosen for it.
+
+        A flat shape is shown as it lies in its plane. ``Scene(shape).render`` has more options.
+
+        Args:
+            size: Width and height in pixels.
+            time: Time in seconds.
+            params: Values of parameters by name; the others have their defaults.
+            device: The device to render on, as for ``Scene.render``.
+            samples: Samples in each pixel, as for ``Scene.render``.
+            mode: How light is computed: "direct" or "path"; None: directly.
+            view: What to show, as for ``Scene.render``.
+            transparent: Whether alpha is 0 where a ray hits nothing.
+            steering: The movement of the camera, as for ``Scene.render``.
+
+        Raises:
+            CompileError: The shape's scene code has mistakes.
+            DeviceError: The device is missing or was lost.
+        """
+        scene = viewing.viewable(self, params, time).scene
+        assert scene is not None
+        return scene.render(
+            size,
+            time,
+            params,
+            device,
+            samples=samples,
+            mode=mode,
+            view=view,
+            transparent=transparent,
+            steering=steering,
+        )
+
+    @overload
     def gradient(
-        self, *points: Any, params: Mapping[str, Any] | None = None, time: float = 0.0
+        self, point: Place2, /, *, params: ParameterValues | None = None, time: float = 0.0
+    ) -> vec2: ...
+    @overload
+    def gradient(
+        self, point: Place3, /, *, params: ParameterValues | None = None, time: float = 0.0
+    ) -> vec3: ...
+    @overload
+    def gradient(
+        self,
+        points: ArrayLike | Rows,
+        /,
+        *,
+        params: ParameterValues | None = None,
+        time: float = 0.0,
+    ) -> NDArray[np.floating[Any]]: ...
+    def gradient(
+        self, *points: Any, params: ParameterValues | None = None, time: float = 0.0
     ) -> Any:
         """Return the gradient of the distance at points, an array of the shape of ``points``.
 
@@ -147,13 +257,13 @@ class BaseShape(Composed, Presentable):
         found = executor().call(self._bounds_function, (), {}, params=params, time=time)
         return tuple(found)
 
-    def bounds(self, *, params: Mapping[str, Any] | None = None, time: float = 0.0) -> Any:
+    def bounds(self, *, params: ParameterValues | None = None, time: float = 0.0) -> Box:
         """Return a box (low, high) around the surface and the inside, two tuples.
 
         A side without end is infinite.
         """
         low, high = self._known_bounds(params, time)[2:4]
-        return tuple(tuple(map(ended, corner)) for corner in (low, high))
+        return tuple(map(ended, low)), tuple(map(ended, high))
 
     @property
     def slope(self) -> float:
@@ -199,7 +309,10 @@ class BaseShape(Composed, Presentable):
             kind, fix = ("solid", ".extrude(height)") if self.flat else ("flat", ".slice()")
             refuse(f"{rule.name} works on {kind} shapes", f"{fix} first", place)
         numbers, constants = bound(rule, args, kwargs, place)
-        children = (self.node, *(other.node for other in others))
+        own = self.node
+        if rule.repeats:
+            own = with_bounds_of_cells(own, rule, numbers, constants, place)
+        children = (own, *(other.node for other in others))
         node = Node(rule, flat, children, numbers, constants, place)
         check_slope(node)
         return self._of(node)
@@ -241,7 +354,13 @@ class BaseShape(Composed, Presentable):
             return self._of(Node(rule, self.flat, own.followed_by(nodes), {}, constants, place))
         return self._of(Node(rule, self.flat, (own, *nodes), numbers, constants, place))
 
-    def union(self, *others: Any, smooth: Any = 0.0, blend: str = "quadratic", **k: Any) -> Self:
+    def union(
+        self: S,
+        *others: BaseShape | Iterable[BaseShape],
+        smooth: Number = 0.0,
+        blend: str = "quadratic",
+        **k: Unpack[BlendNumbers],
+    ) -> S:
         """Unite with other shapes; also written ``a | b``.
 
         Args:
@@ -253,61 +372,71 @@ class BaseShape(Composed, Presentable):
                 soft.
             k: ``count``: number of columns or stairs.
         """
-        joined: Self = self._combined(joins.UNION, others, smooth, blend, **k)
+        joined: S = self._combined(joins.UNION, others, smooth, blend, **k)
         return joined
 
     def intersection(
-        self, *others: Any, smooth: Any = 0.0, blend: str = "quadratic", **k: Any
-    ) -> Self:
+        self: S,
+        *others: BaseShape | Iterable[BaseShape],
+        smooth: Number = 0.0,
+        blend: str = "quadratic",
+        **k: Unpack[BlendNumbers],
+    ) -> S:
         """Intersect with other shapes; also written ``a & b``.
 
         Arguments as for ``union``.
         """
-        joined: Self = self._combined(joins.INTERSECTION, others, smooth, blend, **k)
+        joined: S = self._combined(joins.INTERSECTION, others, smooth, blend, **k)
         return joined
 
     def difference(
-        self, *others: Any, smooth: Any = 0.0, blend: str = "quadratic", **k: Any
-    ) -> Self:
+        self: S,
+        *others: BaseShape | Iterable[BaseShape],
+        smooth: Number = 0.0,
+        blend: str = "quadratic",
+        **k: Unpack[BlendNumbers],
+    ) -> S:
         """Subtract other shapes; also written ``a - b``.
 
         Arguments as for ``union``.
         """
-        joined: Self = self._combined(joins.DIFFERENCE, others, smooth, blend, **k)
+        joined: S = self._combined(joins.DIFFERENCE, others, smooth, blend, **k)
         return joined
 
-    def xor(self, *others: Any) -> Self:
+    def xor(self: S, *others: BaseShape | Iterable[BaseShape]) -> S:
         """Keep what is in exactly one of two shapes; also written ``a ^ b``."""
-        joined: Self = self._combined(joins.XOR, others, 0.0, "quadratic")
+        joined: S = self._combined(joins.XOR, others, 0.0, "quadratic")
         return joined
 
-    def __or__(self, other: Any) -> Self:
+    def __or__(self: S, other: BaseShape) -> S:
         return self.union(other) if isinstance(other, BaseShape) else NotImplemented
 
-    def __and__(self, other: Any) -> Self:
+    def __and__(self: S, other: BaseShape) -> S:
         return self.intersection(other) if isinstance(other, BaseShape) else NotImplemented
 
-    def __sub__(self, other: Any) -> Self:
+    def __sub__(self: S, other: BaseShape) -> S:
         return self.difference(other) if isinstance(other, BaseShape) else NotImplemented
 
-    def __xor__(self, other: Any) -> Self:
+    def __xor__(self: S, other: BaseShape) -> S:
         return self.xor(other) if isinstance(other, BaseShape) else NotImplemented
 
-    def __add__(self, other: Any) -> NoReturn:
-        hint = "a | b joins two; a.union(b, c), or a.union(list), many"
-        refuse_kind("shapes are joined by |, not by +", hint)
+    if not TYPE_CHECKING:  # a checker reports the operator itself
 
-    __radd__ = __add__  # sum() begins with 0 + shape
+        def __add__(self, other):
+            hint = "a | b joins two; a.union(b, c), or a.union(list), many"
+            refuse_kind("shapes are joined by |, not by +", hint)
 
-    def __invert__(self) -> Self:
+        __radd__ = __add__  # sum() begins with 0 + shape
+
+    def __invert__(self: S) -> S:
         return self.complement()
 
-    def complement(self) -> Self:
+    def complement(self: S) -> S:
         """Swap inside and outside; also written ``~a``."""
-        made: Self = self._under(joins.COMPLEMENT, (), {}, author_place())
+        made: S = self._under(joins.COMPLEMENT, (), {}, author_place())
         return made
 
-    def paint(self, material: Any, *, priority: int = 0) -> Self:
+    def paint(self: S, material: Painted, *, priority: int = 0) -> S:
         """Set the material, or its color; the outermost ``paint`` counts.
 
         Solids of one priority merge where they overlap. Of solids with different priorities that
@@ -320,39 +449,39 @@ class BaseShape(Composed, Presentable):
         """
         made = as_material(material)
         asked = Asked("priority", "paint", INT, Limit.ANY, place=author_place())
-        if rank := choice(priority, asked):
+        if rank := plain_choice(priority, asked):
             made = made.with_priority(rank)
-        changed: Self = self._of(self.node.with_material(made))
+        changed: S = self._of(self.node.with_material(made))
         return changed
 
-    def cut_material(self, material: Any) -> Self:
+    def cut_material(self: S, material: Painted) -> S:
         """Set the material of the faces that this shape cuts into others.
 
         Without it, these faces show the material of the shape that is cut.
         """
-        changed: Self = self._of(replace(self.node, cut_material=as_material(material)))
+        changed: S = self._of(replace(self.node, cut_material=as_material(material)))
         return changed
 
-    def named(self, name: str) -> Self:
+    def named(self: S, name: str) -> S:
         """Set a name that is used in emitted texts and messages."""
         if not isinstance(name, str) or not name.strip():
             refuse(f"a name is a text, not {name!r}", None, author_place())
-        changed: Self = self._of(replace(self.node, label=name))
+        changed: S = self._of(replace(self.node, label=name))
         return changed
 
     @classmethod
     def from_function(
-        cls,
+        cls: type[S],
         function: Func,
         *,
-        slope: Any = None,
-        bounds: Any = None,
+        slope: Number | None = None,
+        bounds: Corners | None = None,
         exact: bool = False,
-        growth: Any = None,
+        growth: Number | None = None,
         normalize: bool = False,
-        region: Any = None,
-        **numbers: Any,
-    ) -> Any:
+        region: Corners | None = None,
+        **numbers: Argument,
+    ) -> S:
         """Make a shape from a ``@func`` of a point, and of numbers passed by name.
 
         Args:
@@ -400,10 +529,17 @@ class BaseShape(Composed, Presentable):
         )
         if normalize:
             check_gradient(node)
-        return cls._of(node)
+        made: S = cls._of(node)
+        return made
 
     @classmethod
-    def from_vm(cls, source: str | PathLike[str], *, slope: Any = None, bounds: Any = None) -> Any:
+    def from_vm(
+        cls: type[S],
+        source: str | PathLike[str],
+        *,
+        slope: Number | None = None,
+        bounds: Corners | None = None,
+    ) -> S:
         """Make a shape from a ``.vm`` file, a list of operations as Fidget writes it.
 
         Each line has a name, an operation, and a number or the names of earlier results:
@@ -420,7 +556,8 @@ class BaseShape(Composed, Presentable):
                 the line.
             SceneValueError: The file cannot be read, or a number is beyond its limit.
         """
-        return cls._of(vm_node(source, author_place(), slope=slope, bounds=bounds))
+        made: S = cls._of(vm_node(source, author_place(), slope=slope, bounds=bounds))
+        return made
 
 
 def _bare(node: Node) -> bool:
@@ -448,7 +585,7 @@ PLAIN: dict[bool, type[BaseShape]] = {}
 
 def joining(
     sharp: Operator, smooth: Any, blend: str, extra: Mapping[str, Any], place: Span | None
-) -> tuple[Operator, dict[str, Number], dict[str, Any]]:
+) -> tuple[Operator, dict[str, Checked], dict[str, Any]]:
     """Return the operator of a combination, its numbers and its constants.
 
     Args:
@@ -475,6 +612,7 @@ def joining(
     if unknown := set(extra) - numbered:
         hint = did_you_mean(min(unknown), {"smooth", "blend", *numbered})
         refuse_kind(f"a {blend} {kind} has no '{min(unknown)}'", hint, place)
-    number(smooth, Asked("smooth", kind, FLOAT, rule.limits.get("k", Limit.ANY), place=place))
+    limit = rule.limits.get("k", Limit.ANY)
+    number(smooth, Asked("smooth", kind, FLOAT, limit, place=place, varies=frozenset((CELL,))))
     numbers, constants = bound(rule, (smooth,), extra, place)
     return rule, numbers, constants

@@ -7,7 +7,7 @@ library's profiles; the positions of two gears that mesh. Does not contain formu
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from distal.diagnostics import Span
 from distal.scene.objects.field import BaseShape
@@ -15,6 +15,9 @@ from distal.scene.objects.shape import Shape
 from distal.scene.objects.shapes import made_of
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.source_places import author_place
+
+if TYPE_CHECKING:
+    from distal.scene.objects.argument_types import Amount
 
 # 20 degrees, as ISO 53.
 PRESSURE_ANGLE: Final = math.radians(20.0)
@@ -31,7 +34,7 @@ class Toothed(Shape):
 
     Attributes:
         module: Diameter of the pitch circle divided by the number of teeth.
-        teeth: Number of teeth.
+        teeth: Amount of teeth.
         pressure_angle: Pressure angle in radians.
         helix: Angle of the teeth to the axis in radians.
         pitch_radius: Radius of the pitch circle; 0 for a rack.
@@ -53,7 +56,7 @@ class Gear(Toothed):
 
     Args:
         module: Size of the teeth: diameter of the pitch circle divided by the number of teeth.
-        teeth: Number of teeth.
+        teeth: Amount of teeth.
         width: Length along the axis.
         pressure_angle: Pressure angle in radians; None for 20 degrees.
         clearance: Gap between a tip and the bottom of the other gear's gap, in modules.
@@ -71,13 +74,13 @@ class Gear(Toothed):
         self,
         module: float = 1.0,
         teeth: int = 20,
-        width: Any = 6.0,
+        width: Amount = 6.0,
         *,
         pressure_angle: float | None = None,
         clearance: float = _CLEARANCE,
-        backlash: Any = 0.0,
+        backlash: Amount = 0.0,
         helix: float = 0.0,
-        bore: Any = 0.0,
+        bore: Amount = 0.0,
     ) -> None:
         place = author_place()
         angle = _checked(module, teeth, pressure_angle, helix, "Gear", place)
@@ -97,7 +100,7 @@ class RingGear(Toothed):
 
     Args:
         module: Size of the teeth, that of the gear inside.
-        teeth: Number of teeth.
+        teeth: Amount of teeth.
         width: Length along the axis.
         rim: Thickness of the ring outside of the gaps, in scene units; None for two modules.
         pressure_angle: Pressure angle in radians; None for 20 degrees.
@@ -113,9 +116,9 @@ class RingGear(Toothed):
         self,
         module: float = 1.0,
         teeth: int = 60,
-        width: Any = 6.0,
+        width: Amount = 6.0,
         *,
-        rim: Any = None,
+        rim: Amount | None = None,
         pressure_angle: float | None = None,
         clearance: float = _CLEARANCE,
         backlash: float = 0.0,
@@ -143,7 +146,7 @@ class Rack(Toothed):
 
     Args:
         module: Size of the teeth, that of the gear.
-        teeth: Number of teeth; of an odd number, the middle one is at x = 0.
+        teeth: Amount of teeth; of an odd number, the middle one is at x = 0.
         width: Length along z.
         base: Thickness of the bar below the teeth; None for two modules.
         pressure_angle: Pressure angle in radians; None for 20 degrees.
@@ -158,12 +161,12 @@ class Rack(Toothed):
         self,
         module: float = 1.0,
         teeth: int = 12,
-        width: Any = 6.0,
+        width: Amount = 6.0,
         *,
-        base: Any = None,
+        base: Amount | None = None,
         pressure_angle: float | None = None,
         clearance: float = _CLEARANCE,
-        backlash: Any = 0.0,
+        backlash: Amount = 0.0,
     ) -> None:
         angle = _checked(module, teeth, pressure_angle, 0.0, "Rack", author_place())
         thick = 2.0 * module if base is None else base
@@ -199,7 +202,7 @@ def _wide(profile: Any, width: Any, radius: float, helix: float) -> Any:
     return profile.twist_extrude(width, width * (math.tan(helix) / radius))
 
 
-def mesh_gears(first: Gear, second: Toothed, turn: Any = 0.0) -> tuple[Shape, Shape]:
+def mesh_gears(first: Gear, second: Toothed, turn: Amount = 0.0) -> tuple[Shape, Shape]:
     """Return two parts in mesh: the first turned about the z axis at the origin, the second moved.
 
     A second gear stands on the side of +x and turns the other way; a ring stays around the first,

@@ -39,6 +39,7 @@ IN_PLANE: Final[Mapping[Operator, Operator]] = {
     grid.REPEAT_LIMITED_NEIGHBOURS: flat_repeat.REPEAT_LIMITED_NEIGHBOURS_FLAT,
     grid.REPEAT_MIRRORED: flat_repeat.REPEAT_MIRRORED_FLAT,
     polar.REPEAT_POLAR: flat_repeat.REPEAT_POLAR_FLAT,
+    polar.REPEAT_POLAR_ALL: flat_repeat.REPEAT_POLAR_ALL_FLAT,
     polar.REPEAT_POLAR_NEIGHBOURS: flat_repeat.REPEAT_POLAR_NEIGHBOURS_FLAT,
     along.REPEAT_AT: flat_repeat.REPEAT_AT_FLAT,
 }

@@ -7,16 +7,24 @@ Input: shapes, in a list, a generator or one by one. Output: one shape. The meth
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 
 from distal.scene.objects.field import BaseShape
 from distal.scene.tree.errors import refuse_kind
 from distal.scene.tree.source_places import author_place
 
+if TYPE_CHECKING:
+    from distal.scene.objects.argument_types import BlendNumbers, Number
+
 S = TypeVar("S", bound=BaseShape)
 
 
-def union(*shapes: S | Iterable[S], smooth: Any = 0.0, blend: str = "quadratic", **k: Any) -> S:
+def union(
+    *shapes: S | Iterable[S],
+    smooth: Number = 0.0,
+    blend: str = "quadratic",
+    **k: Unpack[BlendNumbers],
+) -> S:
     """Return the union of shapes: ``union(parts)`` or ``union(a, b, c)``.
 
     Args:
@@ -36,7 +44,10 @@ def union(*shapes: S | Iterable[S], smooth: Any = 0.0, blend: str = "quadratic",
 
 
 def intersection(
-    *shapes: S | Iterable[S], smooth: Any = 0.0, blend: str = "quadratic", **k: Any
+    *shapes: S | Iterable[S],
+    smooth: Number = 0.0,
+    blend: str = "quadratic",
+    **k: Unpack[BlendNumbers],
 ) -> S:
     """Return the intersection of shapes: ``intersection(parts)`` or ``intersection(a, b)``.
 

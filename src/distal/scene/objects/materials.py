@@ -21,6 +21,7 @@ from distal.lang.functions import Func
 from distal.lang.values import VectorValue
 from distal.render import material as library
 from distal.render import named_materials
+from distal.render.bump import raised
 from distal.render.declarations import MATERIALS, Declaration
 from distal.scene.objects.declared import declared_function, scene_call
 from distal.scene.objects.scene_object import CalledObject
@@ -162,6 +163,34 @@ class Material(CalledObject):
     def uses(self) -> frozenset[str]:
         """Which of ``declarations.PLACE_NAMES`` the material depends on."""
         return self.call.uses
+
+    def bump(self, height: Number | Varying) -> Material:
+        """Return the material with a relief that is seen in its shading, not in its outline.
+
+        ``matte("grey").bump(0.02 * np.sin(40 * place.y))``. The shape and its shadows do not
+        change, so it costs no steps. In mode "path", light that the relief mirrors into the surface
+        is lost; glass is refracted by the shape itself in direct light.
+
+        Args:
+            height: The height in scene units, outwards: an expression of ``place`` and ``cell``, a
+                pattern of numbers, or a ``@func`` of a place that returns a float.
+
+        Raises:
+            TypeError: The height is a color or another object.
+        """
+        given = {"surface": self, "height": height}
+        return Material.of(
+            _call("bump", raised, given, author_place(), limits={}),
+            reflects=self.reflects,
+            refracts=self.refracts,
+            emits=self.emits,
+            priority=self.priority,
+        )
+
+    @property
+    def has_bump(self) -> bool:
+        """Whether a relief is painted on it, or on a part of it."""
+        return any(function is raised for function in self.call.functions())
 
     def mix(
         self,

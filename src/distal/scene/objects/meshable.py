@@ -5,8 +5,7 @@ Input: the author's numbers. Output: a ``Mesh``, or measures of the solid with t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from distal.lang.render_options import Cancel, Progress
 from distal.lang.runtime_access import measuring, meshing
@@ -15,6 +14,7 @@ from distal.scene.objects.placed import Placed
 if TYPE_CHECKING:
     from distal.mesh.measuring import Measures
     from distal.mesh.solid import Mesh
+    from distal.scene.objects.argument_types import ParameterValues
 
 
 class Meshable(Placed):
@@ -24,7 +24,7 @@ class Meshable(Placed):
         self,
         tolerance: float | None = None,
         feature: float | None = None,
-        params: Mapping[str, Any] | None = None,
+        params: ParameterValues | None = None,
         time: float = 0.0,
         progress: Progress | None = None,
         cancel: Cancel | None = None,
@@ -76,14 +76,21 @@ class Meshable(Placed):
         self,
         density: float = 1.0,
         tolerance: float | None = None,
-        params: Mapping[str, Any] | None = None,
+        params: ParameterValues | None = None,
         time: float = 0.0,
         progress: Progress | None = None,
         cancel: Cancel | None = None,
+        *,
+        feature: float | None = None,
+        overhang_deg: float = 45.0,
+        proved: bool = False,
+        width: float | None = None,
+        work: int | None = None,
     ) -> Measures:
         """Return volume, area, mass, center of mass, inertia and box, each with its error.
 
-        They are those of meshes of two spacings, whose difference gives the error.
+        They are those of meshes of two spacings, whose difference gives the error. The thinnest
+        wall, the narrowest gap and what hangs over are there too, with place, shape and line.
 
         Args:
             density: Mass of a unit of volume.
@@ -92,6 +99,14 @@ class Meshable(Placed):
             time: Time in seconds.
             progress: Called with the finished share, from 0 to 1.
             cancel: An event, or a function without arguments, that ends the work early.
+            overhang_deg: The angle between a face that looks down (along -y) and the horizontal,
+                in degrees, up to which it needs support when printed.
+            feature: The diameter of the smallest parts and gaps that must be found, as for
+                ``mesh``.
+            proved: Prove bounds of volume, mass, center and box too, by interval arithmetic
+                (``brackets`` of the result).
+            width: With ``proved``: stop when the bounds of the volume are this close, as a share.
+            work: With ``proved``: how many boxes are looked at, at most; None: a million.
 
         Raises:
             CompileError: The shape's scene code has mistakes.
@@ -99,10 +114,12 @@ class Meshable(Placed):
         """
         request = meshing.MeshRequest(
             tolerance=tolerance,
+            feature=feature,
             params=params or {},
             time=time,
             progress=progress,
             cancel=cancel,
             colors=False,
         )
-        return measuring.measures_of(self, density, request)
+        effort = measuring.effort_of(width, work, proved=proved)
+        return measuring.measures_of(self, density, request, overhang_deg, effort)

@@ -12,7 +12,7 @@ _ROTATE: Final = "rotate(x=…, y=…, z=…), in radians"
 _PAINT: Final = "paint(material or color)"
 _UNION: Final = "a | b, or a.union(b, smooth=0.1)"
 _DIFFERENCE: Final = "a - b, or a.difference(b)"
-_SCENE: Final = "a scene: Scene(shape).render((640, 480)).save(file)"
+_PICTURE: Final = "render((640, 480)).save(file), and mesh().save(file)"
 
 OTHER_NAMES: Final[Mapping[str, str]] = {
     **dict.fromkeys(
@@ -34,7 +34,7 @@ OTHER_NAMES: Final[Mapping[str, str]] = {
     **dict.fromkeys(("sdf", "distance", "evaluate", "eval"), "shape(points)"),
     **dict.fromkeys(("normal", "normals", "grad"), "gradient(points)"),
     **dict.fromkeys(("bounding_box", "bbox"), "bounds()"),
-    **dict.fromkeys(("render", "show", "save", "image"), _SCENE),
+    **dict.fromkeys(("save", "image", "picture"), _PICTURE),
 }
 _SOLID_ONLY: Final = "for solids; make it one by extrude(height) or revolve()"
 _FLAT_ONLY: Final = "for flat shapes; slice() makes one of a solid"

@@ -19,6 +19,7 @@ from distal.ir.types import FLOAT
 from distal.lang import func, mix, vec3
 from distal.lang.functions import Func
 from distal.lang.lazy_module import LazyModule
+from distal.lang.resources import Texture3D
 from distal.render import patterns as library
 from distal.render.declarations import PATTERNS, Declaration
 from distal.scene.objects.declared import declared_call, declared_function, scene_call
@@ -30,7 +31,7 @@ from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.scene.objects import images as image_files
-    from distal.scene.objects.argument_types import Image, Images, Number, Varying
+    from distal.scene.objects.argument_types import Argument, Image, Images, Number, Varying
 else:
     image_files = LazyModule("distal.scene.objects.images")  # needs NumPy
 
@@ -54,7 +55,7 @@ def mix_amounts(a: float, b: float, t: float) -> float:
     return mix(a, b, t)
 
 
-def pattern(function: Func, *args: Any, **kwargs: Any) -> Any:
+def pattern(function: Func, *args: Argument, **kwargs: Argument) -> Any:
     """Make a pattern from an author's own ``@func`` of a place.
 
     Args:
@@ -120,6 +121,24 @@ def cube_map(images: Images) -> Pattern:
     place = author_place()
     texture = image_files.cube_texture(images, "cube_map", place)
     return _pattern("cube_map", library.cube_map, {"image": texture}, place)
+
+
+def volume_colors(
+    colors: Texture3D,
+    middle: tuple[float, float, float],
+    size: tuple[float, float, float],
+    place: Span | None,
+) -> Pattern:
+    """Return the colors of a volume.
+
+    Args:
+        colors: The colors, as they are displayed.
+        middle: The middle of the volume.
+        size: Its size.
+        place: The author's line.
+    """
+    given = {"colors": colors, "middle": middle, "size": size}
+    return _pattern("volume_colors", library.volume_colors, given, place)
 
 
 def _pattern(what: str, function: Func, given: Mapping[str, Any], place: Span | None) -> Pattern:

@@ -7,8 +7,8 @@ operator of the field library; on a flat shape, it applies the operator's counte
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import Any, Final, Self
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final, TypeVar, overload
 
 from distal.fields.deform import offsets
 from distal.fields.guarantees import Operator
@@ -18,13 +18,19 @@ from distal.fields.place import mirrors
 from distal.fields.place import solid as placing
 from distal.fields.repeat import grid, polar
 from distal.frontend.problems import did_you_mean
+from distal.ir.types import INT
+from distal.lang.names import select
 from distal.scene.objects.anchors import measured_extents, offset_aligned, offset_on
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.in_plane import IN_PLANE
+from distal.scene.objects.masked import masked
 from distal.scene.objects.shaped_edges import shaped_edge
-from distal.scene.tree.conversion import is_scalar
+from distal.scene.tree.conversion import Asked, is_scalar, plain_choice
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.source_places import author_place
+
+if TYPE_CHECKING:
+    from distal.scene.objects.argument_types import Argument, Number, Vector
 
 _SHELLS: Final[Mapping[str, Operator]] = {
     "inner": offsets.SHELL_INNER,
@@ -33,26 +39,35 @@ _SHELLS: Final[Mapping[str, Operator]] = {
 }
 
 
+def _fixed(name: str, what: str, value: Any) -> int:
+    """Return a whole number that decides which code there is."""
+    return int(plain_choice(value, Asked(name, what, INT, place=author_place())))
+
+
+# The class of the receiver. jedi takes Self for the class that defines the method.
+S = TypeVar("S", bound="Placed")
+
+
 class Placed(BaseShape):
     """A shape with the methods that solid and flat shapes share."""
 
-    def _with(self, operator: Operator, *args: Any, **kwargs: Any) -> Self:
+    def _with(self: S, operator: Operator, *args: Any, **kwargs: Any) -> S:
         """Apply an operator; on a flat shape, its counterpart in the plane."""
         if self.flat:
             operator = IN_PLANE.get(operator, operator)
-        made: Self = self._under(operator, args, kwargs, author_place())
+        made: S = self._under(operator, args, kwargs, author_place())
         return made
 
-    def _joined(self, operator: Operator, other: Any, **numbers: Any) -> Self:
+    def _joined(self: S, operator: Operator, other: Any, **numbers: Any) -> S:
         place = author_place()
         if not isinstance(other, BaseShape) or other.flat != self.flat:
             kind = "flat" if self.flat else "solid"
             refuse(f"'{operator.name}' takes another {kind} shape, not {other!r:.60}", None, place)
-        made: Self = self._under(operator, (), numbers, place, others=(other,))
+        made: S = self._under(operator, (), numbers, place, others=(other,))
         return made
 
     def apply(
-        self, operator: str, *args: Any, others: Sequence[BaseShape] = (), **kwargs: Any
+        self, operator: str, *args: Argument, others: Sequence[BaseShape] = (), **kwargs: Argument
     ) -> Any:
         """Apply an operator of the library by its name in the catalogue.
 
@@ -70,17 +85,44 @@ class Placed(BaseShape):
             refuse(f"there is no operator '{operator}'", did_you_mean(operator, OPERATORS), place)
         return self._under(OPERATORS[operator], args, kwargs, place, others=tuple(others))
 
-    def translate(self, *offset: Any, **parts: Any) -> Self:
+    def shown(self: S, condition: Number) -> S:
+        """Show the shape only where a condition holds, else nothing.
+
+        ``shown(toggle("Lid", True))``, ``shown(count > 3)``: it follows without a compilation.
+        Nothing adds nothing to a union, and takes nothing away from what it is subtracted from.
+
+        Args:
+            condition: A bool, a toggle, or a comparison of parameters or time.
+
+        Raises:
+            SceneTypeError: The condition is none.
+        """
+        made: S = select(condition, self, None)
+        return made
+
+    @overload
+    def translate(self: S, offset: Vector) -> S: ...
+    @overload
+    def translate(self: S, x: Number, y: Number, z: Number = ..., /) -> S: ...
+    @overload
+    def translate(self: S, *, x: Number = ..., y: Number = ..., z: Number = ...) -> S: ...
+    def translate(self: S, *offset: Any, **parts: Any) -> S:
         """Move: ``translate(1, 0, 0)``, ``translate((1, 0, 0))`` or ``translate(x=1)``."""
         return self._with(placing.TRANSLATE, *offset, **parts)
 
-    def scale(self, *factors: Any, **parts: Any) -> Self:
+    @overload
+    def scale(self: S, factor: Number | Vector, /) -> S: ...
+    @overload
+    def scale(self: S, x: Number, y: Number, z: Number = ..., /) -> S: ...
+    @overload
+    def scale(self: S, *, x: Number = ..., y: Number = ..., z: Number = ...) -> S: ...
+    def scale(self: S, *factors: Any, **parts: Any) -> S:
         """Scale by one factor, or by one factor for each axis (which loses exactness)."""
         if len(factors) == 1 and not parts and is_scalar(factors[0]):
             return self._with(placing.SCALE, *factors)
         return self._with(placing.STRETCH, *factors, **parts)
 
-    def mirror(self, normal: Any, offset: Any = 0.0) -> Self:
+    def mirror(self: S, normal: Vector, offset: Number = 0.0) -> S:
         """Replace the half behind a plane by the mirror image of the half in front of it.
 
         On a flat shape, the plane is a line. The normal points to the half that is kept.
@@ -91,31 +133,32 @@ class Placed(BaseShape):
         """
         return self._with(mirrors.MIRROR, normal, offset)
 
-    def symmetry(self, axes: str) -> Self:
+    def symmetry(self: S, axes: str) -> S:
         """Mirror the positive side of each named axis to the negative side: ``symmetry("xz")``."""
         known = "xy" if self.flat else "xyz"
         if not isinstance(axes, str) or not axes or not set(axes) <= set(known):
             refuse(f"symmetry takes letters of '{known}', not {axes!r}", None, author_place())
         return self._with(mirrors.SYMMETRY, **{axis: axis in axes for axis in known})
 
-    def kaleidoscope(self, count: int) -> Self:
+    def kaleidoscope(self: S, count: Number) -> S:
         """Repeat a wedge ``count`` times about the y axis, mirroring every other copy."""
         return self._with(mirrors.KALEIDOSCOPE, count)
 
     def repeat(
-        self,
-        *spacing: Any,
-        count: Sequence[int] | None = None,
+        self: S,
+        *spacing: Vector | Number,
+        count: Sequence[Number] | Number | None = None,
         neighbours: int = 0,
         mirrored: bool = False,
-    ) -> Self:
+    ) -> S:
         """Repeat on a grid that is centred on the shape itself.
 
         Args:
             spacing: Distance from cell to cell along each axis, in scene units; 0 for no repetition
                 along an axis. One number is used for all axes.
-            count: Number of copies along each axis, two or three whole numbers; the indices of
-                cells then start with 0 at the lower corner. None repeats infinitely.
+            count: Number of copies along each axis, two or three whole numbers, or one for all
+                axes; each may be an integer parameter. The indices of cells then start with 0 at
+                the lower corner. None repeats infinitely.
             neighbours: How many cells around the nearest are also evaluated: 0 for a shape that
                 stays within its cell, 1 or 2 for one that reaches into others.
             mirrored: Whether every other copy is mirrored, so that adjacent copies match.
@@ -126,13 +169,15 @@ class Placed(BaseShape):
         """
         if mirrored:
             return self._with(grid.REPEAT_MIRRORED, *spacing)
+        neighbours = _fixed("neighbours", "repeat", neighbours)
         if count is None:
             if neighbours:
                 return self._with(grid.REPEAT_NEIGHBOURS, *spacing, neighbours=neighbours)
             return self._with(grid.REPEAT, *spacing)
         axes = "xy" if self.flat else "xyz"
         try:
-            counts = {f"count_{axis}": n for axis, n in zip(axes, count, strict=True)}
+            each: Any = (count,) * len(axes) if is_scalar(count) else count
+            counts = {f"count_{axis}": n for axis, n in zip(axes, each, strict=True)}
         except (TypeError, ValueError):
             refuse(
                 f"count is {len(axes)} whole numbers, not {count!r:.40}",
@@ -144,16 +189,26 @@ class Placed(BaseShape):
             return self._with(grid.REPEAT_LIMITED_NEIGHBOURS, *spacing, **counts)
         return self._with(grid.REPEAT_LIMITED, *spacing, **counts)
 
-    def repeat_polar(self, count: int, *, neighbours: int = 0) -> Self:
+    def repeat_polar(self: S, count: Number, *, neighbours: int | str = 0) -> S:
         """Repeat ``count`` times about the y axis (a flat shape: about the origin).
 
-        With ``neighbours`` of 1 or more, a copy may extend into adjacent sectors.
+        Args:
+            count: A whole number, or an integer parameter.
+            neighbours: How many sectors beside the nearest are also evaluated: 0 for a shape that
+                fits into its sector, 1 or 2 for a wider one. "all": every copy is, for shapes that
+                reach the axis or overlap; it takes ``count`` times as long.
+
+        Raises:
+            SceneValueError: The shape does not fit, or ``count`` is too small.
         """
-        if neighbours:
-            return self._with(polar.REPEAT_POLAR_NEIGHBOURS, count=count, neighbours=neighbours)
+        if neighbours == "all":
+            return self._with(polar.REPEAT_POLAR_ALL, count=count)
+        whole = _fixed("neighbours", "repeat_polar", neighbours)
+        if whole:
+            return self._with(polar.REPEAT_POLAR_NEIGHBOURS, count=count, neighbours=whole)
         return self._with(polar.REPEAT_POLAR, count=count)
 
-    def split(self, normal: Any, offset: Any = 0.0) -> tuple[Self, Self]:
+    def split(self: S, normal: Vector, offset: Number = 0.0) -> tuple[S, S]:
         """Cut by a plane into two shapes: the part behind the plane and the part in front of it.
 
         The normal points to the second part.
@@ -161,21 +216,47 @@ class Placed(BaseShape):
         below = self._with(offsets.SPLIT_BELOW, normal, offset)
         return below, self._with(offsets.SPLIT_ABOVE, normal, offset)
 
-    def round(self, radius: Any) -> Self:
+    def round(self: S, radius: Number) -> S:
         """Move the surface outwards by ``radius``, which rounds the edges."""
         return self._with(offsets.ROUND, radius)
 
-    def offset(self, distance: Any) -> Self:
+    def offset(self: S, distance: Number) -> S:
         """Move the surface outwards by a distance, or inwards by a negative one."""
         return self._with(offsets.OFFSET, distance)
 
-    def shell(self, thickness: Any, where: str = "centre") -> Self:
+    def shell(self: S, thickness: Number, where: str = "centre") -> S:
         """Make the shape hollow; ``where`` places the wall: "inner", "centre" or "outer"."""
         if where not in _SHELLS:
             refuse(f"a shell lies inner, centre or outer, not {where!r}", None, author_place())
         return self._with(_SHELLS[where], thickness)
 
-    def infill(self, lattice: BaseShape, wall: Any) -> Any:
+    def where(
+        self: S,
+        region: BaseShape,
+        changed: BaseShape | Callable[[S], BaseShape],
+        *,
+        blend: Number = 0.0,
+    ) -> S:
+        """Show a changed shape inside a region, and this one outside.
+
+        Any operator is limited to a region so: ``shape.where(Box(1.0), lambda s: s.bend(0.5))``.
+        Where the surfaces of both meet at the border, nothing is seen of it; where they do not,
+        there is a step along it.
+
+        Args:
+            region: A shape, whose inside is the region.
+            changed: The shape inside the region, or a function that makes it from this one.
+            blend: The size of the fillets at such a step, in scene units, as ``smooth`` of
+                ``union``. 0 leaves its edges sharp.
+
+        Raises:
+            SceneTypeError: The region, or what is shown there, is no shape.
+            SceneValueError: They do not all lie in the plane, or ``blend`` is below 0.
+        """
+        made: S = masked(self, region, changed, blend, author_place())
+        return made
+
+    def infill(self: S, lattice: BaseShape, wall: Number) -> S:
         """Make a skin of this shape and fill it with a lattice, as for printing.
 
         Args:
@@ -193,7 +274,7 @@ class Placed(BaseShape):
         skin = self.shell(wall, "inner")
         return skin.union(lattice.intersection(self))
 
-    def fillet(self, radius: Any) -> Self:
+    def fillet(self: S, radius: Number) -> S:
         """Round the edge where the shapes of the last operator meet, by a quarter of a circle.
 
         After ``|`` it fills the corner, after ``-`` and ``&`` it rounds the edge off; after
@@ -204,16 +285,16 @@ class Placed(BaseShape):
             SceneValueError: The last operator makes no edge that can be rounded.
         """
         place = author_place()
-        made: Self = self._of(shaped_edge(self.node, "fillet", radius, place))
+        made: S = self._of(shaped_edge(self.node, "fillet", radius, place))
         return made
 
-    def chamfer(self, size: Any) -> Self:
+    def chamfer(self: S, size: Number) -> S:
         """Bevel the edge where the shapes of the last operator meet; as ``fillet``.
 
         ``size`` is how far the flat face extends along both surfaces.
         """
         place = author_place()
-        made: Self = self._of(shaped_edge(self.node, "chamfer", size, place))
+        made: S = self._of(shaped_edge(self.node, "chamfer", size, place))
         return made
 
     def extents(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -228,7 +309,7 @@ class Placed(BaseShape):
         """
         return measured_extents(self, author_place())
 
-    def on(self, other: BaseShape, side: str = "top", *, gap: Any = 0.0) -> Self:
+    def on(self: S, other: BaseShape, side: str = "top", *, gap: Number = 0.0) -> S:
         """Move onto a side of another shape, over its middle, so that the two touch.
 
         The extents of both are measured, once, as by ``extents``.
@@ -243,7 +324,14 @@ class Placed(BaseShape):
         """
         return self._with(placing.TRANSLATE, offset_on(self, other, side, gap, author_place()))
 
-    def align(self, other: BaseShape, *, x: Any = None, y: Any = None, z: Any = None) -> Self:
+    def align(
+        self: S,
+        other: BaseShape,
+        *,
+        x: str | None = None,
+        y: str | None = None,
+        z: str | None = None,
+    ) -> S:
         """Move along the given axes so that a side, or the middle, is flush with another shape's.
 
         The extents of both shapes are measured, as by ``on``.

@@ -13,7 +13,8 @@ from distal.ir.nodes import Expr
 from distal.lang.functions import Func
 from distal.lang.immutable import Immutable
 from distal.render.declarations import Declaration
-from distal.scene.tree.calls import Composer, FunctionCall
+from distal.scene.tree.calls import FunctionCall
+from distal.scene.tree.varying import Composer
 
 
 class SceneObject(Immutable):
@@ -53,7 +54,7 @@ class CalledObject(SceneObject):
     call: FunctionCall
 
     def __repr__(self) -> str:
-        return f"<{self.noun} {self.call.what}>"
+        return f"<{self.noun} {self.call.described}>"
 
     def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
         """Emit the call. ``site`` provides the function's other arguments (point, normal, cell)."""

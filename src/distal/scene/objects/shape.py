@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final, Self, cast
 
 from distal.fields.combine import blends, joins, transitions
-from distal.fields.deform import folds
+from distal.fields.deform import folds, wrapping
 from distal.fields.deform import solid as deform
 from distal.fields.ease import EASES
 from distal.fields.guarantees import Operator
@@ -21,6 +21,7 @@ from distal.fields.place import solid as placing
 from distal.fields.repeat import along, grid
 from distal.fields.solids import heightfield
 from distal.ir.types import VEC2, VEC3
+from distal.lang.functions import Func
 from distal.lang.render_options import Cancel, Progress, RenderOptions
 from distal.scene.objects.copies import CopyColumns, copied
 from distal.scene.objects.field import PLAIN, BaseShape
@@ -36,6 +37,17 @@ from distal.scene.tree.source_places import author_place
 if TYPE_CHECKING:
     from distal.images.height_map import HeightMap
     from distal.images.picture import Picture
+    from distal.scene.objects.argument_types import (
+        Amount,
+        ArrayLike,
+        Color,
+        Columns,
+        Corners,
+        Number,
+        ParameterValues,
+        Points,
+        Vector,
+    )
 
 _ROTATIONS: Final[Mapping[str, Operator]] = {
     "x": placing.ROTATE_X,
@@ -55,14 +67,14 @@ class Shape(Meshable, FromData):
 
     def rotate(
         self,
-        angle: Any = None,
-        axis: Any = None,
+        angle: Number | None = None,
+        axis: Vector | None = None,
         *,
-        x: Any = None,
-        y: Any = None,
-        z: Any = None,
-        quaternion: Any = None,
-        matrix: Any = None,
+        x: Number | None = None,
+        y: Number | None = None,
+        z: Number | None = None,
+        quaternion: Vector | None = None,
+        matrix: Sequence[Vector] | ArrayLike | None = None,
     ) -> Self:
         """Rotate about the origin, given in exactly one of four ways; angles in radians.
 
@@ -102,11 +114,16 @@ class Shape(Meshable, FromData):
             )
         return self._with(placing.ROTATE, axis=axis, angle=angle)
 
-    def orient(self, source: Any, target: Any) -> Self:
-        """Rotate by the smallest angle that maps direction ``source`` to direction ``target``."""
+    def orient(self, source: Vector, target: Vector | None = None) -> Self:
+        """Rotate by the smallest angle that maps direction ``source`` to direction ``target``.
+
+        One direction alone is the target of the y axis: ``Cylinder().orient((1, 0, 0))``.
+        """
+        if target is None:
+            source, target = (0.0, 1.0, 0.0), source
         return self._with(placing.ORIENT, source, target)
 
-    def shear(self, xy: Any = 0.0, xz: Any = 0.0, yz: Any = 0.0) -> Self:
+    def shear(self, xy: Number = 0.0, xz: Number = 0.0, yz: Number = 0.0) -> Self:
         """Shear: move x by ``xy`` times y plus ``xz`` times z, and y by ``yz`` times z.
 
         Args:
@@ -116,11 +133,11 @@ class Shape(Meshable, FromData):
         """
         return self._with(placing.SHEAR, xy, xz, yz)
 
-    def repeat_half(self, *spacing: Any) -> Self:
+    def repeat_half(self, *spacing: Vector | Number) -> Self:
         """Repeat infinitely along +x, +y and +z; ``spacing`` as for ``repeat``."""
         return self._with(grid.REPEAT_HALF, *spacing)
 
-    def repeat_ring(self, *spacing: Any, count: Sequence[int]) -> Self:
+    def repeat_ring(self, *spacing: Vector | Number, count: Sequence[int]) -> Self:
         """Repeat along the sides of a rectangle in the xz plane.
 
         ``spacing`` is the distance from copy to copy along x and z, ``count`` the number of copies
@@ -134,16 +151,16 @@ class Shape(Meshable, FromData):
 
     def array(
         self,
-        positions: Any = None,
+        positions: Points | None = None,
         *,
-        start: Any = None,
-        end: Any = None,
+        start: Vector | None = None,
+        end: Vector | None = None,
         count: int | None = None,
-        colors: Any = None,
-        scale: Any = None,
-        rotation: Any = None,
-        align: Any = None,
-        axis: Any = (0.0, 1.0, 0.0),
+        colors: Columns | None = None,
+        scale: Columns | Number | None = None,
+        rotation: Columns | Number | None = None,
+        align: Columns | None = None,
+        axis: Vector = (0.0, 1.0, 0.0),
     ) -> Self:
         """Repeat at given positions, or ``count`` times evenly along a line.
 
@@ -187,19 +204,19 @@ class Shape(Meshable, FromData):
         hint = "array(positions) or array(start=…, end=…, count=…)"
         refuse("an array takes positions, or a line and a count", hint, author_place())
 
-    def elongate(self, *lengths: Any) -> Self:
+    def elongate(self, *lengths: Vector | Number) -> Self:
         """Cut in the middle and move the halves apart by ``lengths`` along each axis."""
         return self._with(deform.ELONGATE, *lengths)
 
-    def twist(self, rate: Any) -> Self:
+    def twist(self, rate: Number) -> Self:
         """Twist about the y axis by ``rate`` radians for each unit of height."""
         return self._with(deform.TWIST, rate)
 
-    def bend(self, rate: Any) -> Self:
+    def bend(self, rate: Number) -> Self:
         """Bend in the xy plane by ``rate`` radians for each unit along x."""
         return self._with(deform.BEND, rate)
 
-    def bend_linear(self, start: Any, end: Any, shift: Any, ease: str = "linear") -> Self:
+    def bend_linear(self, start: Vector, end: Vector, shift: Vector, ease: str = "linear") -> Self:
         """Move the part beyond ``end`` by ``shift``, with a gradual transition from ``start``.
 
         Args:
@@ -210,7 +227,7 @@ class Shape(Meshable, FromData):
         """
         return self._with(deform.BEND_LINEAR, start, end, shift, ease=ease_number(ease))
 
-    def bend_radial(self, inner: Any, outer: Any, rise: Any, ease: str = "linear") -> Self:
+    def bend_radial(self, inner: Number, outer: Number, rise: Number, ease: str = "linear") -> Self:
         """Raise the part beyond radius ``outer``, with a gradual transition from ``inner``.
 
         Both radii are distances from the y axis.
@@ -223,7 +240,7 @@ class Shape(Meshable, FromData):
         """
         return self._with(deform.BEND_RADIAL, inner, outer, rise, ease=ease_number(ease))
 
-    def taper(self, bottom: Any, top: Any, factor: Any) -> Self:
+    def taper(self, bottom: Number, top: Number, factor: Number) -> Self:
         """Scale x and z gradually with height.
 
         Args:
@@ -233,11 +250,11 @@ class Shape(Meshable, FromData):
         """
         return self._with(deform.TAPER, bottom, top, factor)
 
-    def wrap(self, radius: Any) -> Self:
+    def wrap(self, radius: Number) -> Self:
         """Wrap the x axis around a cylinder about the y axis; +z points outwards."""
         return self._with(folds.WRAP, radius)
 
-    def attract(self, center: Any, radius: Any, strength: Any) -> Self:
+    def attract(self, center: Vector, radius: Number, strength: Number) -> Self:
         """Pull the part within a radius of a point towards this point.
 
         Args:
@@ -248,14 +265,14 @@ class Shape(Meshable, FromData):
         """
         return self._with(deform.ATTRACT, center, radius, strength)
 
-    def repel(self, center: Any, radius: Any, strength: Any) -> Self:
+    def repel(self, center: Vector, radius: Number, strength: Number) -> Self:
         """Push the part within a radius of a point away from this point.
 
         Arguments as for ``attract``.
         """
         return self._with(deform.REPEL, center, radius, strength)
 
-    def warp(self, amount: Any, frequency: Any = 1.0, seed: int = 0) -> Self:
+    def warp(self, amount: Number, frequency: Number = 1.0, seed: int = 0) -> Self:
         """Displace every point by noise, by up to about ``amount`` along each axis.
 
         Args:
@@ -266,7 +283,7 @@ class Shape(Meshable, FromData):
         return self._with(folds.WARP, amount, frequency, seed)
 
     def transition_linear(
-        self, other: BaseShape, start: Any, end: Any, ease: str = "linear"
+        self, other: BaseShape, start: Vector, end: Vector, ease: str = "linear"
     ) -> Self:
         """Change gradually from this shape to another along the line from ``start`` to ``end``.
 
@@ -281,7 +298,7 @@ class Shape(Meshable, FromData):
         )
 
     def transition_radial(
-        self, other: BaseShape, inner: Any, outer: Any, ease: str = "linear"
+        self, other: BaseShape, inner: Number, outer: Number, ease: str = "linear"
     ) -> Self:
         """Change gradually from this shape near the y axis to another farther out.
 
@@ -294,23 +311,23 @@ class Shape(Meshable, FromData):
         numbers = {"inner": inner, "outer": outer, "ease": ease_number(ease)}
         return self._joined(transitions.TRANSITION_RADIAL, other, **numbers)
 
-    def clearance(self, other: BaseShape, gap: Any) -> Self:
+    def clearance(self, other: BaseShape, gap: Number) -> Self:
         """Cut away everything that is nearer than ``gap`` to the other shape."""
         return self._joined(joins.CLEARANCE, other, gap=gap)
 
-    def carve(self, other: BaseShape, depth: Any) -> Self:
+    def carve(self, other: BaseShape, depth: Number) -> Self:
         """Cut the form of the other shape into the surface of this one, ``depth`` deep."""
         return self._joined(joins.CARVE, other, depth=depth)
 
-    def emboss(self, other: BaseShape, height: Any) -> Self:
+    def emboss(self, other: BaseShape, height: Number) -> Self:
         """Raise the form of the other shape on the surface of this one, ``height`` high."""
         return self._joined(joins.EMBOSS, other, height=height)
 
-    def morph(self, other: BaseShape, t: Any) -> Self:
+    def morph(self, other: BaseShape, t: Number) -> Self:
         """Interpolate between this shape (t = 0) and another (t = 1)."""
         return self._joined(joins.MORPH, other, t=t)
 
-    def displace(self, field: Any, height: Any = 1.0) -> Self:
+    def displace(self, field: BaseShape | Func, height: Number = 1.0) -> Self:
         """Move the surface outwards by the value of a field times ``height``.
 
         Args:
@@ -320,15 +337,15 @@ class Shape(Meshable, FromData):
         other = field if isinstance(field, BaseShape) else self.from_function(field)
         return self._joined(joins.DISPLACE, other, height=height)
 
-    def engrave(self, other: BaseShape, depth: Any) -> Self:
+    def engrave(self, other: BaseShape, depth: Number) -> Self:
         """Cut a V-shaped groove, ``depth`` deep, where the other shape's surface crosses this."""
         return self._joined(blends.ENGRAVE, other, k=depth)
 
-    def pipe(self, other: BaseShape, radius: Any) -> Self:
+    def pipe(self, other: BaseShape, radius: Number) -> Self:
         """Keep only a pipe of this radius along the curve where the two surfaces cross."""
         return self._joined(blends.PIPE, other, k=radius)
 
-    def groove(self, other: BaseShape, depth: Any, width: Any) -> Self:
+    def groove(self, other: BaseShape, depth: Number, width: Number) -> Self:
         """Cut a groove with a rectangular profile where the surfaces cross.
 
         Args:
@@ -338,7 +355,7 @@ class Shape(Meshable, FromData):
         """
         return self._joined(blends.GROOVE, other, depth=depth, width=width)
 
-    def tongue(self, other: BaseShape, depth: Any, width: Any) -> Self:
+    def tongue(self, other: BaseShape, depth: Number, width: Number) -> Self:
         """Add a ridge with a rectangular profile where the surfaces cross.
 
         Args:
@@ -352,7 +369,7 @@ class Shape(Meshable, FromData):
         made: Shape2D = self._under(operator, args, kwargs, author_place())
         return made
 
-    def slice(self, origin: Any = (0.0, 0.0, 0.0), normal: Any = (0.0, 0.0, 1.0)) -> Shape2D:
+    def slice(self, origin: Vector = (0.0, 0.0, 0.0), normal: Vector = (0.0, 0.0, 1.0)) -> Shape2D:
         """Return the cross-section in a plane, as a flat shape.
 
         Args:
@@ -369,13 +386,13 @@ class Shape(Meshable, FromData):
         self,
         size: tuple[int, int] = (640, 480),
         time: float = 0.0,
-        params: Mapping[str, Any] | None = None,
+        params: ParameterValues | None = None,
         threads: int | None = None,
         progress: Progress | None = None,
         cancel: Cancel | None = None,
         *,
         side: str = "+z",
-        box: Any = None,
+        box: Corners | None = None,
     ) -> HeightMap:
         """Return the heights and normals of the shape, seen along an axis without perspective.
 
@@ -421,7 +438,7 @@ class Shape2D(Outlined):
     point_type = VEC2
     signature = (("p", VEC2),)
 
-    def rotate(self, angle: Any) -> Self:
+    def rotate(self, angle: Number) -> Self:
         """Rotate counterclockwise about the origin by an angle in radians."""
         warn_of_degrees(author_place(), angle)
         return self._with(flat_placing.ROTATE_FLAT, angle)
@@ -434,14 +451,14 @@ class Shape2D(Outlined):
         self,
         size: tuple[int, int] = (640, 480),
         time: float = 0.0,
-        params: Mapping[str, Any] | None = None,
+        params: ParameterValues | None = None,
         threads: int | None = None,
         progress: Progress | None = None,
         cancel: Cancel | None = None,
         *,
-        box: Any = None,
-        inside: Any = "white",
-        outside: Any = "black",
+        box: Corners | None = None,
+        inside: Color = "white",
+        outside: Color = "black",
         samples: int = 4,
     ) -> Picture:
         """Return a picture of the shape, filled with one color, without a camera or lights.
@@ -477,7 +494,13 @@ class Shape2D(Outlined):
         )
         return filled(self, options, box, inside, outside, samples)
 
-    def extrude(self, height: Any = 1.0, *, rounding: Any = None, chamfer: Any = None) -> Shape:
+    def extrude(
+        self,
+        height: Number | None = 1.0,
+        *,
+        rounding: Number | None = None,
+        chamfer: Number | None = None,
+    ) -> Shape:
         """Extrude along z to a solid whose middle is at z = 0.
 
         Args:
@@ -496,7 +519,7 @@ class Shape2D(Outlined):
             return self._solid(extrude.EXTRUDE_CHAMFERED, height, chamfer)
         return self._solid(extrude.EXTRUDE, height)
 
-    def revolve(self, offset: Any = 0.0, angle: Any = None) -> Shape:
+    def revolve(self, offset: Number = 0.0, angle: Number | None = None) -> Shape:
         """Revolve about the y axis; x > 0 is outwards.
 
         Args:
@@ -507,7 +530,7 @@ class Shape2D(Outlined):
             return self._solid(lift.REVOLVE, offset)
         return self._solid(lift.REVOLVE_PARTLY, offset, angle)
 
-    def loft(self, other: BaseShape, height: Any = 1.0, ease: str = "linear") -> Shape:
+    def loft(self, other: BaseShape, height: Number = 1.0, ease: str = "linear") -> Shape:
         """Connect this outline at z = -height / 2 to another at z = height / 2.
 
         Args:
@@ -518,20 +541,25 @@ class Shape2D(Outlined):
         numbers = {"height": height, "ease": ease_number(ease)}
         return cast("Shape", self._joined(extrude.LOFT, other, **numbers))
 
-    def twist_extrude(self, height: Any, angle: Any) -> Shape:
+    def twist_extrude(self, height: Number, angle: Number) -> Shape:
         """Extrude along z and rotate by ``angle`` radians in total from end to end."""
         return self._solid(extrude.EXTRUDE_TWISTED, height, angle)
 
-    def taper_extrude(self, height: Any, top: Any) -> Shape:
+    def taper_extrude(self, height: Number, top: Number) -> Shape:
         """Extrude along z and scale gradually, by the factor ``top`` at the upper end."""
         return self._solid(extrude.EXTRUDE_TAPERED, height, top)
 
-    def sweep(self, points: Any, up: Any = (0.0, 1.0, 0.0)) -> Shape:
+    def sweep(self, points: Points, up: Vector = (0.0, 1.0, 0.0)) -> Shape:
         """Sweep along the polyline through (n, 3) points; ``up`` is the outline's y axis."""
         return self._solid(path.SWEEP, points, up)
 
     def sweep_bezier(
-        self, start: Any, control: Any, end: Any, up: Any = (0.0, 1.0, 0.0), pieces: int = 16
+        self,
+        start: Vector,
+        control: Vector,
+        end: Vector,
+        up: Vector = (0.0, 1.0, 0.0),
+        pieces: int = 16,
     ) -> Shape:
         """Sweep along a quadratic Bézier curve.
 
@@ -546,11 +574,26 @@ class Shape2D(Outlined):
             path.SWEEP_BEZIER, start=start, control=control, end=end, up=up, pieces=pieces
         )
 
-    def wrap_cylinder(self, radius: Any, height: Any) -> Shape:
-        """Wrap around a cylinder about the y axis, as a relief of thickness ``height``."""
-        return self._solid(lift.WRAP_CYLINDER, radius, height)
+    def wrap_cylinder(
+        self, radius: Number, height: Number, *, count: Number | None = None
+    ) -> Shape:
+        """Wrap around a cylinder about the y axis, as a relief.
 
-    def wrap_around(self, radius: Any, height: Any, *, depth: Any = None) -> Shape:
+        Args:
+            radius: Radius of the cylinder, in the middle of the relief.
+            height: Thickness of the relief.
+            count: Number of copies all around, at equal angles, without a seam: 1 for a shape as
+                wide as the circumference, which meets itself. The index of a copy is its ``cell``.
+                None wraps the shape once, with a gap at the back.
+
+        Raises:
+            SceneValueError: The shape is too wide.
+        """
+        if count is None:
+            return self._solid(lift.WRAP_CYLINDER, radius, height)
+        return self._solid(wrapping.WRAP_AROUND, radius, height, count=count)
+
+    def wrap_around(self, radius: Amount, height: Amount, *, depth: Amount | None = None) -> Shape:
         """Put the outline on a cylinder about the y axis, raised: text on a bottle, for instance.
 
         It is ``wrap_cylinder`` with the sizes of what is seen. Its front faces +z. Unite it with
@@ -566,7 +609,7 @@ class Shape2D(Outlined):
         middle = radius + 0.5 * (height - depth)
         return self._solid(lift.WRAP_CYLINDER, middle, height + depth)
 
-    def relief(self, *numbers: Any) -> Shape:
+    def relief(self, *numbers: Number) -> Shape:
         """Return terrain whose height at (x, z) is the value of this flat field."""
         return self._solid(heightfield.RELIEF, *numbers)
 

@@ -15,6 +15,7 @@ from distal.fields.combine.blends import COMBINATIONS
 from distal.fields.guarantees import Limit, Operator
 from distal.fields.lift import extrude
 from distal.ir.types import FLOAT
+from distal.lang.places import CELL
 from distal.scene.objects.binding import bound
 from distal.scene.tree.conversion import Asked, number
 from distal.scene.tree.errors import refuse
@@ -59,14 +60,14 @@ def shaped_edge(node: Node, word: str, size: Any, place: Span | None) -> Node:
     if rule in _SHARP:
         shaped = COMBINATIONS[rule.name, _BLENDS[word]]
         name = _EXTRUDED[word][1]
-        number(size, Asked(name, word, FLOAT, Limit.NOT_NEGATIVE, place=place))
+        varies = frozenset((CELL,))
+        number(size, Asked(name, word, FLOAT, Limit.NOT_NEGATIVE, place=place, varies=varies))
         numbers, constants = bound(shaped, (size,), {}, place)
         return _replaced(node, shaped, numbers, constants, place)
     if rule is extrude.EXTRUDE:
         shaped, name = _EXTRUDED[word]
-        numbers, constants = bound(
-            shaped, (), {"height": node.numbers["height"].value, name: size}, place
-        )
+        height = (node.numbers.get("height") or node.constants["height"].number).value
+        numbers, constants = bound(shaped, (), {"height": height, name: size}, place)
         return _replaced(node, shaped, numbers, constants, place)
     found = _INSTEAD[word].get(rule.name)
     if found is None and not node.children:

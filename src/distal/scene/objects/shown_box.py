@@ -36,7 +36,8 @@ def shown_box(shape: BaseShape, box: Any, options: RenderOptions, *, size: int) 
         if isinstance(shape.node.rule, Primitive) and shape.node.rule.bounds is None:
             return unbounded
         low, high = shape.bounds(params=options.params, time=options.time)
-        if not all(map(math.isfinite, (*low, *high))):
+        is_finite = all(map(math.isfinite, (*low, *high)))
+        if not is_finite or any(a > b for a, b in zip(low, high, strict=True)):
             return unbounded
         middle = [(a + b) / 2.0 for a, b in zip(low, high, strict=True)]
         half = [_MARGIN * (b - a) / 2.0 for a, b in zip(low, high, strict=True)]

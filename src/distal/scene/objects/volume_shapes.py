@@ -14,17 +14,21 @@ from typing import TYPE_CHECKING, Any
 
 from distal.diagnostics import LoadError, Span
 from distal.fields.guarantees import PRIMITIVES
+from distal.fields.solids import bricks as _declares_bricks  # noqa: F401
 from distal.fields.solids import volumes as _declares_the_field  # noqa: F401
 from distal.lang.lazy_module import LazyModule
+from distal.lang.notices import notice
 from distal.lang.parameter_values import as_float
-from distal.lang.resources import Texture3D
+from distal.lang.resources import AXES, Buffer, Texture3D, checked_axes
 from distal.scene.objects.binding import bound
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
 
 if TYPE_CHECKING:
-    from distal.polygons import volumes
+    from distal.polygons import bricks, volumes
+    from distal.polygons.bricks import BrickSamples
 else:
+    bricks = LazyModule("distal.polygons.bricks")
     volumes = LazyModule("distal.polygons.volumes")
 
 
@@ -41,8 +45,10 @@ def volume_node(source: Any, place: Span | None, *, spacing: Any, axes: Any, lev
     Raises:
         SceneValueError: The file cannot be read, or is no volume with an inside.
     """
-    if not isinstance(axes, str) or sorted(axes) != ["x", "y", "z"]:
-        refuse(f"axes are 'zyx' or another order of the three, not {axes!r:.40}", None, place)
+    try:
+        checked_axes(axes)
+    except ValueError as error:
+        refuse(str(error), None, place)
     try:
         given = None if spacing is None else _three(spacing)
         at = None if level is None else as_float("level", level)
@@ -56,7 +62,9 @@ def volume_node(source: Any, place: Span | None, *, spacing: Any, axes: Any, lev
             found = volumes.VolumeSamples(volumes.checked_samples(source), None)
             is_ordered = False
         step = given or found.spacing or (1.0, 1.0, 1.0)
-        field = volumes.field_of(found.values, "zyx" if is_ordered else axes, step, at)
+        field = volumes.field_of(found.values, AXES if is_ordered else axes, step, at)
+        x, y, z = (along / field.scale for along in step)
+        parts = bricks.from_grid(field.values, (z, y, x))
     except LoadError as error:
         refuse(error.message, None, place)
     except (TypeError, ValueError) as error:
@@ -68,9 +76,45 @@ def volume_node(source: Any, place: Span | None, *, spacing: Any, axes: Any, lev
             "or level= if they are no distances",
             place,
         )
+    name = Path(source).name if isinstance(source, str | PathLike) else "array"
+    notice(volumes.notice_of(name, field, step))
+    if parts is not None:
+        return brick_node(Buffer(parts.numbers), parts, field.size, field.scale, place)
+    return grid_node(Texture3D(field.values, wrap="clamp"), field.size, field.scale, place)
+
+
+Size = tuple[float, float, float]
+
+
+def grid_node(volume: Texture3D, size: Size, scale: float, place: Span | None) -> Node:
+    """Return the node of a grid of samples.
+
+    Args:
+        volume: The samples.
+        size: The size of their cells together.
+        scale: By what they are multiplied.
+        place: The author's line.
+    """
     rule = PRIMITIVES["VolumeField"]
-    volume = Texture3D(field.values, wrap="clamp")
-    numbers, constants = bound(rule, (volume, field.size, field.scale), {}, place)
+    numbers, constants = bound(rule, (volume, size, scale), {}, place)
+    return Node(rule, False, (), numbers, constants, place)
+
+
+def brick_node(
+    values: Buffer, found: BrickSamples, size: Size, scale: float, place: Span | None
+) -> Node:
+    """Return the node of samples in bricks.
+
+    Args:
+        values: Their numbers.
+        found: How they are arranged.
+        size: The size of the cells of all samples together.
+        scale: By what they are multiplied.
+        place: The author's line.
+    """
+    rule = PRIMITIVES["BrickField"]
+    given = (values, found.samples, size, found.reach, scale)
+    numbers, constants = bound(rule, given, {}, place)
     return Node(rule, False, (), numbers, constants, place)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +21,12 @@ from distal.scene.tree.conversion import Asked, Number, number
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.source_places import author_place
 
+if TYPE_CHECKING:
+    from distal.scene.objects.argument_types import Points, Vector
+
 Floats: TypeAlias = NDArray[np.float64]
 # A curve as a function of a number from 0 (its start) to 1 (its end).
-Curve: TypeAlias = Callable[[float], Any]
+CurveFunction: TypeAlias = Callable[[float], Any]
 
 # Pieces by which the length of a function's curve is measured: for a circle, the length is then
 # 1e-7 of itself too small.
@@ -35,7 +38,7 @@ CLOSED: Final = 1e-6
 
 
 def points_along(
-    curve: Any, count: int | None = None, *, spacing: float | None = None
+    curve: CurveFunction | Points, count: int | None = None, *, spacing: float | None = None
 ) -> tuple[Floats, Floats]:
     """Return points at equal distances along a curve, and the tangents there.
 
@@ -63,8 +66,8 @@ def points_along(
 
 
 def circle_path(
-    radius: float = 1.0, center: Any = (0.0, 0.0, 0.0), normal: Any = (0.0, 1.0, 0.0)
-) -> Curve:
+    radius: float = 1.0, center: Vector = (0.0, 0.0, 0.0), normal: Vector = (0.0, 1.0, 0.0)
+) -> CurveFunction:
     """Return a circle as a curve for ``points_along``.
 
     Seen from the end of the normal, it runs counterclockwise.
@@ -98,7 +101,7 @@ def circle_path(
     return circle
 
 
-def helix_path(radius: float = 1.0, height: float = 1.0, turns: float = 1.0) -> Curve:
+def helix_path(radius: float = 1.0, height: float = 1.0, turns: float = 1.0) -> CurveFunction:
     """Return a helix about the y axis, from y = 0 upwards, as a curve for ``points_along``.
 
     Args:
@@ -142,10 +145,10 @@ def _along_polyline(
 
 
 def _along_function(
-    curve: Curve, count: int | None, spacing: float | None, place: Span | None
+    curve: CurveFunction, count: int | None, spacing: float | None, place: Span | None
 ) -> tuple[Floats, Floats]:
     at = np.linspace(0.0, 1.0, PIECES + 1)
-    dense = _evaluated(curve, at, place)
+    dense = evaluated(curve, at, place)
     lengths = np.linalg.norm(np.diff(dense, axis=0), axis=1)
     reached = np.concatenate(([0.0], np.cumsum(lengths)))
     distances = _distances(dense[0], dense[-1], float(reached[-1]), count, spacing, place)
@@ -153,7 +156,7 @@ def _along_function(
     # The derivative of the parabola through three points; at an end, all of them are on one side.
     middle = np.clip(ts, STEP, 1.0 - STEP)
     before, at_middle, after = (
-        _evaluated(curve, middle + step, place) for step in (-STEP, 0.0, STEP)
+        evaluated(curve, middle + step, place) for step in (-STEP, 0.0, STEP)
     )
     chord = 0.5 * (after - before)
     bend = after - 2.0 * at_middle + before
@@ -167,11 +170,21 @@ def _along_function(
         refuse(
             f"the curve has no direction at t = {still:.6g}: it does not move there", None, place
         )
-    return _evaluated(curve, ts, place), tangents / size[:, None]
+    return evaluated(curve, ts, place), tangents / size[:, None]
 
 
-def _evaluated(curve: Curve, at: Floats, place: Span | None) -> Floats:
-    """Return the points of a function's curve."""
+def evaluated(curve: CurveFunction, at: Floats, place: Span | None) -> Floats:
+    """Return the points of a function's curve.
+
+    Args:
+        curve: The function.
+        at: The numbers at which it is evaluated.
+        place: The author's line.
+
+    Raises:
+        SceneTypeError: It returns something else than three numbers.
+        SceneValueError: A point is not finite.
+    """
     rows = []
     for t in at.tolist():
         point = curve(t)

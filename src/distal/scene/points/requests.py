@@ -10,7 +10,7 @@ from typing import Any, Final
 from distal.diagnostics import Span
 from distal.fields.guarantees import Limit
 from distal.ir.types import FLOAT, INT
-from distal.scene.tree.conversion import Asked, choice, number
+from distal.scene.tree.conversion import Asked, number, plain_choice
 from distal.scene.tree.errors import refuse, refuse_kind
 
 # A shape is drawn at each point, so more points than a scene has parts are of no use.
@@ -53,7 +53,7 @@ def whole_number(
         SceneValueError: It is out of range.
     """
     name, _, what = label.partition(" of ")
-    found = int(choice(value, Asked(name, what, INT, place=place)))
+    found = int(plain_choice(value, Asked(name, what, INT, place=place)))
     if not least <= found <= most:
         refuse(f"'{label}' is from {least} to {most:,}, not {found:,}", place=place)
     return found

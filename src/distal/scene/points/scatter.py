@@ -8,7 +8,7 @@ random points (``regions``); some of them are kept (``poisson``).
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,9 @@ from distal.scene.points.domains import (
 from distal.scene.points.requests import MOST_POINTS, positive, whole_number
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.source_places import author_place
+
+if TYPE_CHECKING:
+    from distal.scene.objects.argument_types import Corners
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -46,7 +49,7 @@ def points_on(
     *,
     spacing: float | None = None,
     seed: int = 0,
-    within: Any = None,
+    within: Corners | None = None,
 ) -> tuple[Floats, Floats]:
     """Return points scattered on the surface of a solid, and the normals there.
 
@@ -80,12 +83,12 @@ def points_on(
 
 
 def points_in(
-    region: Any,
+    region: BaseShape | Corners,
     count: int | None = None,
     *,
     spacing: float | None = None,
     seed: int = 0,
-    within: Any = None,
+    within: Corners | None = None,
 ) -> Floats:
     """Return points scattered in a solid or in a box.
 

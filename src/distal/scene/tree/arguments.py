@@ -11,11 +11,12 @@ import inspect
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from types import ModuleType
 from typing import Any, Final, NoReturn, TypeAlias
 from weakref import WeakKeyDictionary
 
 from distal.diagnostics import CompileError, Span
-from distal.fields.guarantees import BOUNDS_OF_CHILDREN, Limit, Requirement
+from distal.fields.guarantees import BOUNDS_OF_CHILDREN, FIXED_CHOICES, Limit, Requirement
 from distal.frontend.problems import did_you_mean
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
 from distal.frontend.signatures.signatures import MISSING, read_signature
@@ -31,10 +32,11 @@ from distal.ir.types import (
     Type,
     Vector,
 )
-from distal.lang.expressions import Symbolic
+from distal.lang.expressions import Expression, Symbolic
 from distal.lang.functions import Func
 from distal.lang.resources import Buffer as LangBuffer
 from distal.lang.resources import TextureValue
+from distal.lang.runtime_access import executor
 from distal.scene.tree.conversion import (
     Asked,
     Number,
@@ -51,6 +53,8 @@ from distal.scene.tree.conversion import (
     unwrapped,
 )
 from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.varying import VaryingNumber, varying_or_same
+from distal.scene.tree.whole_numbers import whole_ends
 
 # The value of a parameter; may be another object, such as a pattern, if the caller accepts it.
 Given: TypeAlias = "Number | int | bool | TextureValue | LangBuffer | Any"
@@ -140,6 +144,9 @@ def arguments(
     reserved: Collection[str] = RESERVED,
     colors: Collection[str] = (),
     accept: Accept | None = None,
+    changing: bool = False,
+    varies: frozenset[str] = frozenset(),
+    endless: Collection[str] = (),
 ) -> dict[str, Given]:
     """Return the values of functions' parameters by name, in the order of the parameters.
 
@@ -159,6 +166,10 @@ def arguments(
         reserved: Names of parameters that the author does not set.
         colors: Parameters that accept "#rrggbb" and names; ``color`` and ``…_color`` always do.
         accept: Accepts objects that are not numbers.
+        changing: Whether ints and bools may be parameters, but for those of ``FIXED_CHOICES``.
+        varies: What numbers may depend on besides parameters and time: "cell", "p". Those that do
+            become ``VaryingNumber``s.
+        endless: Parameters whose components may be infinite.
 
     Raises:
         SceneTypeError: An argument is unknown, missing, passed twice, surplus, or of the wrong
@@ -186,8 +197,22 @@ def arguments(
         value: Given | None = plain_number(given[name], slot.type, limit, is_color=is_color)
         if value is None:
             known = _known_type(slot, what, place)
-            asked = Asked(name, what, known, limit, is_color, name in SPLATTED, place)
+            fixed = not changing or name in FIXED_CHOICES
+            asked = Asked(
+                name,
+                what,
+                known,
+                limit,
+                is_color,
+                name in SPLATTED,
+                place,
+                fixed,
+                varies,
+                name in endless,
+            )
             value = _value(given[name], asked, accept)
+            if varies and isinstance(value, Number) and isinstance(value.value, Expression):
+                value = varying_or_same(value, name)
         values[name] = value
     if requires is not None:
         _check_together(requires, values, what, place)
@@ -380,6 +405,9 @@ class _ArgumentBinding:
     def take_positional(self, args: Sequence[Any]) -> None:
         """Assign the arguments by position."""
         left = list(args)
+        for module in (arg for arg in args if isinstance(arg, ModuleType)):
+            hint = "from distal import time" if module.__name__ == "time" else None
+            self._wrong(f"{self.what} takes no module, and '{module.__name__}' is one", hint)
         for slot in self.slots:
             if not left:
                 return
@@ -458,6 +486,38 @@ def _check_together(
     reason = requires(**plain)
     if reason is not None:
         refuse(f"{what}: {reason}", place=place)
+    for name, value in values.items():
+        if name in plain and isinstance(value, Number) and value.type is INT:
+            _check_ends(requires, {**plain}, name, value, what, place)
+
+
+def _check_ends(
+    requires: Requirement,
+    plain: dict[str, Any],
+    name: str,
+    value: Number,
+    what: str,
+    place: Span | None,
+) -> None:
+    """Refuse a whole number that contradicts others at an end of its range.
+
+    Args:
+        requires: Returns why numbers contradict each other, or None.
+        plain: The values by name.
+        name: The name of the whole number.
+        value: The whole number, which a parameter changes.
+        what: The name in messages.
+        place: The author's line.
+    """
+    assert isinstance(value.value, Expression)
+    ends = whole_ends(value.value)
+    assert ends is not None, "checked on conversion"
+    for word, end in zip(("down", "up"), ends, strict=True):
+        reason = requires(**{**plain, name: end})
+        if reason is not None:
+            side = "low" if word == "down" else "high"
+            hint = f"give the parameter another {side}, or use clamp"
+            refuse(f"{what}: {reason}; '{name}' goes {word} to {end}", hint, place)
 
 
 @lru_cache(maxsize=1024)
@@ -470,6 +530,8 @@ def _required(requires: Requirement) -> tuple[frozenset[str], bool]:
 
 def _plain(value: Given) -> Any:
     """Return the value for a requirement: a parameter's default, or None if it is computed."""
+    if isinstance(value, VaryingNumber):
+        return None
     if not isinstance(value, Number):
         return value
     if value.plain is not None:
@@ -479,6 +541,8 @@ def _plain(value: Given) -> Any:
     expression = held.as_expression()
     if isinstance(expression.node, Uniform) and len(expression.parameters) == 1:
         return expression.parameters[0].default
+    if expression.type is INT:
+        return executor().value(expression, {}, 0.0)
     return None
 
 

@@ -10,16 +10,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 from distal.diagnostics import Span
-from distal.frontend import Assembly
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
 from distal.frontend.signatures.signatures import MISSING, read_signature
-from distal.ir.nodes import Binary, Builtin, Compose, Const, Expr
+from distal.ir.nodes import Expr
 from distal.ir.types import BOOL, FLOAT, INT, Type
-from distal.ir.walk import children, rebuild, rewrite
-from distal.lang.expressions import Expression
 from distal.lang.functions import Func
 from distal.lang.immutable import Immutable
 from distal.lang.resources import Buffer, TextureValue
@@ -27,20 +24,11 @@ from distal.render.declarations import PLACE_NAMES
 from distal.render.footprint import footprint_length
 from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.conversion import NO_VALUES, Number
+from distal.scene.tree.shown_numbers import listed, placed
+from distal.scene.tree.varying import Composer, expression_of
 
 FOOTPRINT: Final = "footprint"
 FACING: Final = "facing"
-# With the id of a number: the key in ``Assembly.made`` of the expression that reads its column.
-COLUMN: Final = "column"
-
-
-class Composer(Protocol):
-    """An object that adds values to a program: any object with the program's assembly."""
-
-    @property
-    def assembly(self) -> Assembly:
-        """The assembly to which functions, numbers and resources are added."""
-        ...
 
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True, init=False)
@@ -79,6 +67,12 @@ class FunctionCall(Immutable):
         _set_func(self, func)
         _set_values(self, values)
         _set_place(self, place)
+
+    @property
+    def described(self) -> str:
+        """Its text: what it is, its numbers, the author's line."""
+        place = "" if self.place is None else f", {placed(self.place)}"
+        return f"{self.what}{listed(self.values)}{place}"
 
     def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
         """Emit the call. ``site`` provides the function's other arguments (point, normal, cell)."""
@@ -159,56 +153,6 @@ def result_of(func: Func) -> Type | None:
         return None
 
 
-def expression_of(assembly: Assembly, value: Number | TextureValue | Buffer, stem: str) -> Expr:
-    """Return a value as an expression of a program.
-
-    A constant number becomes a uniform, a column of a table (``scene.lowering.parts``) a read of
-    the row, an expression of the author stays one, but for its numbers, and a texture or buffer
-    becomes a resource.
-
-    Args:
-        assembly: The program.
-        value: The value.
-        stem: The stem of the name of the uniform or resource.
-    """
-    if not isinstance(value, Number):
-        return assembly.resource(value, stem)
-    column: Expr | None = assembly.made.get((COLUMN, id(value)))
-    if column is not None:
-        return column
-    if isinstance(value.value, Expression):
-        return _with_numbers(assembly, value.value, stem)
-    return assembly.number(stem, value.type, value.value)
-
-
-def _with_numbers(assembly: Assembly, expression: Expression, stem: str) -> Expr:
-    """Return an expression whose constants are numbers of the scene: a new value needs no new text.
-
-    An exponent stays, because a power of a known one is another formula.
-    """
-    made, key = assembly.made, (Expression, id(expression))
-    if key not in made:
-
-        def changed(e: Expr) -> Expr:
-            if not isinstance(e, Binary | Compose | Builtin) or _is_power(e):
-                return e
-            return rebuild(e, tuple(numbered(c) for c in children(e)))
-
-        def numbered(e: Expr) -> Expr:
-            if isinstance(e, Const) and e.type is FLOAT:
-                return assembly.number(stem, FLOAT, e.value)
-            return e
-
-        # The expression is kept, so that no other gets its identity.
-        made[key] = rewrite(assembly.expression(expression), changed, {}), expression
-    found: Expr = made[key][0]
-    return found
-
-
-def _is_power(e: Expr) -> bool:
-    return isinstance(e, Builtin) and e.name == "pow"
-
-
 def _identifier(what: str) -> str:
     return "".join(c if c.isascii() and c.isalnum() else "_" for c in what)
 
@@ -222,4 +166,4 @@ class Pattern(FunctionCall):
     __slots__ = ()
 
     def __repr__(self) -> str:
-        return f"<pattern {self.what}>"
+        return f"<pattern {self.described}>"

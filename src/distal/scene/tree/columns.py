@@ -20,9 +20,9 @@ from distal.scene.tree.conversion import (
     Asked,
     Number,
     Plain,
-    choice,
     complaint,
     number,
+    plain_choice,
     type_name,
     unwrapped,
 )
@@ -130,7 +130,7 @@ def choices(rows: Sequence[Any], asked: Asked, count: int) -> list[int]:
     found = []
     for at, row in enumerate(rows):
         named = replace(asked, name=f"{asked.name}[{at}]")
-        chosen = choice(row, named)
+        chosen = plain_choice(row, named)
         if not 0 <= chosen < count:
             refuse(f"'{named.label}' is from 0 to {count - 1}, not {chosen}", place=asked.place)
         found.append(int(chosen))

@@ -10,12 +10,12 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Final, TypeAlias
 
 from distal.diagnostics import Span
-from distal.fields.guarantees import Limit
+from distal.fields.guarantees import ENDLESS, UNBOUNDED, Limit
 from distal.ir.nodes import Cast, Compose, Const, Expr, Splat, Uniform
 from distal.ir.types import FLOAT, INT, TEXTURE_2D, TEXTURE_3D, Kind, Scalar, Texture, Type, Vector
 from distal.ir.types import Buffer as BufferType
@@ -29,16 +29,21 @@ from distal.lang.parameter_values import (
     as_int,
 )
 from distal.lang.parameters import Parameter
+from distal.lang.places import CELL, places_in
 from distal.lang.resources import Buffer, Texture2D, Texture3D, TextureValue
 from distal.lang.values import VectorValue
 from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.whole_numbers import whole_ends
 
 Component: TypeAlias = "float | Expression"
 Plain: TypeAlias = "float | tuple[float, ...]"
 
 # The values of an object without values, shared by all of them.
 NO_VALUES: Final[Mapping[str, Any]] = MappingProxyType({})
-_OF_ARRAYS: Final = {TEXTURE_2D: Texture2D, TEXTURE_3D: Texture3D}
+_OF_ARRAYS: Final[Mapping[Type, type[TextureValue]]] = {
+    TEXTURE_2D: Texture2D,
+    TEXTURE_3D: Texture3D,
+}
 _WORDS: Final = {2: "two", 3: "three", 4: "four"}
 # A direction written with six digits is accepted as having length 1.
 _UNIT_TOLERANCE: Final = 1e-5
@@ -48,10 +53,10 @@ _UNWRAPPED: Final = (float, Expression, tuple, list, int)
 
 @dataclass(frozen=True, slots=True, init=False)
 class Number:
-    """A float or a vector of floats among the arguments of a scene object.
+    """A float, a vector of floats, or a changing int or bool among the arguments of a scene object.
 
     Attributes:
-        type: float, vec2, vec3 or vec4.
+        type: float, vec2, vec3 or vec4; int or bool, if the value is an expression.
         value: Constant numbers, or an expression of this type.
     """
 
@@ -74,6 +79,21 @@ class Number:
         return known is None or any(c > low for c in components(known))
 
 
+@dataclass(frozen=True, slots=True, init=False)
+class HostNumber(Number):
+    """A number that whoever shows the scene sets, by its name: one uniform for all who read it.
+
+    Attributes:
+        name: The name of the uniform; begins with a capital letter.
+    """
+
+    name: str
+
+    def __init__(self, name: str, type: Type, value: Plain) -> None:
+        Number.__init__(self, type, value)
+        object.__setattr__(self, "name", name)
+
+
 _set_type: Final = vars(Number)["type"].__set__
 _set_value: Final = vars(Number)["value"].__set__
 
@@ -91,6 +111,9 @@ class Asked:
             components must not be negative.
         splats: Whether one number sets all components.
         place: The author's line.
+        is_fixed: Whether an int or a bool is fixed when the scene is compiled.
+        is_endless: Whether components may be infinite; they become ``UNBOUNDED``.
+        varies: What the number may depend on besides parameters and time: "cell", "p".
     """
 
     name: str
@@ -100,6 +123,9 @@ class Asked:
     is_color: bool = False
     splats: bool = False
     place: Span | None = None
+    is_fixed: bool = False
+    varies: frozenset[str] = frozenset()
+    is_endless: bool = False
 
     @property
     def label(self) -> str:
@@ -120,7 +146,15 @@ def number(value: Any, asked: Asked) -> Number:
     else:
         assert isinstance(asked.type, Vector) and asked.type.kind is Kind.FLOAT, asked.type
         made = _vector(value, asked, asked.type)
+    if isinstance(made.value, Expression):
+        _check_places(made.value, asked)
     _check_limit(made, asked)
+    if asked.is_endless and made.plain is not None and min(components(made.plain)) >= ENDLESS:
+        refuse(
+            f"'{asked.label}' is infinite along all axes, and nothing ends there",
+            "leave one side finite",
+            asked.place,
+        )
     return made
 
 
@@ -183,26 +217,97 @@ def plain_floats(
     return floats if _keeps(limit, least, max(floats), floats) else None
 
 
-def choice(value: Any, asked: Asked) -> int | bool:
-    """Convert a value to an int or a bool that is fixed when the scene is compiled.
+def choice(value: Any, asked: Asked) -> Number | int | bool:
+    """Convert a value to an int or a bool.
+
+    A plain one is fixed when the scene is compiled. A parameter or an expression of parameters
+    becomes a number of the scene, whose largest and smallest value keep the limit.
 
     Raises:
-        SceneTypeError: The value has the wrong type, or can change after the scene is compiled.
-        SceneValueError: The value is beyond its limit.
+        SceneTypeError: The value has the wrong type, or can change and must not.
+        SceneValueError: The value is beyond its limit, or its limits are not known.
     """
     value = unwrapped(value)
     if isinstance(value, Symbolic):
-        kind = "whole number" if asked.type is INT else "True or False"
-        refuse_kind(
-            f"'{asked.label}' is fixed when the scene is compiled; {_described(value)} is not",
-            f"give a plain {kind}",
-            asked.place,
-        )
+        return _changing_choice(value, asked)
     if asked.type is INT:
         whole: int = _checked(as_int, value, asked)
         _check_limit(Number(INT, whole), asked)
         return whole
     return bool(_checked(as_bool, value, asked))
+
+
+def plain_choice(value: Any, asked: Asked) -> int | bool:
+    """Convert a value to an int or a bool that is fixed when the scene is compiled.
+
+    Raises as ``choice``.
+    """
+    found = choice(value, replace(asked, is_fixed=True))
+    assert not isinstance(found, Number)
+    return found
+
+
+def _changing_choice(value: Symbolic, asked: Asked) -> Number:
+    """Convert a parameter or an expression to an int or a bool of the scene."""
+    held = value.as_expression()
+    is_whole = asked.type is INT
+    if asked.is_fixed:
+        kind = "whole number" if is_whole else "True or False"
+        refuse_kind(
+            f"'{asked.label}' is fixed when the scene is compiled; {_described(value)} is not",
+            f"give a plain {kind}",
+            asked.place,
+        )
+    if held.node.type is not asked.type:
+        kind, hint = ("a whole number", "integer(…)") if is_whole else ("a condition", "toggle(…)")
+        refuse_kind(
+            f"'{asked.label}' takes {kind}; {_described(value)} is a {held.node.type}",
+            f"make it with {hint}" + ("" if is_whole else ", or compare: x > 0.5"),
+            asked.place,
+        )
+    if is_whole and CELL in places_in(held):
+        refuse(
+            f"'{asked.label}' is the same in all cells",
+            "choose between shapes: select",
+            asked.place,
+        )
+    _check_places(held, asked)
+    if is_whole:
+        _check_ends(held, asked)
+    return Number(asked.type, held)
+
+
+def _check_places(held: Expression, asked: Asked) -> None:
+    """Refuse an expression that depends on the cell or the place where nothing gives them."""
+    for place in sorted(places_in(held) - asked.varies):
+        if place == CELL:
+            refuse(
+                f"'{asked.label}' cannot depend on the cell",
+                "numbers of shapes that are repeated, and of their materials, may",
+                asked.place,
+            )
+        refuse(
+            f"'{asked.label}' cannot depend on the place",
+            "numbers of materials may; a shape takes displace, or Shape.from_function",
+            asked.place,
+        )
+
+
+def _check_ends(held: Expression, asked: Asked) -> None:
+    """Refuse a whole number whose limits are not known, or beyond those of the parameter."""
+    ends = whole_ends(held)
+    if ends is None:
+        refuse(
+            f"'{asked.label}' needs a largest value, and this expression has none that is known",
+            "limit it: clamp(n, 1, 12) of distal.lang",
+            asked.place,
+        )
+    for end, plain in zip(("low", "high"), ends, strict=True):
+        wrong = complaint(float(plain), asked.limit)
+        if wrong is not None:
+            refuse(
+                f"'{asked.label}' must be {wrong}; it goes {_reach(end)} {plain}", None, asked.place
+            )
 
 
 def resource(value: Any, asked: Asked) -> TextureValue | Buffer:
@@ -271,6 +376,8 @@ def _checked(read: Callable[[str, object], Any], value: object, asked: Asked) ->
 def _component(value: Any, asked: Asked) -> Component:
     value = unwrapped(value)
     if not isinstance(value, Symbolic):
+        if asked.is_endless and isinstance(value, float) and value == math.inf:
+            return UNBOUNDED
         found: float = _checked(as_float, value, asked)
         return found
     held = value.as_expression()
@@ -487,7 +594,7 @@ def _buffer(value: Any, asked: Asked, element: Type) -> Buffer:
 def _row(row: Any, position: int, asked: Asked, element: Type) -> Any:
     inner = Asked(f"{asked.name}[{position}]", asked.what, element, place=asked.place)
     if element is INT:
-        return choice(row, inner)
+        return plain_choice(row, inner)
     found = number(row, inner)
     if found.plain is None:
         refuse_kind(

@@ -16,9 +16,11 @@ from distal.fields.guarantees import Operator
 from distal.frontend import Assembly
 from distal.ir.nodes import Const, Expr, Let, Read, Stmt
 from distal.ir.types import BOOL, INT, Type
+from distal.lang.places import CELL
 from distal.lang.resources import Buffer, TextureValue
-from distal.scene.tree.calls import COLUMN, expression_of
+from distal.scene.tree.conversion import NO_VALUES
 from distal.scene.tree.node import Node, Rule
+from distal.scene.tree.varying import COLUMN, VaryingNumber, expression_of
 
 
 @dataclass(slots=True)
@@ -43,13 +45,22 @@ class StatementList:
         """Add a named value and return the expression that reads it."""
         if isinstance(value, Read | Const):
             return value
+        name = self.fresh(stem)
+        self.statements.append(Let(name, value, span=self.place))
+        return Read(name, value.type)
+
+    def fresh(self, stem: str) -> str:
+        """Return a name that is not in use."""
         name, n = stem, self._next.get(stem, 2)
         while name in self.taken:
             name, n = f"{stem}_{n}", n + 1
         self.taken.add(name)
         self._next[stem] = n
-        self.statements.append(Let(name, value, span=self.place))
-        return Read(name, value.type)
+        return name
+
+    def block(self) -> StatementList:
+        """Return an empty list for a block within these statements; names stay unique."""
+        return StatementList(self.taken, self.place, self.is_shared, _next=self._next)
 
     @contextmanager
     def at(self, place: Span | None) -> Iterator[None]:
@@ -65,12 +76,29 @@ class StatementList:
 class Values:
     """The numbers of one program's nodes; each node's numbers become expressions once."""
 
-    def __init__(self, assembly: Assembly) -> None:
+    def __init__(self, assembly: Assembly, site: Mapping[str, Expr] = NO_VALUES) -> None:
+        """Add numbers to a program.
+
+        Args:
+            assembly: The program.
+            site: What numbers that depend on the cell are emitted for (``VaryingNumber.emit``).
+        """
         self.assembly = assembly
+        self._site = site
         self._own: dict[int, tuple[Expr, ...]] = {}
         self._all: dict[int, tuple[Expr, ...]] = {}
         self._count: dict[int, int] = {}
         self._alive: list[Node] = []  # keys are ids, so the nodes must stay alive
+
+    @contextmanager
+    def in_cell(self, cell: Expr) -> Iterator[None]:
+        """Emit numbers that depend on the cell for this one, within the block."""
+        before = self._site
+        self._site = {CELL: cell}
+        try:
+            yield
+        finally:
+            self._site = before
 
     def own(self, node: Node) -> tuple[Expr, ...]:
         """Return the values of a node's own numbers."""
@@ -161,7 +189,9 @@ class Values:
         """Return choices, textures and buffers as expressions; resources are named by ``stem``."""
         made: dict[str, Expr] = {}
         for name, value in constants.items():
-            if isinstance(value, TextureValue | Buffer):
+            if isinstance(value, VaryingNumber):
+                made[name] = value.emit(self, self._site)
+            elif isinstance(value, TextureValue | Buffer):
                 made[name] = self.assembly.resource(value, f"{stem}_{name}".lower())
             elif isinstance(value, bool):
                 made[name] = self.assembly.constant(value, BOOL)

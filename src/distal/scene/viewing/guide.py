@@ -9,26 +9,22 @@ from __future__ import annotations
 
 import inspect
 import math
-import struct
-import threading
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
 from distal.lang.number_text import shown
-from distal.lang.render_options import RenderOptions
-from distal.lang.runtime_access import executor
 from distal.render.guide import ACTIONS, NUMBERS
 from distal.scene import steering as uniforms
 from distal.scene.lowering.guide import GuideImage
 from distal.scene.objects.cameras import CLASSES
 from distal.scene.steering import STILL, Steering
 from distal.scene.viewing import interaction
+from distal.scene.viewing.number_rows import NumberRow
 
 if TYPE_CHECKING:
     from distal.scene.scene import Scene
 
-_BYTE: Final = 255.0
 _PERSPECTIVE: Final = "Camera"
 # The argument that sets how much a camera sees, if it has one.
 _ANGLE: Final = "fov_deg"
@@ -77,14 +73,17 @@ class Guide:
     Attributes:
         image: Its program; each pixel holds the bits of one of ``NUMBERS``.
         form: How the camera is written.
-        is_ready: Whether it is compiled.
     """
 
     def __init__(self, scene: Scene) -> None:
-        self.is_ready = False
-        self._lock = threading.Lock()
         self.image = GuideImage(scene)
+        self._row = NumberRow(self.image, NUMBERS)
         self.form = camera_form(scene)
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether it is compiled."""
+        return self._row.is_ready
 
     def prepare(self, moment: Moment) -> None:
         """Compile the program, which takes up to a few seconds."""
@@ -136,18 +135,7 @@ class Guide:
             uniforms.ACTION: ACTIONS.index(action),
             uniforms.SIZE: tuple(max(side, 1.0) for side in moment.size),
         }
-        options = RenderOptions(
-            size=(len(NUMBERS), 1),
-            time=moment.time,
-            params=moment.params,
-            threads=1,
-            settings=settings,
-        )
-        with self._lock:  # the first call compiles; a second one waits for it
-            pixels = executor().render(self.image, options).array[0]
-            self.is_ready = True
-        bits = bytes(round(float(value) * _BYTE) for value in pixels.reshape(-1))
-        return dict(zip(NUMBERS, struct.unpack(f"<{len(NUMBERS)}f", bits), strict=True))
+        return self._row.read(settings, time=moment.time, params=moment.params)
 
 
 def _steering(found: Mapping[str, float]) -> Steering:

@@ -21,6 +21,7 @@ class Binding:
         in_page: Whether pages and notebooks have the action; those of windows only do not.
         window_keys: Further keys in windows, which a browser uses itself.
         in_path_page: Whether only pages of scenes in mode "path" have it; ``in_page`` is True.
+        in_inspect_page: Whether pages to inspect have it too; ``in_page`` is False.
         opposite: The action of the same keys with shift or ctrl, if they are digits: what they
             type with shift depends on the keyboard.
     """
@@ -31,6 +32,7 @@ class Binding:
     window_keys: tuple[str, ...] = ()
     opposite: str | None = None
     in_path_page: bool = False
+    in_inspect_page: bool = False
 
 
 BINDINGS: Final = (
@@ -58,6 +60,11 @@ BINDINGS: Final = (
     Binding("faster", ("]",)),
     Binding("next_view", ("v",)),
     Binding("last_view", ("V",)),
+    Binding("section", ("x",), in_page=False, in_inspect_page=True),
+    Binding("section_side", ("X",), in_page=False, in_inspect_page=True),
+    Binding("section_back", window_keys=("PageDown",), in_page=False),
+    Binding("section_forth", window_keys=("PageUp",), in_page=False),
+    Binding("ruler", ("d",), in_page=False, in_inspect_page=True),
     Binding("mode", ("m",), in_path_page=True),
     Binding("parameters", ("p",), window_keys=("Tab",)),
     Binding("screenshot", ("s",)),
@@ -102,6 +109,9 @@ HELP: Final = (
     Help("Home", "Back to the start time", "begin"),
     Help("[  ]", "Slower, faster", "slower"),
     Help("V, shift V", "Next view, the one before", "next_view"),
+    Help("X, shift X", "Cut open along x, y, z; the other side", "section", False),
+    Help("Page up, down", "Move the cut", "section_forth", False),
+    Help("D, then clicks", "Measure a distance (D, Esc: remove)", "ruler", False),
     Help("M", "Direct light or paths", "mode"),
     Help("P", "Parameters", "parameters"),
     Help("P, then arrows", "Choose and change one (shift: finely)", "parameters", False),

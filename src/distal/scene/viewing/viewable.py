@@ -22,17 +22,21 @@ from distal.lang.functions import Func, Image
 from distal.lang.parameters import Parameter
 from distal.lang.render_options import RenderOptions
 from distal.lang.runtime_access import executor
+from distal.loading import copy_loaded_from
 from distal.render.views import VIEWS
 from distal.scene.lowering.live_film import FilmPass, ShownFilm
 from distal.scene.lowering.local_views import PREFIX, locals_of, view_of_image
 from distal.scene.lowering.local_views import VIEWS as IMAGE_VIEWS
 from distal.scene.lowering.picture import SceneLowering
+from distal.scene.lowering.section import is_sectionable
 from distal.scene.objects.field import BaseShape
 from distal.scene.scene import Scene
+from distal.scene.section import CutPlane
 from distal.scene.steering import STILL, Steering
 from distal.scene.view_options import MODES, ViewOptions
 from distal.scene.view_ranges import with_range
 from distal.scene.viewing.guide import Guide
+from distal.scene.viewing.ruler import Ruler
 from distal.scene.viewing.stage import stage
 
 if TYPE_CHECKING:
@@ -90,6 +94,8 @@ class Viewable:
         if self.scene is not None:
             return (COLOR, *VIEWS)
         assert isinstance(self._source, Image)
+        if self._source.shown is not self._source:  # a buffer, which is drawn once in a frame
+            return (COLOR,)
         known = locals_of(self._source, module=self.lowered)
         varying = (f"{PREFIX}{x.name}" for x in known if x.varies)
         return (COLOR, *IMAGE_VIEWS, *varying)
@@ -102,7 +108,7 @@ class Viewable:
             CompileError: The image has mistakes.
         """
         assert isinstance(self._source, Image)
-        return lower(self._source)
+        return lower(self._source.shown)
 
     @cached_property
     def parameters(self) -> list[Parameter]:
@@ -127,13 +133,64 @@ class Viewable:
         return None if self.scene is None else Guide(self.scene)
 
     @cached_property
+    def ruler(self) -> Ruler | None:
+        """What measures distances on the scene; None for an ``@image``."""
+        return None if self.scene is None else Ruler(self.scene)
+
+    @cached_property
     def animated(self) -> bool:
         """Whether the picture depends on the time."""
         return executor().reads_time(self.image(COLOR, encoded=True))
 
+    @cached_property
+    def keeps_frames(self) -> bool:
+        """Whether it reads earlier frames or what a host knows of one: the keyboard, the date."""
+        return executor().keeps_frames(self.image(COLOR, encoded=True))
+
+    @cached_property
+    def reads_keyboard(self) -> bool:
+        """Whether keys are the picture's: it reads the keyboard."""
+        return self.keeps_frames and executor().reads_keyboard(self.image(COLOR, encoded=True))
+
+    @cached_property
+    def is_sectionable(self) -> bool:
+        """Whether it can be cut open: a scene of solids, without the march for terrain."""
+        scene = self.scene
+        return scene is not None and scene.march == "sphere" and is_sectionable(scene.shape.node)
+
+    @property
+    def uncut_reason(self) -> str:
+        """Why it cannot be cut open; "" if it can."""
+        if self.scene is None:
+            return "only scenes and shapes can be cut open; an @image has no solid"
+        if self.scene.march != "sphere":
+            return f'a scene with march="{self.scene.march}" cannot be cut open'
+        return "" if self.is_sectionable else "nothing to cut open: planes stay whole"
+
+    def shown_with(self, section: CutPlane | None) -> Viewable:
+        """Return what a picture with a section shows: the object itself if it is not cut."""
+        return self if section is None or self.sectioned is None else self.sectioned
+
+    @cached_property
+    def sectioned(self) -> Viewable | None:
+        """The same object cut open by a ``CutPlane``; None if it has nothing that can be cut."""
+        scene = self.scene
+        if scene is None or not self.is_sectionable:
+            return None
+        made = copy.copy(self)
+        made.scene = made._source = scene.sectioned
+        for name in ("film", "guide", "ruler"):
+            made.__dict__.pop(name, None)
+        return made
+
+    @property
+    def source(self) -> Scene | Image:
+        """The scene, that of a shape, or the ``@image``."""
+        return self._source
+
     @property
     def file(self) -> Path | None:
-        """The author's file, if known."""
+        """The author's file, if known; a notebook's cell is none."""
         return _file_of(self._source)
 
     def image(
@@ -160,7 +217,9 @@ class Viewable:
             return self.scene.view(view, steered=steered, encoded=encoded, sampled=sampled)
         assert isinstance(self._source, Image)
         if view == COLOR:
-            return self._source
+            shown = self._source.shown
+            copy_loaded_from(self._source, shown)
+            return shown
         if view not in self._images:
             self._images[view] = view_of_image(self._source, view)
         return self._images[view]
@@ -180,12 +239,25 @@ class Viewable:
         """Return whether a still of a view gets several samples in a pixel: a scene's colors."""
         return self.scene is not None and view == COLOR
 
-    def settings(self, steering: Steering = STILL) -> dict[str, Any]:
-        """Return the uniforms of a steered program; empty if there is no camera."""
-        return steering.settings if self.steers else {}
+    def settings(
+        self, steering: Steering = STILL, section: CutPlane | None = None
+    ) -> dict[str, Any]:
+        """Return the uniforms of a steered program; empty if there is no camera.
+
+        Args:
+            steering: How a person has moved the camera.
+            section: The plane that a program of ``sectioned`` reads.
+        """
+        plane = {} if section is None else section.settings
+        return {**steering.settings, **plane} if self.steers else {}
 
     def render(
-        self, options: RenderOptions, *, view: str = COLOR, steering: Steering | None = None
+        self,
+        options: RenderOptions,
+        *,
+        view: str = COLOR,
+        steering: Steering | None = None,
+        section: CutPlane | None = None,
     ) -> Picture:
         """Render the picture.
 
@@ -193,8 +265,22 @@ class Viewable:
             options: How it is rendered.
             view: One of ``views``.
             steering: How a person has moved the camera; None if it was not moved.
+            section: The plane that cuts the scene open; None if it is whole. Takes no effect if
+                nothing can be cut.
         """
+        shown = self.shown_with(section)
+        return shown._rendered(options, view, steering, None if shown is self else section)
+
+    def _rendered(
+        self,
+        options: RenderOptions,
+        view: str,
+        steering: Steering | None,
+        section: CutPlane | None,
+    ) -> Picture:
+        """Render the picture; with a section, of what ``sectioned`` returned."""
         moved = {} if steering is None else self.settings(steering)
+        moved |= {} if section is None else section.settings
         if self.scene is None:
             image, settings = self.image(view), {}
         else:
@@ -218,6 +304,7 @@ class Viewable:
             view=view,
             mode="path" if self.is_traced(view) else "direct",
             steering=numbers,
+            section=None if section is None else section.numbers,
             stage=staged,
             **asked,
         )
@@ -293,4 +380,8 @@ def _file_of(source: Scene | Image) -> Path | None:
         name = source.overloads[0].source.file
     elif source.place is not None:
         name = source.place.file
-    return None if name is None or name.startswith("<") else Path(name)
+    if name is None or name.startswith("<"):
+        return None
+    path = Path(name)
+    is_cell = path.parent.name.startswith("ipykernel_") or path.stem.startswith("__marimo__")
+    return None if is_cell or not path.exists() else path

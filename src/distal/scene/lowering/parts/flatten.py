@@ -12,8 +12,9 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Final
 
+from distal.fields.combine.alternatives import NOTHING, NOTHINGS, SELECT
 from distal.fields.combine.joins import UNION
-from distal.fields.deform.offsets import OFFSET, ROUND
+from distal.fields.deform.offsets import OFFSET, ROUND, SECTION
 from distal.fields.guarantees import Guarantee, Operator, Primitive
 from distal.fields.place.flat import SCALE_FLAT
 from distal.fields.place.solid import SCALE, TRANSLATE
@@ -22,12 +23,13 @@ from distal.ir.types import VEC3
 from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.node import Node
+from distal.scene.tree.varying import varied_in
 
 # The fewest copies of a repetition that are parts of their own.
 LEAST_COPIES: Final = 16
 CELL: Final = "cell"
 # Operators that change the values of a shape by a function that never decreases.
-RISING: Final = frozenset((SCALE, SCALE_FLAT, ROUND, OFFSET))
+RISING: Final = frozenset((SCALE, SCALE_FLAT, ROUND, OFFSET, SECTION))
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,9 +53,13 @@ def members_of(root: Node) -> list[UnionMember]:
     stack: list[tuple[Node, Callable[[Node], Node]]] = [(root, _unchanged)]
     while stack:
         node, above = stack.pop()
+        if node.rule is NOTHING:
+            continue
         if node.rule is UNION:
             inner = _painted(node, above)
             stack.extend((child, inner) for child in reversed(node.children))
+        elif _selects_many(node):
+            stack.extend((node.children[i], _selected(node, i, above)) for i in (1, 0))
         elif _passes(node) and _unites(node):
             stack.append((node.children[0], _wrapped(node, above)))
         elif copies_of(node) > 1:
@@ -62,6 +68,29 @@ def members_of(root: Node) -> list[UnionMember]:
         else:
             found.append(UnionMember(above(node), node))
     return found
+
+
+def _selects_many(node: Node) -> bool:
+    """Return whether one of two shapes is shown, and their parts are worth a table."""
+    return node.rule is SELECT and not node.flat and member_count(node) >= LEAST_COPIES
+
+
+def _selected(node: Node, index: int, above: Callable[[Node], Node]) -> Callable[[Node], Node]:
+    """Return how a member of one of two shapes becomes a part: shown where that shape is.
+
+    Args:
+        node: The node that selects one of the two.
+        index: Which of them it is.
+        above: How the node becomes a part.
+    """
+    if node.children[index].rule in NOTHINGS:
+        return above
+    other = Node(NOTHING, False, place=node.place)
+
+    def place(member: Node) -> Node:
+        return above(replace(node, children=(other, member) if index else (member, other)))
+
+    return place
 
 
 def _unchanged(node: Node) -> Node:
@@ -119,7 +148,7 @@ def _member_count(root: Node) -> int:
     count, stack = root.parts, [root]
     while stack:
         node = stack.pop()
-        if node.rule is UNION or _passes(node):
+        if node.rule in (UNION, SELECT) or _passes(node):
             stack.extend(node.children)
         else:
             count += copies_of(node) - 1
@@ -138,6 +167,8 @@ def copies_of(node: Node) -> int:
 
 
 def _reads_cell(root: Node) -> bool:
+    if varied_in(root):
+        return True
     materials = (m for n in root.walk() for m in (n.material, n.cut_material) if m is not None)
     return any(CELL in material.uses for material in materials) or any(
         slot.name == CELL for function in root.functions() for slot in slots_of(function)

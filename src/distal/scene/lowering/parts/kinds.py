@@ -19,9 +19,10 @@ from distal.ir.types import FLOAT, Type, Vector
 from distal.lang.expressions import Expression
 from distal.scene.lowering.parts.flatten import UnionMember
 from distal.scene.lowering.parts.lifted import ConstantLifter, with_values
-from distal.scene.tree.calls import COLUMN, FunctionCall
+from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import Number, Plain
 from distal.scene.tree.node import Node, Rule
+from distal.scene.tree.varying import COLUMN, VaryingNumber
 
 # A row begins with the number of its kind and that of the part among those of the kind.
 HEAD: Final = 2
@@ -342,8 +343,9 @@ def materials_in(node: Node) -> Iterator[Any]:
 
 def is_moving(node: Node) -> bool:
     """Return whether the shape of a tree depends on parameters or time."""
-    return any(
-        isinstance(number.value, Expression)
-        for inner in node.walk()
-        for number in inner.numbers.values()
-    )
+    for inner in node.walk():
+        if any(isinstance(number.value, Expression) for number in inner.numbers.values()):
+            return True
+        if any(isinstance(v, VaryingNumber) and v.moves for v in inner.constants.values()):
+            return True
+    return False

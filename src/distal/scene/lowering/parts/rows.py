@@ -61,7 +61,7 @@ class Rows:
         low, high = _corners(self.swept)
         boxes = Buffer(order.filled(low, high))
         if any(map(is_refitted, self.kinds)):
-            boxes = MovingBoxes(boxes.data, self.kinds, self.swept, order)
+            boxes = MovingBoxes.of_kinds(boxes.data, self.kinds, self.swept, order)
         lowest, highest = low.min(axis=0).tolist(), high.max(axis=0).tolist()
         corners = tuple(lowest), tuple(highest)
         slope, divisor = (

@@ -76,6 +76,11 @@ class PartTable:
         return any(kind.factor is not None for kind in self.kinds)
 
     @property
+    def moves(self) -> bool:
+        """Whether some parts depend on parameters or time."""
+        return any(kind.moving for kind in self.kinds)
+
+    @property
     def count(self) -> int:
         """The number of parts."""
         return sum(len(kind.members) for kind in self.kinds)

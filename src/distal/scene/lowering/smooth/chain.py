@@ -16,6 +16,7 @@ from distal.lang.expressions import Expression
 from distal.scene.lowering.parts.flatten import UnionMember
 from distal.scene.lowering.parts.kinds import is_moving
 from distal.scene.tree.node import Node
+from distal.scene.tree.varying import VaryingNumber
 
 MOVING: Final = "its shape depends on parameters or time"
 MOVING_BLEND: Final = "the size of its blend depends on parameters or time"
@@ -93,7 +94,8 @@ def first_linear(links: list[Link]) -> tuple[int, str]:
                 return i, EVERYWHERE.format(name)
             if blend.width is None:
                 return i, BOTH.format(name)
-            if any(isinstance(number.value, Expression) for number in join.numbers.values()):
+            changes = any(isinstance(number.value, Expression) for number in join.numbers.values())
+            if changes or any(isinstance(v, VaryingNumber) for v in join.constants.values()):
                 return i, MOVING_BLEND
         if is_moving(link.node):
             return i, MOVING

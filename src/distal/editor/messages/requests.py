@@ -1,0 +1,276 @@
+"""The messages from the app to the worker.
+
+Input: nothing. Output: frozen records, each with its kind and the type of its result.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal
+
+from distal.editor.messages.records import Change, Value
+from distal.editor.messages.results import (
+    Checked,
+    Counting,
+    EmittedText,
+    ExportedFile,
+    LineTiming,
+    Planned,
+    ProbeResult,
+    RenderChoices,
+    Rendered,
+    Saved,
+    ShapeMap,
+    Written,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AppRequest:
+    """What all requests have.
+
+    Attributes:
+        id: The app's number of the request, never used twice.
+        revision: The app's number of the text, greater after each change.
+    """
+
+    kind: ClassVar[str]
+    result: ClassVar[type | None] = None
+    id: int
+    revision: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SourceRequest(AppRequest):
+    """A request about a scene.
+
+    Attributes:
+        files: The texts by name: the scene's file and modules beside it.
+        main: The name of the scene's file.
+        object: The name of the object in it; None for the only one.
+        view: The view to show.
+        values: Values of parameters by name; others have their defaults.
+        time: In seconds.
+        look: The look to show it in; None for its own.
+        mode: How light is computed; None: as the scene says.
+        size: The author's frame in pixels.
+    """
+
+    files: dict[str, str]
+    main: str
+    object: str | None = None
+    view: str = "color"
+    values: dict[str, Value] = field(default_factory=dict)
+    time: float = 0.0
+    look: str | None = None
+    mode: Literal["direct", "path"] | None = None
+    size: tuple[int, int] = (640, 480)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LookRequest(SourceRequest):
+    """Compile a scene's view. Answered by ``scene``, ``numbers`` or ``mistakes``.
+
+    Attributes:
+        known: The ``key`` of the program that the app shows; if it is still that of the scene, the
+            answer is ``numbers``. None for a ``scene`` in any case.
+        changes: Changes to make in the text first; the answer has their edits.
+        lean: Whether to leave out literals and shapes, as while a literal is dragged.
+        guided: Whether the camera's guide is among the programs. Without it the camera moves
+            freely; while one types, the picture comes sooner.
+    """
+
+    kind: ClassVar[str] = "look"
+    known: str | None = None
+    changes: tuple[Change, ...] = ()
+    lean: bool = False
+    guided: bool = True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HoldRequest(SourceRequest):
+    """Make the number of a ``@func`` an input of the program. Answered as a ``look``.
+
+    The ``scene`` that answers has ``held``: the name of the input, to be set by
+    ``player.setNumber(held, value)``. Where it cannot be an input (a loop's bound), ``held`` is
+    None and the program is the usual one.
+    """
+
+    kind: ClassVar[str] = "hold"
+    file: str
+    start: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WriteRequest(SourceRequest):
+    """Write changes into the source: Keep of a slider, a literal or the camera."""
+
+    kind: ClassVar[str] = "write"
+    result: ClassVar[type | None] = Written
+    changes: tuple[Change, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CountRequest(SourceRequest):
+    """Give the program that counts how often each line runs.
+
+    Attributes:
+        work: Whether its estimated operations are counted instead.
+    """
+
+    kind: ClassVar[str] = "count"
+    result: ClassVar[type | None] = Counting
+    work: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TimeRequest(SourceRequest):
+    """Give the program that repeats what a line computes, to measure its time."""
+
+    kind: ClassVar[str] = "time"
+    result: ClassVar[type | None] = LineTiming
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapRequest(SourceRequest):
+    """Give the program that draws which shape each pixel shows."""
+
+    kind: ClassVar[str] = "map"
+    result: ClassVar[type | None] = ShapeMap
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProbeRequest(SourceRequest):
+    """Tell what the pixel at ``x``, ``y`` shows (from the top left), with the camera as moved.
+
+    Attributes:
+        steering: "yaw", "pitch", "zoom", "pan_x", "pan_y"; empty where it was not moved.
+    """
+
+    kind: ClassVar[str] = "probe"
+    result: ClassVar[type | None] = ProbeResult
+    x: float
+    y: float
+    steering: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CheckRequest(SourceRequest):
+    """Validate the scene as ``distal check`` does."""
+
+    kind: ClassVar[str] = "check"
+    result: ClassVar[type | None] = Checked
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TextRequest(SourceRequest):
+    """Give the emitted text of a target, as ``distal compile`` prints it."""
+
+    kind: ClassVar[str] = "text"
+    result: ClassVar[type | None] = EmittedText
+    target: str = "glsl-es300"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportRequest(SourceRequest):
+    """Make a file of the scene; ``ready`` has the formats.
+
+    Attributes:
+        format: E.g. "page", "shadertoy", "isf", "wgsl".
+        title: The title of a page; None for the scene's name.
+        embed: Whether a page is a fragment for other pages.
+        poster: A PNG in base64 that a page shows first; None for none.
+    """
+
+    kind: ClassVar[str] = "export"
+    result: ClassVar[type | None] = ExportedFile
+    format: str
+    title: str | None = None
+    embed: bool = False
+    poster: str | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PictureRequest(SourceRequest):
+    """A request about a picture or film to render (local only; the server answers).
+
+    Its time is that of the picture, or of the first frame of a film.
+
+    Attributes:
+        format: The name of a format of ``choices``.
+        samples: Samples of a pixel; None: as ``distal render`` has it.
+        time_limit: In mode "path", of a picture: seconds after which no more samples are begun.
+        bits: Bits of a channel of a picture; None for the format's own.
+        transparent: Whether a picture's background is left out.
+        steering: How the camera was moved; empty where it was not.
+        duration: Seconds of a film.
+        fps: Frames of a film in a second: "30", "29.97", "30000/1001".
+        quality: Of a lossy film: a name, or a number from 0 to 100; None for the default.
+        loop: Whether a film repeats, where its format says so.
+    """
+
+    format: str
+    samples: int | None = None
+    time_limit: float | None = None
+    bits: int | None = None
+    transparent: bool = False
+    steering: dict[str, float] = field(default_factory=dict)
+    duration: float = 2.0
+    fps: str = "30"
+    quality: str | None = None
+    loop: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RenderRequest(PictureRequest):
+    """Render a picture or film, with ``progress``."""
+
+    kind: ClassVar[str] = "render"
+    result: ClassVar[type | None] = Rendered
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CommandRequest(PictureRequest):
+    """Give the command that renders it."""
+
+    kind: ClassVar[str] = "command"
+    result: ClassVar[type | None] = Planned
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChoicesRequest(AppRequest):
+    """Tell what ``render`` can be asked for (local only; the server answers)."""
+
+    kind: ClassVar[str] = "choices"
+    result: ClassVar[type | None] = RenderChoices
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CancelRequest(AppRequest):
+    """End a ``render`` (local only), which is then ``dropped``; it has no answer of its own.
+
+    Attributes:
+        job: The ``id`` of the render.
+    """
+
+    kind: ClassVar[str] = "cancel"
+    job: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SaveRequest(AppRequest):
+    """Write a file (local only; the server answers). ``digest`` is that of the text it replaces."""
+
+    kind: ClassVar[str] = "save"
+    result: ClassVar[type | None] = Saved
+    file: str
+    text: str
+    digest: str | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StopRequest(AppRequest):
+    """End the worker; it answers nothing."""
+
+    kind: ClassVar[str] = "stop"

@@ -1,0 +1,212 @@
+"""The results of requests, one record for each kind of request that has one.
+
+Input: nothing. Output: frozen records, and the type of all of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+from distal.editor.messages.records import Edit, Mistake, Place, Program
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Written:
+    """Edits that make the changes; the new literals are found by the next ``look``."""
+
+    edits: tuple[Edit, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Counting:
+    """A program that counts how often lines run, or their operations, and what to draw it with.
+
+    Draw it as the view's program with the uniform ``which`` set to the number of a place: each
+    pixel's color holds the count as red + 256 green + 65536 blue (bytes).
+
+    Attributes:
+        most: The largest count of a pixel; it stands for all above.
+        places: File (number in ``files``) and line by the number of the place.
+    """
+
+    program: Program
+    which: str
+    most: int
+    files: tuple[str, ...]
+    places: tuple[tuple[int, int], ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LineTiming:
+    """A program that does what a line computes several times, without changing the picture.
+
+    Attributes:
+        choice: The program's line that picks a place. It ends in -1, for none; with n it repeats
+            place n, with -2 - n the loop of the place alone, without what it computes.
+        repeats: The uniform that says how often.
+        places: File (number in ``files``) and line by the number of the place.
+        evaluations: How often one repetition does the line, by the number of the place.
+    """
+
+    program: Program
+    choice: str
+    repeats: str
+    files: tuple[str, ...]
+    places: tuple[tuple[int, int], ...]
+    evaluations: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShapeMap:
+    """A program that draws which shape each pixel shows, for outlines.
+
+    Draw it as the view's program: each pixel's color holds the number of a part as red + 256 green
+    + 65536 blue (bytes), with alpha 0 where there is none.
+
+    Attributes:
+        parts: For each number the lines that make a shape which holds the part: file (number in
+            ``files``) and line.
+    """
+
+    program: Program
+    files: tuple[str, ...]
+    parts: tuple[tuple[tuple[int, int], ...], ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProbeResult:
+    """What a pixel shows; ``shape`` is empty where it is the background.
+
+    Attributes:
+        numbers: Further measured values by name, e.g. "steps", "distance", "depth".
+    """
+
+    shape: str = ""
+    material: str = ""
+    file: str | None = None
+    line: int | None = None
+    point: tuple[float, ...] = ()
+    normal: tuple[float, ...] = ()
+    numbers: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EmittedText:
+    """A scene as the text of a target, and where its lines come from."""
+
+    target: str
+    language: Literal["glsl", "wgsl", "llvm", "ir"]
+    text: str
+    files: tuple[str, ...]
+    places: tuple[Place, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportedFile:
+    """A file to save: its data as text, or in base64 where it is bytes."""
+
+    name: str
+    media_type: str
+    text: str | None = None
+    base64: str | None = None
+    command: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Checked:
+    """What ``distal check`` reports."""
+
+    mistakes: tuple[Mistake, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Saved:
+    """The file is on the disk, with this digest; or a conflict: what is there instead."""
+
+    digest: str
+    conflict: str | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RenderFormat:
+    """A format of ``render``.
+
+    Attributes:
+        film: Whether it is a film; it is then written beside the scene.
+        bits: The bits of a channel that there are; the first is the default.
+        lossy: Whether it has a quality.
+        loops: Whether the file says if it repeats.
+        missing: What has to be installed first, or None.
+    """
+
+    name: str
+    film: bool
+    bits: tuple[int, ...] = ()
+    lossy: bool = False
+    loops: bool = False
+    missing: str | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RenderChoices:
+    """What ``render`` can be asked for.
+
+    Attributes:
+        modes: How light may be computed.
+        qualities: Names of qualities; numbers from 0 to 100 are allowed, too.
+        quality: The one that is used without.
+        largest_side: Of a picture, in pixels.
+        most_samples: Of a pixel.
+        path_samples: Samples of a pixel in mode "path" without ``samples`` and ``time_limit``.
+    """
+
+    formats: tuple[RenderFormat, ...]
+    modes: tuple[str, ...]
+    qualities: tuple[str, ...]
+    quality: str
+    largest_side: int
+    most_samples: int
+    path_samples: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Planned:
+    """The command that renders a picture or film, in the folder of the scene."""
+
+    command: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rendered:
+    """A finished picture or film.
+
+    Attributes:
+        name: The file's name.
+        bytes: Its size.
+        address: Where the page gets it, for a picture; None for a film, which is beside the scene.
+        command: The command that makes the same file.
+        said: What the command has said: figures, warnings.
+    """
+
+    name: str
+    bytes: int
+    address: str | None
+    command: str
+    said: str = ""
+
+
+Result: TypeAlias = (
+    Written
+    | Counting
+    | LineTiming
+    | ShapeMap
+    | ProbeResult
+    | EmittedText
+    | ExportedFile
+    | Checked
+    | RenderChoices
+    | Planned
+    | Rendered
+    | Saved
+)  # in TypeScript, the type that `Results` has for the kind of the request
