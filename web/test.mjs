@@ -18,7 +18,7 @@ await build({
   outdir: folder,
   outExtension: { ".js": ".mjs" },
   bundle: true,
-  define: { PATHS: "true", EDITED: "true" },
+  define: { PATHS: "true", EDITED: "true", FRAMES: "true" },
   platform: "node",
   format: "esm",
   target: "node20",

@@ -81,7 +81,7 @@ export function pythonOf(
       zoom !== 1 && `zoom=${number(+zoom.toFixed(4))}`,
       (pan[0] || pan[1]) && `pan=${tuple(pan.map((p) => +p.toFixed(4)))}`,
     ].filter(Boolean);
-    parts.push(`steering=Steering(${said.join(", ")})`);
+    parts.push(`steering=distal.Steering(${said.join(", ")})`);
   }
   return parts.join(", ");
 }

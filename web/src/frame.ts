@@ -10,7 +10,7 @@ import type { Needs } from "./generated/bindings";
 import { NOTHING_COVERED, frameOn, type Covered } from "./framing";
 import { listen } from "./gestures";
 import { helpOf } from "./help";
-import { press } from "./keyboard";
+import { isNeeded, press } from "./keyboard";
 import { Notices } from "./notices";
 import { panelOf } from "./panel";
 import type { Payload } from "./payload";
@@ -148,8 +148,18 @@ export class Frame {
     if (this.#end.signal.aborted || this.#isListening) return;
     this.#isListening = true;
     const { signal } = this.#end;
-    const act = (event: KeyboardEvent) => press(event, this.#player.actions);
+    const act = (event: KeyboardEvent) =>
+      (FRAMES && takes(this.#player, event)) || press(event, this.#player.actions);
     this.#box.addEventListener("keydown", act);
+    if (FRAMES) {
+      this.#box.addEventListener("keyup", act);
+      if (!EDITED) takeFiles(this.#box, this.#player, (text) => this.notices.brief(text));
+      addEventListener("blur", () => this.#player.keys?.release(), { signal });
+      for (const type of ["pointerdown", "pointerup", "pointercancel"] as const) {
+        const tell = (event: PointerEvent) => this.#player.pressed(event.buttons);
+        this.#box.addEventListener(type, tell);
+      }
+    }
     if (this.#player.payload.embed) return;
     // On a page of its own the keys need no focus.
     Frame.#pages += 1;
@@ -159,6 +169,7 @@ export class Frame {
       if (isFree && Frame.#pages === 1 && this.#fills()) act(event);
     };
     document.addEventListener("keydown", actAlone, { signal });
+    if (FRAMES) document.addEventListener("keyup", actAlone, { signal });
   }
 
   #isListening = false;
@@ -257,4 +268,26 @@ export class Frame {
     if (!this.#player.camera) return false;
     return event.ctrlKey || this.root.activeElement === this.canvas || this.#fills();
   }
+}
+
+/** Whether the picture reads the key; a key that goes up has no other meaning. */
+function takes(player: Player, event: KeyboardEvent): boolean {
+  const isTaken = !isNeeded(event.composedPath()[0], event.key) && player.takesKey(event);
+  if (isTaken) event.preventDefault();
+  return isTaken || event.type === "keyup";
+}
+
+/** A file that is dropped on a picture takes the place of its images, one after the other. */
+function takeFiles(box: HTMLElement, player: Player, say: (text: string) => void): void {
+  let next = 0;
+  box.addEventListener("dragover", (event) => event.preventDefault());
+  box.addEventListener("drop", (event) => {
+    const images = player.payload.frames?.images ?? [];
+    const file = event.dataTransfer?.files[0];
+    event.preventDefault();
+    if (!file || !images.length) return;
+    const { name } = images[next % images.length]!;
+    const done = () => (next += 1);
+    player.setImage(name, file).then(done, () => say(`${file.name} is no picture.`));
+  });
 }

@@ -17,7 +17,8 @@ export function press(event: KeyboardEvent, actions: Actions): void {
   if (action && actions[action](event.shiftKey)) event.preventDefault();
 }
 
-function isNeeded(target: EventTarget | undefined, key: string): boolean {
+/** Whether the element that has the focus needs a key. */
+export function isNeeded(target: EventTarget | undefined, key: string): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target instanceof HTMLInputElement) {
     // A slider takes arrows and its ends, a switch the space bar; where one writes, every key is text.

@@ -148,7 +148,7 @@ export class Painter {
   draw(program: Linked, inputs: Inputs, size: [number, number], from: number, columns: number): void {
     const { gl } = this;
     const [width, height] = size;
-    const target = (PATHS && program.film?.onto) || this.#work;
+    const target = ((PATHS || FRAMES) && program.film?.onto) || this.#work;
     resize(gl, target, width, height);
     gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
     gl.viewport(0, 0, width, height);

@@ -58,6 +58,42 @@ export interface Program {
   vertex_lines: LineRange[];
   /** Its light by random paths; left out where that is not wanted. */
   film?: FilmPrograms | undefined;
+  /** What is drawn before it in each frame; left out where nothing is kept. */
+  frames?: FrameProgram | undefined;
+}
+
+/** A buffer, or a picture that is read in the next frame, and the texture that it draws. */
+export interface FramePass {
+  program: Program;
+  name: string;
+}
+
+/** What a picture reads that changes with each frame. */
+export interface FrameProgram {
+  passes: FramePass[];
+  itself: FramePass | null;
+  /** The texture that is the keyboard. */
+  keyboard: string | null;
+  /** The texture that is the microphone. */
+  microphone: string | null;
+  /** Sounds from files. */
+  sounds: SoundEntry[];
+  /** Textures that a person replaces. */
+  images: ImageInput[];
+}
+
+export interface SoundEntry {
+  name: string;
+  loop: boolean;
+  /** Its texels, 60 rows a second: packed, in base64. */
+  rows: string;
+  /** The file in base64. */
+  file: string;
+}
+
+export interface ImageInput {
+  name: string;
+  wrap: string;
 }
 
 /** The programs of a film: one adds samples to it, one shows it. */
@@ -118,6 +154,8 @@ export interface CameraForm {
 export interface Payload {
   format: number;
   name: string;
+  /** What stands before and after the arguments of `render` in the line that is copied. */
+  code?: [string, string];
   description: string;
   size: [number, number];
   embed: boolean;
@@ -128,6 +166,15 @@ export interface Payload {
   parameters: Parameter[];
   values: Values;
   views: View[];
+  /** Of a picture that keeps frames: the numbers of its programs, in the order of drawing. */
+  frames?: {
+    passes: { program: number; name: string }[];
+    itself: { program: number; name: string } | null;
+    keyboard: string | null;
+    microphone: string | null;
+    sounds: SoundEntry[];
+    images: ImageInput[];
+  };
   /** Which of the views is shown first. */
   view: string;
   poster: string | null;

@@ -8,6 +8,7 @@
 import { Camera, type Steering } from "./camera";
 import { Clock } from "./clock";
 import { cameraOf, pythonOf } from "./code";
+import { make } from "./dom";
 import { Emitter, type Events } from "./events";
 import { Frame, type Theme } from "./frame";
 import { NOTHING_COVERED, frameOn } from "./framing";
@@ -15,9 +16,11 @@ import { gpuMs } from "./gpu_clock";
 import { GUIDE_PIXELS, answer, numbersOf, question } from "./guide";
 import { Hands, movesOf } from "./hands";
 import type { Actions } from "./keyboard";
+import { Keys } from "./keys";
 import { Mouse } from "./mouse";
 import { failureOf } from "./notices";
 import {
+  bytesOf,
   programsOf,
   type Parameter,
   type Payload,
@@ -26,6 +29,7 @@ import {
   type Value,
   type Values,
 } from "./payload";
+import { link } from "./program";
 import {
   FINEST_SAMPLES,
   Renderer,
@@ -34,8 +38,11 @@ import {
   type State,
   type Subject,
 } from "./renderer";
+import { Resources, newTexture, uploadBuffer } from "./resources";
+import { Sound } from "./sound";
 import { copy, save } from "./taking";
-import type { Given, Inputs } from "./uniforms";
+import { setUniforms, type Given, type Inputs } from "./uniforms";
+import { gpuDone } from "./waiting";
 
 type Numbers = Record<string, UniformEntry["default"]>;
 import { checked, clamp, same } from "./values";
@@ -52,6 +59,10 @@ export interface Options {
 }
 
 export class Player {
+  /** What scripts beside this one use, which have no copy of it. */
+  static readonly kit = {
+    ...{ Resources, bytesOf, gpuDone, link, make, newTexture, programsOf, save, setUniforms, uploadBuffer },
+  };
   payload: Payload;
   readonly camera: Camera | null;
   /** What the hand on the canvas does. */
@@ -84,6 +95,9 @@ export class Player {
   declare pauseDrawing: (isPaused: boolean) => void;
   /** Of a page with paths: whether direct light is shown instead. */
   declare isDirect?: boolean;
+  /** Of a picture that keeps frames: the keyboard and the buttons that it reads. */
+  declare keys?: Keys;
+  declare sound?: Sound | null;
 
   constructor(
     readonly host: HTMLElement,
@@ -124,12 +138,42 @@ export class Player {
         },
       }) as Pick<Actions, "mode">),
     };
+    if (FRAMES) {
+      const keys = (this.keys = new Keys());
+      // An editor hears nothing: its picture is drawn as it is in a file.
+      this.sound = EDITED ? null : new Sound();
+      this.hear = () => {
+        if (EDITED) return;
+        this.sound!.isWanted = true;
+        if (this.payload.frames?.microphone) void this.sound!.ask();
+      };
+      this.takesKey = (event) => {
+        this.hear();
+        if (this.payload.frames?.keyboard == null || !keys.take(event)) return false;
+        this.#renderer.change();
+        return true;
+      };
+      this.pressed = (buttons) => {
+        keys.buttons = buttons;
+        this.hear();
+        this.#renderer.change();
+      };
+    }
     this.#take(parameters, payload.values);
     this.#clock.playing = time.animated && (options.playing ?? !isCalm());
     this.#frame = new Frame(this, options.theme ?? "auto");
     const { canvas } = this.#frame;
     const transparent = options.transparent ?? false;
     this.#renderer = new Renderer(this.#subject(), payload.resources, transparent, canvas);
+    if (FRAMES) {
+      const pictures = new Map<string, ImageBitmap>();
+      Object.assign(this.#renderer, { keys: this.keys, sound: this.sound, pictures });
+      this.setImage = async (name, file) => {
+        const options = { imageOrientation: "flipY", premultiplyAlpha: "none" } as const;
+        pictures.set(name, await createImageBitmap(file, options));
+        this.#renderer.change();
+      };
+    }
     if (EDITED) {
       this.setNumbers = (numbers) => {
         this.numbers = { ...this.numbers, ...numbers };
@@ -315,6 +359,11 @@ export class Player {
     this.#renderer.scale = scale;
   }
 
+  /** Draws again, and learns again what a pixel costs: after other work on the GPU. */
+  redraw(): void {
+    this.#renderer.redraw();
+  }
+
   /** The size in pixels of the part of the canvas that shows the author's frame. */
   get frameSize(): [number, number] {
     const { canvas, covered } = this.#frame;
@@ -334,20 +383,25 @@ export class Player {
     this.#frame.notices.brief("Picture saved");
   }
 
-  /** The state as Python: what to hand to `render` for the same picture. */
+  /** The state as Python: a line that renders the same picture. */
   code(): string {
-    const { parameters, time } = this.payload;
+    const { parameters, time, code: [before, after] = ["", ""] } = this.payload;
     const steering = this.camera?.moved ? this.camera.steering : null;
     // `render` begins at 0, wherever the page does; that of an `@image` knows no views.
     const view = this.camera ? this.#view : "color";
-    const text = pythonOf(parameters, this.#values, time.animated ? this.time : 0, view, steering);
-    return PATHS && view === "color" ? `${text}, mode="${this.isDirect ? "direct" : "path"}"` : text;
+    const mode = PATHS && view === "color" ? `, mode="${this.isDirect ? "direct" : "path"}"` : "";
+    return (
+      before + pythonOf(parameters, this.#values, time.animated ? this.time : 0, view, steering) + mode + after
+    );
   }
 
-  async copyCode(): Promise<void> {
-    const code = this.code();
-    const isCopied = await copy(code, this.#frame.root);
-    this.#frame.notices.brief(isCopied ? `Copied: ${code}` : code);
+  copyCode(): Promise<void> {
+    return this.#copy(this.code());
+  }
+
+  async #copy(text: string): Promise<void> {
+    const isCopied = await copy(text, this.#frame.root);
+    this.#frame.notices.brief(isCopied ? `Copied: ${text}` : text);
   }
 
   /** Where the camera is, as the author would write it; null where no guide knows. */
@@ -359,9 +413,7 @@ export class Player {
 
   async copyCamera(): Promise<void> {
     const text = await this.cameraText();
-    if (text === null) return;
-    const isCopied = await copy(text, this.#frame.root);
-    this.#frame.notices.brief(isCopied ? `Copied: ${text}` : text);
+    if (text !== null) await this.#copy(text);
   }
 
   /** Resolves to true when the sharp picture of the current state is shown, to false where none can be. */
@@ -391,6 +443,7 @@ export class Player {
   /** Stops everything and gives the GPU's memory back. */
   dispose(): void {
     this.#isGone = true;
+    if (FRAMES) this.sound?.dispose();
     this.#renderer.dispose();
     this.#frame.dispose();
   }
@@ -401,8 +454,19 @@ export class Player {
   /** Whether the scene reads where the mouse is; only without a camera of its own. */
   get readsMouse(): boolean {
     const uniforms = this.camera ? [] : this.#programs.flatMap((program) => program.uniforms);
-    return uniforms.some(({ origin, name }) => origin === "frame" && name === "mouse");
+    return uniforms.some(({ origin, name }) => {
+      return origin === "frame" && (FRAMES ? /^(mouse|buttons)$/.test(name) : name === "mouse");
+    });
   }
+
+  /** Takes a key that the picture reads; false for one that is the player's. */
+  declare takesKey: (event: KeyboardEvent) => boolean;
+  /** A gesture: a picture that reads the microphone asks for it, and a sound file is heard. */
+  declare hear: () => void;
+  /** Shows a person's picture in place of the `ImageInput` of this name; rejects what is no picture. */
+  declare setImage: (name: string, file: Blob) => Promise<void>;
+  /** Buttons of the mouse went down or up. */
+  declare pressed: (buttons: number) => void;
 
   #turnViews(steps: number): boolean {
     const { views } = this.payload;
@@ -487,6 +551,13 @@ export class Player {
       };
       program.film = this.isDirect ? undefined : film;
     }
+    if (FRAMES && program && this.payload.frames) {
+      const at = ({ program, name }: { program: number; name: string }) => {
+        return { program: this.#programs[program]!, name };
+      };
+      const { passes, itself, ...others } = this.payload.frames;
+      program.frames = { passes: passes.map(at), itself: itself && at(itself), ...others };
+    }
     if (program) void this.#renderer.use(program);
   }
 
@@ -505,7 +576,7 @@ export class Player {
       get playing() {
         return player.playing && !player.#held;
       },
-      hasPoster: !!this.payload.poster || !!this.host.querySelector("img"),
+      hasPoster: !!this.payload.poster || !!this.host.querySelector("img,canvas"),
       tick(now) {
         if (this.playing) {
           player.#clock.advance((now - player.#ticked) / 1000);

@@ -8,6 +8,8 @@
  * canvas is out of sight, or while the context is lost.
  */
 
+import { Frames } from "./frames";
+import type { Keys } from "./keys";
 import { Painter } from "./painter";
 import { Paths } from "./paths";
 import type { Payload, Program } from "./payload";
@@ -16,6 +18,7 @@ import { PACKED, PROBE, hasRange, rangeOf } from "./range";
 import { PROBE_PIXELS, Resolution } from "./resolution";
 import { forget } from "./trust";
 import type { Given, Inputs } from "./uniforms";
+import type { Sound } from "./sound";
 import { gpuDone, nextFrame, soonFrame } from "./waiting";
 
 export type State = "waiting" | "compiling" | "ready" | "lost" | "failed" | "unsupported";
@@ -110,6 +113,11 @@ export class Renderer {
   declare kept?: Program[];
   /** The film of the program in use, if it has one. */
   declare paths?: Paths | null;
+  /** What the program in use reads of other frames, if it does. */
+  declare frames?: Frames | null;
+  declare keys?: Keys;
+  declare sound?: Sound | null;
+  declare pictures?: Map<string, ImageBitmap>;
 
   /** What draws, for an editor; null before it starts and after it was lost. */
   declare painter: () => Painter | null;
@@ -146,6 +154,13 @@ export class Renderer {
     const isStale = () => this.#wanted !== source || this.#painter !== painter;
     try {
       const program = await painter.program(source);
+      if (FRAMES && !isStale()) {
+        const frames = source.frames ? new Frames(painter, source.frames, this.keys!, this.sound ?? null, this.pictures!) : null;
+        await frames?.prepare();
+        if (isStale()) return frames?.dispose();
+        this.frames?.dispose();
+        this.frames = frames;
+      }
       if (isStale()) return;
       this.#program = program;
       this.#resolution.forget();
@@ -171,6 +186,12 @@ export class Renderer {
     this.#revision += 1;
     this.#changed = performance.now();
     void this.#pump();
+  }
+
+  /** Draws again; what a pixel costs is measured again. */
+  redraw(): void {
+    this.#resolution.forget();
+    this.change();
   }
 
   set scale(scale: Scale) {
@@ -339,6 +360,8 @@ export class Renderer {
       const samples = canSample(this.#program!) ? this.#captures[0].samples : 1;
       return plan(Math.max(1, this.#stillScale), false, samples, true);
     }
+    // Frames build on one another: all have one size.
+    if (FRAMES && this.frames) return this.#wants() ? plan(this.#stillScale, false) : null;
     const rests = performance.now() - this.#changed >= REST_MS;
     const next = this.#nextSamples();
     if (next) return rests ? plan(this.#stillScale, true, next) : null;
@@ -357,7 +380,7 @@ export class Renderer {
   }
 
   async #picture(plan: Plan): Promise<void> {
-    if (this.#resolution.cost === null && !(PATHS && plan.isTraced)) {
+    if (this.#resolution.cost === null && !(PATHS && plan.isTraced) && !(FRAMES && this.frames)) {
       await this.#probe();
       return; // The cost is known now: plan again.
     }
@@ -365,7 +388,8 @@ export class Renderer {
     const program = this.#program!;
     const { samples, isAside } = plan;
     const [width, height] = plan.size;
-    const inputs = this.subject.inputs(width, height, isAside);
+    let inputs = this.subject.inputs(width, height, FRAMES && this.frames ? false : isAside);
+    if (FRAMES && this.frames) inputs = this.frames.begin(program, inputs);
     if (PATHS && this.paths && plan.isTraced) {
       const { paths } = this;
       const isStale = () => {
@@ -403,6 +427,7 @@ export class Renderer {
       const isOld = plan.revision !== this.#revision || program !== this.#program;
       if (plan.abortable && isOld && column < width) return;
     }
+    if (FRAMES) this.frames?.end();
     if (!isAside) return this.subject.drawn({ ms: total, width, height, fps: this.#fps(), samples });
     const blob = await painter.png(this.transparent);
     this.#captures.shift()?.resolve(blob);

@@ -34,7 +34,7 @@ export class Resources {
     const { textures, buffers } = program.source;
     [...textures, ...buffers].forEach((entry, unit) => {
       gl.activeTexture(gl.TEXTURE0 + unit);
-      const read = PATHS && program.film?.reads[entry.name];
+      const read = (PATHS || FRAMES) && program.film?.reads[entry.name];
       const [target, texture] = read
         ? ([gl.TEXTURE_2D, read[0]] as const)
         : this.#texture(entry);
@@ -83,7 +83,7 @@ function numbersOf({ format, data, grey, components }: Resource): Numbers {
   return grey ? new ARRAYS[format](stored.length * components).map((_, i) => stored[(i / components) | 0]!) : stored;
 }
 
-function newTexture(gl: GL, target: number, filter: number, wrap: number): WebGLTexture {
+export function newTexture(gl: GL, target: number, filter: number, wrap: number): WebGLTexture {
   const texture = gl.createTexture()!;
   gl.bindTexture(target, texture);
   gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
@@ -95,16 +95,23 @@ function newTexture(gl: GL, target: number, filter: number, wrap: number): WebGL
   return texture;
 }
 
-function uploadBuffer(gl: GL, source: Resource): [number, WebGLTexture] {
+/** A buffer as a texture; `numbers` are other ones than those of the payload. */
+export function uploadBuffer(
+  gl: GL,
+  source: Resource,
+  numbers: ArrayLike<number> = numbersOf(source),
+): [number, WebGLTexture] {
   const target = gl.TEXTURE_2D;
   const texture = newTexture(gl, target, gl.NEAREST, gl.CLAMP_TO_EDGE);
-  const height = Math.max(1, Math.ceil(source.size[0]! / BUFFER_WIDTH));
-  const numbers = numbersOf(source);
+  const count = numbers.length / source.components;
+  // Textures have 4096 rows and more on all devices, 8192 on most.
+  const width = count > 2 ** 22 ? 4096 : BUFFER_WIDTH;
+  const height = Math.max(1, Math.ceil(count / width));
   // The last row is filled up: a texture is a rectangle.
-  const full = new ARRAYS[source.format](BUFFER_WIDTH * height * source.components);
+  const full = new ARRAYS[source.format](width * height * source.components);
   full.set(numbers);
   const [sized, format, type] = formats(gl, source.format, source.components);
-  gl.texImage2D(target, 0, sized, BUFFER_WIDTH, height, 0, format, type, full);
+  gl.texImage2D(target, 0, sized, width, height, 0, format, type, full);
   return [target, texture];
 }
 

@@ -1,10 +1,10 @@
 /** What a person takes along: a file, a text. Works on pages opened from disk. */
 
-/** Hands a picture to the browser as a download; the name keeps only what every disk allows. */
-export function save(picture: Blob, name: string): void {
+/** Hands a file to the browser as a download; the name keeps only what every disk allows. */
+export function save(file: Blob, name: string, suffix = "png"): void {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(picture);
-  link.download = `${fileName(name)}.png`;
+  link.href = URL.createObjectURL(file);
+  link.download = `${fileName(name)}.${suffix}`;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }

@@ -44,7 +44,7 @@ test("a color that no hexadecimal says stays linear; time, view and camera are s
   assert.equal(
     pythonOf([tint], { tint: [0.1, 0.2, 0.3] }, 1.23456, "normal", steering),
     'params={"tint": (0.1, 0.2, 0.3)}, time=1.235, view="normal", ' +
-      "steering=Steering(yaw=0.1235, zoom=0.5, pan=(0, -1))",
+      "steering=distal.Steering(yaw=0.1235, zoom=0.5, pan=(0, -1))",
   );
 });
 

@@ -1,5 +1,5 @@
-// Made by tools/gen_messages.py from src/distal/editor/messages.py: change that, and run it.
-// A field with a question mark has that file's default where it is left out.
+// Made by tools/gen_messages.py from src/distal/editor/messages: change that, and run it.
+// A field with a question mark has the default there where it is left out.
 
 import type { Parameter, Payload, Program, UniformEntry } from "../payload";
 
@@ -761,12 +761,15 @@ export interface Dropped {
   revision: number;
 }
 
-/** What the author's code printed. */
+/** What the author's code printed, or where it is after some seconds. */
 export interface Printed {
   kind: "printed";
   id: number;
   revision: number;
+  /** The text. */
   text: string;
+  /** The line that it is at after some seconds, else nothing. */
+  hangs: string;
 }
 
 /** How much of a long request is done. */

@@ -1,0 +1,36 @@
+// Made by tools/gen_player.py from src/distal/triangles/: change that, and run it.
+
+export const SIGNATURE = "dtr1";
+export const HEAD = 9;
+export const MOST_SIDE = 4096;
+export const HALVES = [[[[0, 0], [1, 1], [0, 1]], [[1, 1], [0, 0], [1, 0]]], [[[1, 0], [0, 1], [0, 0]], [[0, 1], [1, 0], [1, 1]]]];
+export const PLACES = 8;
+export const CONTEXTS = 2409;
+export const LEAST_CUT_PX = 8;
+export const MOST_CUT_PX = 2048;
+export const ALWAYS = 65405;
+export const NEVER = 131;
+export const RATES = [1781, 1241, 953, 773, 650, 561, 493, 440, 398, 362, 333, 308, 286, 268, 251, 237, 224, 212, 202, 192, 184, 176, 169, 162, 156, 150, 145, 140, 135, 131, 127, 123, 119, 116, 113, 110, 107, 104, 102, 99, 97];
+export const UNARY = 12;
+export const NUMBER_CONTEXTS = 16;
+export const USED = 0;
+export const CUT = 128;
+export const CORNER = 640;
+export const SAME = 694;
+export const FARTHER = 695;
+export const FARTHER_SIGN = 711;
+export const PLACE = 719;
+export const LUMA = 735;
+export const LUMA_SIGN = 895;
+export const CHROMA = 896;
+export const CHROMA_SIGN = 2336;
+export const TILE = 2354;
+export const TILE_SIGN = 2402;
+export const CHOICE = 2405;
+export const AREA_PX = 64.0;
+export const FINEST = 0.5;
+export const COARSEST = 36.0;
+export const CHROMA_STEP = 1.25;
+export const GAP = 4.0;
+export const SEEN_CORNER = "#version 300 es\nprecision highp float;\nprecision highp int;\nstruct SeenTriangleCorner {\nvec4 place;\nvec3 outer;\nfloat away;\n};\nvec3 outer_code(int corner, vec3 a, vec3 b, vec3 c, vec2 cut) {\nvec3 first = mix(0.5 * (b + c), a, bvec3(cut.x < 0.0));\nreturn mix(mix(c, b, bvec3(corner == 1)), first, bvec3(corner == 0));\n}\nfloat cut_distance(vec2 p, vec2 a, vec2 b, vec2 c, vec2 cut) {\nvec2 first = mix(a, b, (max(cut.x, 0.0) + 0.5) * 0.125);\nvec2 second = mix(a, c, (max(cut.y, 0.0) + 0.5) * 0.125);\nvec2 along = second - first;\nvec2 across = vec2(-along.y, along.x) / length(along);\nfloat away = dot(p - first, across);\nfloat side = dot(a - first, across);\nreturn mix(mix(-away, away, side > 0.0), -10000.0, cut.x < 0.0);\n}\nSeenTriangleCorner seen_corner(int corner, vec4 ab, vec2 c, vec3 code_a, vec3 code_b, vec3 code_c,\nvec2 cut, vec2 size) {\nvec2 p = mix(mix(c, ab.zw, bvec2(corner == 1)), ab.xy, bvec2(corner == 0));\nvec2 place = (p - vec2(0.125, 0.0)) / size * 2.0 - 1.0;\nvec3 outer = outer_code(corner, code_a, code_b, code_c, cut);\nreturn SeenTriangleCorner(vec4(place.x, -place.y, 0.0, 1.0), outer,\ncut_distance(p, ab.xy, ab.zw, c, cut));\n}";
+export const SEEN_COLOR = "#version 300 es\nprecision highp float;\nprecision highp int;\nvec3 mixed_code(vec3 outer, vec3 inner, float away, float scale) {\nreturn mix(outer, inner, clamp(away * scale + 0.5, 0.0, 1.0));\n}\nvec3 display_values(vec3 code) {\nfloat rest = code.x - code.z;\nreturn clamp(vec3(rest + code.y, code.x + code.z, rest - code.y) / 255.0, 0.0, 1.0);\n}\nvec4 seen_color(vec3 outer, vec3 inner, float away, float scale) {\nreturn vec4(display_values(mixed_code(outer, inner, away, scale)), 1.0);\n}";
