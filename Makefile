@@ -5,7 +5,8 @@
 #                on every target; make clean undoes set-up
 # make sweep-fields   holds every shape and operator against its claims at many more numbers
 # make sweep-segments  follows 1e7 segments of rays and counts those on the wrong side of a surface
-# make sweep-meshes  meshes every solid, the printable examples and 100 random fields, and names faults
+# make sweep-meshes  meshes every solid, the printable examples and 100 random fields, and names faults;
+#                    saves the enclosure from its page at 128 cells
 # make parity    draws every example in every place and writes docs/parity.md
 # make mutate    changes the source in small ways and reports what no test notices:
 #                MODULES="distal/fields distal/scene" COUNT=200 SEED=7
@@ -36,23 +37,30 @@ SEED ?=
 SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers glslang-tools \
 	chromium xvfb xdotool imagemagick
 
-.PHONY: picture test test-all lint units system bench site sweep sweep-fields sweep-segments sweep-meshes parity mutate versions clean
+.PHONY: picture test test-all lint style units system bench site sweep sweep-fields sweep-segments sweep-meshes parity mutate versions clean
 .NOTPARALLEL:
 
 picture: $(VENV)/.setup-run
 	@$(BIN)/distal render example:raymarcher -o picture.png
 	@echo "The picture is $(CURDIR)/picture.png"
 
-test: system $(VENV)/.setup-test lint units
+# The type checker needs one processor for most of a minute: it runs beside the tests.
+test: system style web/node_modules/.ready
+	@log=$$(mktemp); $(BIN)/mypy >"$$log" 2>&1 & types=$$!; \
+	$(MAKE) --no-print-directory units; tests=$$?; \
+	wait $$types; types=$$?; echo "$(BIN)/mypy"; cat "$$log"; rm -f "$$log"; \
+	exit $$((tests | types))
 
 # Which tests are sampled and why: docs/decisions/0060-a-sample-of-cases.md.
-test-all: system $(VENV)/.setup-test lint
-	DISTAL_ALL_CASES=1 $(MAKE) units
+test-all:
+	DISTAL_ALL_CASES=1 $(MAKE) test
 
-lint: $(VENV)/.setup-test
+lint: style
+	$(BIN)/mypy
+
+style: $(VENV)/.setup-test
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
-	$(BIN)/mypy
 	$(BIN)/lint-imports
 
 # Generated files are proved fresh by tests beside the rest, so that one run names every fault.
@@ -80,6 +88,7 @@ sweep-segments: $(VENV)/.setup-test
 # GROUPS="examples noise" runs a part; a tolerance is a share of a shape's size.
 sweep-meshes: $(VENV)/.setup-test
 	nice $(BIN)/python tools/sweep_meshes.py $(GROUPS) --tolerance $(TOLERANCE)
+	nice $(BIN)/python tools/sweep_page.py
 
 site: $(VENV)/.setup-test web/node_modules/.ready
 	$(BIN)/python tools/build_site.py

@@ -30,7 +30,8 @@ from distal import (
     Torus,
 )
 from distal.fields.library import OPERATORS, PRIMITIVES
-from distal.lang import Texture2D, Texture3D, cos, func, sin, vec2
+from distal.lang import Buffer, Texture2D, Texture3D, cos, func, sin, vec2
+from distal.polygons.bricks import from_grid
 from distal.scene.objects.shapes import CLASSES
 
 GROUPS: Final = ("solids", "flats", "operators", "blends")
@@ -73,9 +74,24 @@ def _hills() -> Texture2D:
 
 
 def _ball_volume() -> Texture3D:
-    z, y, x = np.mgrid[0:24, 0:24, 0:24] / 23.0 - 0.5
+    z, y, x = np.mgrid[0:64, 0:64, 0:64] / 63.0 - 0.5
     d = np.maximum(np.sqrt(x * x + y * y + z * z) - 0.45, 0.3 - np.hypot(x, y))
     return Texture3D(np.repeat(d[..., None], 4, axis=3).astype(np.float32), wrap="clamp")
+
+
+def _ball_bricks() -> dict[str, Any]:
+    """The numbers of ``BrickField`` for a ball with a hole, on 97 samples along each axis."""
+    z, y, x = np.mgrid[0:97, 0:97, 0:97] / 96.0 * 2.4 - 1.2
+    d = np.maximum(np.sqrt(x * x + y * y + z * z) - 0.8, 0.4 - np.hypot(x, y)).astype(np.float32)
+    found = from_grid(d, (0.025, 0.025, 0.025))
+    assert found is not None
+    size = (97 * 0.025,) * 3
+    return {
+        "values": Buffer(found.numbers),
+        "samples": found.samples,
+        "size": size,
+        "reach": found.reach,
+    }
 
 
 # What a class is called with where its defaults show little, or where it needs data.
@@ -87,7 +103,9 @@ GIVEN: Final[dict[str, Callable[[], dict[str, Any]]]] = {
     "ImageField": lambda: {"image": _disc_image()},
     "Heightfield": lambda: {"image": _hills(), "size": (2, 2), "height": 0.5},
     "VolumeField": lambda: {"volume": _ball_volume(), "size": (1.5, 1.5, 1.5), "scale": 1.5},
+    "BrickField": _ball_bricks,
     "PolylineTube": lambda: {"points": WAY},
+    "CurveTube": lambda: {"points": np.r_[WAY, WAY[:1]]},
     "TaperedPolylineTube": lambda: {"points": np.c_[WAY, (0.22, 0.12, 0.16, 0.05)]},
     "Metaballs": lambda: {"balls": BALLS},
     "BoxCheap": lambda: {"size": (1.2, 0.8, 1.0)},
@@ -169,6 +187,9 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     "repeat polar neighbours": lambda: (
         RoundBox((0.5, 0.3, 0.5), 0.1).translate(0.6, 0, 0).repeat_polar(7, neighbours=1)
     ),
+    "repeat polar all": lambda: (
+        Torus(0.4, 0.08).translate(0.35, 0, 0).repeat_polar(5, neighbours="all")
+    ),
     "flat repeat": lambda: _STAR.scale(0.3).apply("flat repeat", (0.5, 0.5)),
     "flat repeat neighbours": lambda: _STAR.scale(0.5).apply(
         "flat repeat neighbours", (0.5, 0.5), neighbours=1
@@ -191,6 +212,7 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
         .translate(0.45, 0)
         .apply("flat repeat polar neighbours", 6, neighbours=1)
     ),
+    "flat repeat polar all": lambda: Rectangle((1.6, 0.3)).apply("flat repeat polar all", 3),
     "flat repeat at": lambda: _STAR.scale(0.35).apply("flat repeat at", OUTLINE),
     "flat elongate": lambda: Hexagon(0.3).apply("flat elongate", (0.3, 0.1)),
     "flat bend": lambda: Rectangle((1.6, 0.3)).apply("flat bend", 0.8),
@@ -218,6 +240,7 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     "revolve": lambda: Pentagram(0.35).revolve(0.6),
     "revolve partly": lambda: Pentagram(0.35).revolve(0.6, 4.0),
     "wrap cylinder": lambda: _STAR.apply("wrap cylinder", 0.6, 0.25),
+    "wrap around cylinder": lambda: _STAR.scale(0.5).apply("wrap around cylinder", 0.7, 0.25, 8),
     "slice": lambda: _BODY.rotate(x=0.6).slice(),
     "project": lambda: _RING.rotate(y=0.7).apply("project"),
     "relief": lambda: _ripples().apply("relief") & Box(2.0),

@@ -1,17 +1,18 @@
-"""Draw the catalogue sheet: every shape, operator and blend of the field library under its name.
+"""Draw the catalogue sheets: every shape, operator and blend of the field library over its name.
 
-Input: the cells of ``catalogue_cells``. Output: one picture for each group in
-``docs/pictures/``, and how long all took to compile. Solids are lit and framed by their own boxes;
-flat shapes are lines of equal distance. ``--only NAME …`` writes single cells to a folder of your
-own instead, large enough to judge them.
+Input: the cells of ``catalogue_cells``, and their pictures, which ``gen_thumbnails.py`` draws by
+``draw`` of this module. Output: one picture for each group in ``docs/pictures/``, which lists its
+cells in its metadata. Solids are lit and framed by their own boxes; flat shapes are lines of equal
+distance. ``--only NAME …`` draws single cells to a folder of your own instead, large enough to
+judge them. ``--check`` writes nothing and fails when a sheet lacks a cell or a cell has no picture.
 """
 
 from __future__ import annotations
 
 import argparse
+import re
 import sys
-import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
@@ -20,6 +21,7 @@ from typing import Any, Final
 
 import numpy as np
 from catalogue_cells import GROUPS, Cell, cells
+from gen_thumbnails import SIZE_PX, picture_of, place_of
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
@@ -31,8 +33,9 @@ from distal.scene.lowering.slope_limit import check_slope
 
 FOLDER: Final = Path(__file__).parents[1] / "docs/pictures"
 ACROSS: Final = 10
-LABEL_PX: Final = 16
-MOST_BYTES: Final = 200_000
+LABEL_PX: Final = 30  # two lines
+LETTERS_PX: Final = 11
+QUALITY: Final = 80
 PAPER: Final = (250, 249, 246)
 INK: Final = (40, 42, 48)
 BACKGROUND: Final = (0.93, 0.92, 0.89)
@@ -164,68 +167,104 @@ def _flat(shape: Any, size_px: int) -> tuple[Any, float]:
     return picture.array, picture.stats["compile_s"]
 
 
-def sheet(drawn: Sequence[Drawn], size_px: int, across: int = ACROSS) -> Image.Image:
-    """All pictures in rows, each over its name."""
-    gap, down = 8, -(-len(drawn) // across)
+def sheet(pictures: Mapping[str, Image.Image], size_px: int, across: int = ACROSS) -> Image.Image:
+    """Return all pictures in rows, each over its title."""
+    gap, down = 8, -(-len(pictures) // across)
     step_x, step_y = size_px + gap, size_px + LABEL_PX + gap
     made = Image.new("RGB", (across * step_x + gap, down * step_y + gap), PAPER)
     pen = ImageDraw.Draw(made)
-    for i, one in enumerate(drawn):
+    for i, (title, picture) in enumerate(pictures.items()):
         x, y = gap + (i % across) * step_x, gap + (i // across) * step_y
-        made.paste(Image.fromarray(one.pixels), (x, y))
-        font = _fitting(one.cell.title, size_px + gap - 2)
-        pen.text((x + size_px / 2, y + size_px + 2), one.cell.title, INK, font, anchor="ma")
+        made.paste(picture, (x, y))
+        text = _in_lines(title, size_px + gap - 2)
+        pen.multiline_text(
+            (x + size_px / 2, y + size_px + 2), text, INK, _font(), "ma", spacing=1, align="center"
+        )
     return made
 
 
-def _fitting(text: str, width_px: int) -> Any:
-    """The largest letters with which a title keeps within its cell."""
-    for size in (12, 11, 10, 9, 8):
-        font = ImageFont.load_default(size)
-        if font.getlength(text) <= width_px:
-            break
-    return font
+def _font() -> Any:
+    return ImageFont.load_default(LETTERS_PX)
 
 
-def _save(picture: Image.Image, path: Path) -> None:
-    """Write a PNG with as many colors as the size limit allows."""
-    for colors in (224, 128, 96, 64):
-        picture.quantize(colors, dither=Image.Dither.NONE).save(path, optimize=True)
-        if path.stat().st_size <= MOST_BYTES:
-            return
+def _in_lines(title: str, width_px: int) -> str:
+    """Return a title in lines that keep within its cell, divided between words."""
+    words = re.findall(r"[A-Z]?[^A-Z ]+ ?|[A-Z]+(?![a-z]) ?", title)
+    lines = [""]
+    for word in words:
+        if lines[-1] and _font().getlength((lines[-1] + word).rstrip()) > width_px:
+            lines.append("")
+        lines[-1] += word
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def _save(picture: Image.Image, path: Path, titles: Sequence[str]) -> None:
+    """Write a WebP file with the titles of its cells."""
+    picture.save(path, quality=QUALITY, method=6, xmp=", ".join(titles).encode())
+
+
+def _titles_in(path: Path) -> str:
+    """Return the titles of a sheet's cells."""
+    with Image.open(path) as picture:
+        return bytes(picture.info.get("xmp", b"")).decode()
+
+
+def ordered(group: str) -> list[str]:
+    """Return the titles of a group's cells in the order of the page of shapes."""
+    return [cell.title for cell in sorted(cells([group]), key=place_of)]
+
+
+def path_of(group: str) -> Path:
+    """Return the file of a group's sheet."""
+    return FOLDER / f"catalogue_{group}.webp"
+
+
+def problems(group: str) -> Iterator[str]:
+    """Yield what is missing of a sheet."""
+    for title in ordered(group):
+        if not picture_of(title).exists():
+            yield f"{title} has no picture: run tools/gen_thumbnails.py --changed"
+    path = path_of(group)
+    if not path.exists():
+        yield f"{path.name} is missing: run tools/gen_catalogue_sheet.py"
+    elif _titles_in(path) != ", ".join(ordered(group)):
+        yield f"{path.name} has other cells: run tools/gen_catalogue_sheet.py"
+
+
+def _draw_only(given: argparse.Namespace) -> int:
+    """Draw some cells, large; 1 when a cell could not be drawn."""
+    chosen = [cell for cell in cells(given.groups or GROUPS) if cell.title in given.only]
+    given.folder.mkdir(parents=True, exist_ok=True)
+    with ProcessPoolExecutor(given.processes) as pool:
+        drawn = list(pool.map(partial(draw, size_px=given.size, samples=given.samples), chosen))
+    for one in drawn:
+        Image.fromarray(one.pixels).save(given.folder / f"{one.cell.title.replace(' ', '_')}.png")
+        print(f"{one.cell.title}: compiled in {one.compile_s:.1f} s", one.problem)
+    return 1 if any(one.problem for one in drawn) else 0
 
 
 def main() -> int:
-    """Draw the sheets; 1 when a cell could not be drawn."""
+    """Draw the sheets; 1 when something is missing."""
     told = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     told.add_argument("groups", nargs="*", help=f"of {', '.join(GROUPS)}; all without")
-    told.add_argument("--size", type=int, default=104, help="of a cell, in pixels")
+    told.add_argument("--check", action="store_true")
+    told.add_argument("--only", nargs="*", help="titles of cells to draw")
+    told.add_argument("--folder", type=Path, default=Path("cells"), help="for --only")
+    told.add_argument("--size", type=int, default=320, help="of a cell of --only, in pixels")
     told.add_argument("--samples", type=int, default=9)
     told.add_argument("--processes", type=int, default=2)
-    told.add_argument("--across", type=int, default=ACROSS)
-    told.add_argument("--only", nargs="*", help="titles of cells to draw")
-    told.add_argument("--folder", type=Path, default=FOLDER)
     given = told.parse_args()
-    failed = 0
+    if given.only:
+        return _draw_only(given)
+    found = []
     for group in given.groups or GROUPS:
-        chosen = [c for c in cells([group]) if not given.only or c.title in given.only]
-        if not chosen:
-            continue
-        begin = time.perf_counter()
-        with ProcessPoolExecutor(given.processes) as pool:
-            drawn = list(pool.map(partial(draw, size_px=given.size, samples=given.samples), chosen))
-        took, compiled = time.perf_counter() - begin, sum(one.compile_s for one in drawn)
-        given.folder.mkdir(parents=True, exist_ok=True)
-        path = given.folder / f"catalogue_{group}.png"
-        _save(sheet(drawn, given.size, given.across), path)
-        print(f"{group}: {len(drawn)} cells in {took:.1f} s, {compiled:.1f} s of it compiling")
-        slow = sorted(drawn, key=lambda one: -one.compile_s)[:3]
-        print("  slowest:", ", ".join(f"{one.cell.title} {one.compile_s:.1f} s" for one in slow))
-        for one in drawn:
-            if one.problem:
-                print(f"  {one.cell.title}: {one.problem}", file=sys.stderr)
-                failed += 1
-    return 1 if failed else 0
+        if not given.check:
+            there = [title for title in ordered(group) if picture_of(title).exists()]
+            pictures = {title: Image.open(picture_of(title)).convert("RGB") for title in there}
+            _save(sheet(pictures, SIZE_PX), path_of(group), there)
+        found += problems(group)
+    print("\n".join(found), end="")
+    return 1 if found else 0
 
 
 if __name__ == "__main__":

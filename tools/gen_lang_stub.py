@@ -13,7 +13,7 @@ from pathlib import Path
 
 from distal.ir.intrinsics import INTRINSICS, Intrinsic
 from distal.ir.signatures import Follows, Signature
-from distal.ir.types import INT, UINT, Kind, Scalar, Type, Vector, vector_of
+from distal.ir.types import FRAME, INT, UINT, Kind, Scalar, Type, Vector, vector_of
 
 STUB = Path(__file__).parents[1] / "src/distal/lang/__init__.pyi"
 
@@ -22,6 +22,7 @@ HEADER = """\
 from collections.abc import Callable, Iterator, Sequence
 from typing import (
     Any,
+    Concatenate,
     Generic,
     Literal,
     ParamSpec,
@@ -33,13 +34,22 @@ from typing import (
 )
 
 from distal.ir.types import Type as Type
+from distal.lang.functions import FrameBuffer as _FrameBuffer
 from distal.lang.functions import Func as _Func
 from distal.lang.functions import Image as _Image
+from distal.lang.live_textures import ImageInput as _ImageInput
+from distal.lang.live_textures import Key as Key
+from distal.lang.live_textures import Keyboard as _Keyboard
+from distal.lang.live_textures import SoundFile as SoundFile
+from distal.lang.live_textures import Keys as Keys
+from distal.lang.live_textures import Microphone as _Microphone
 from distal.lang.names import LangForm as LangForm
 from distal.lang.names import LangFunction as LangFunction
 from distal.lang.parameters import Parameter as Parameter
 
 _P = ParamSpec("_P")
+_Q = ParamSpec("_Q")
+_S = TypeVar("_S")
 _R = TypeVar("_R", covariant=True)
 _T = TypeVar("_T")
 _C = TypeVar("_C", bound=type)
@@ -72,6 +82,12 @@ BUILTINS: dict[str, LangFunction]
 class Func(_Func, Generic[_P, _R]):
     __name__: str
     def __call__(self, *args: _P.args, **kwargs: _P.kwargs) -> _R: ...
+    @overload
+    def __get__(self, instance: None, owner: type, /) -> Func[_P, _R]: ...
+    @overload
+    def __get__(
+        self: Func[Concatenate[_S, _Q], _R], instance: _S, owner: type, /
+    ) -> Func[_Q, _R]: ...
     def overload(self, function: Callable[..., Any]) -> Func[..., Any]: ...
     def parameters(self) -> list[Parameter]: ...
     @property
@@ -79,19 +95,19 @@ class Func(_Func, Generic[_P, _R]):
     overloads: list[Any]
 
 class Image(Func[[Frame], Any], _Image): ...
+class FrameBuffer(Image, _FrameBuffer): ...
 
 def func(function: Callable[_P, _R]) -> Func[_P, _R]: ...
 def image(function: Callable[[Frame], vec3] | Callable[[Frame], vec4]) -> Image: ...
+def buffer(function: Callable[[Frame], vec3] | Callable[[Frame], vec4]) -> FrameBuffer: ...
+def key_held(code: int) -> bool: ...
+def key_pressed(code: int) -> bool: ...
+def key_toggled(code: int) -> bool: ...
 @dataclass_transform()
 def struct(cls: _C) -> _C: ...
 
 class Frame:
-    coord: vec2
-    resolution: vec2
-    time: float
-    mouse: vec4
-    index: int
-    seed: uint
+{frame}
 
 class array(Protocol[_T, _Length]):
     def __getitem__(self, index: int, /) -> _T: ...
@@ -113,8 +129,23 @@ class _Texture:
     def __init__(self, data: Any, wrap: Literal["repeat", "clamp"] = "repeat") -> None: ...
 
 class Texture2D(_Texture): ...
+class ImageInput(Texture2D, _ImageInput): ...
+
+_Live: TypeAlias = _Keyboard | _Microphone | SoundFile
+keyboard: _Keyboard
+microphone: _Microphone
+
 class TextureCube(_Texture): ...
-class Texture3D(_Texture): ...
+
+class Texture3D(_Texture):
+    axes: str
+    def __init__(
+        self,
+        data: Any,
+        wrap: Literal["repeat", "clamp"] = "repeat",
+        *,
+        axes: Literal["zyx", "zxy", "yzx", "yxz", "xzy", "xyz"] = "zyx",
+    ) -> None: ...
 
 def slider(
     label: str,
@@ -172,15 +203,15 @@ def point(
 def gradient(field: Callable[[Floats], float], p: Floats) -> Floats: ...
 def value_and_gradient(field: Callable[[Floats], float], p: Floats) -> tuple[float, Floats]: ...
 @overload
-def sample(texture: Texture2D, coord: vec2) -> vec4: ...
+def sample(texture: Texture2D | Image | _Live, coord: vec2) -> vec4: ...
 @overload
 def sample(texture: TextureCube | Texture3D, coord: vec3) -> vec4: ...
 @overload
-def texel(texture: Texture2D, index: ivec2) -> vec4: ...
+def texel(texture: Texture2D | Image | _Live, index: ivec2) -> vec4: ...
 @overload
 def texel(texture: TextureCube | Texture3D, index: ivec3) -> vec4: ...
 @overload
-def size(resource: Texture2D | TextureCube) -> ivec2: ...
+def size(resource: Texture2D | TextureCube | Image | _Keyboard) -> ivec2: ...
 @overload
 def size(resource: Texture3D) -> ivec3: ...
 @overload
@@ -212,7 +243,8 @@ _LETTERS = {Kind.FLOAT: ("xyzw", "rgba")}
 
 def make_stub() -> str:
     """Make the text of the stub."""
-    lines = HEADER.splitlines()
+    fields = "\n".join(f"    {name}: {type}" for name, type in FRAME.fields)
+    lines = HEADER.replace("{frame}", fields).splitlines()
     for op in _INT_OPS:
         lines.append(f"    def __{op}__(self, other: uint | int) -> uint: ...")
         lines.append(f"    def __r{op}__(self, other: int) -> uint: ...")

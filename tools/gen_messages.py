@@ -1,6 +1,6 @@
 """Write the types of the studio's messages for TypeScript: ``web/src/generated/messages.ts``.
 
-Made of the classes of ``distal/editor/messages.py``. Run it after any change of these; a test fails
+Made of the classes of ``distal/editor/messages``. Run it after any change of these; a test fails
 when it was forgotten.
 """
 
@@ -20,8 +20,8 @@ from distal.editor import messages
 ROOT = Path(__file__).parents[1]
 FILE = ROOT / "web" / "src" / "generated" / "messages.ts"
 NOTE = """\
-// Made by tools/gen_messages.py from src/distal/editor/messages.py: change that, and run it.
-// A field with a question mark has that file's default where it is left out.
+// Made by tools/gen_messages.py from src/distal/editor/messages: change that, and run it.
+// A field with a question mark has the default there where it is left out.
 
 import type { Parameter, Payload, Program, UniformEntry } from "../payload";
 """

@@ -3,9 +3,9 @@
 The rules of camera movement (``distal/scene/viewing/interaction.py``), the range of a view's values
 (``distal/scene/packed_values.py``), sRGB's curve (``distal/lang/srgb.py``), the key bindings
 (``distal/scene/viewing/key_bindings.py``) and the names of what guides a camera
-(``distal/render/guide.py``) are translated to TypeScript. Run it after any change of these, then
-build the player; a test fails when
-it was forgotten.
+(``distal/render/guide.py``) or inspects a scene (``distal/render/ruler.py``,
+``distal/scene/viewing/measuring.py``) are translated to TypeScript. Run it
+after any change of these, then build the player; a test fails when it was forgotten.
 """
 
 from __future__ import annotations
@@ -18,9 +18,15 @@ import sys
 from pathlib import Path
 from typing import NoReturn
 
+from distal.compiler.driver import compile
+from distal.render import ruler
 from distal.render.guide import ACTIONS, NUMBERS
+from distal.scene import section
+from distal.scene.lowering import ruler as uniforms
 from distal.scene.steering import ACTION, GOAL_PREFIX, PREFIX, SIZE
 from distal.scene.viewing.key_bindings import BINDINGS, HELP
+from distal.triangles import arithmetic as triangle_arithmetic
+from distal.triangles import lattice, range_coder, shapes, stream
 
 ROOT = Path(__file__).parents[1]
 SOURCES = ROOT / "src" / "distal"
@@ -272,12 +278,84 @@ def guide() -> str:
     return head + constants + listed("ACTIONS", ACTIONS) + listed("NUMBERS", NUMBERS)
 
 
+def inspect() -> str:
+    """What the programs of inspection read and give, its numbers, the keys of its pages."""
+    names = {
+        "SIZE": uniforms.SIZE,
+        "POINTER": uniforms.POINTER,
+        "START": uniforms.START,
+        "END": uniforms.END,
+        "NORMAL": section.NORMAL.name,
+        "OFFSET": section.OFFSET.name,
+        "HATCH": section.HATCH.name,
+        "POINTS": ruler.POINTS,
+        "UNSEEN": ruler.UNSEEN,
+    }
+    lists = {
+        "KINDS": ruler.KINDS,
+        "PLACE_NUMBERS": ruler.PLACE_NUMBERS,
+        "RULER_NUMBERS": ruler.RULER_NUMBERS,
+        "CUT_AXES": ruler.CUT_AXES,
+        "CUT_NUMBERS": ruler.CUT_NUMBERS,
+    }
+    keys = {key: camel(b.action) for b in BINDINGS if b.in_inspect_page for key in b.keys}
+    lines = [(h.keys, h.meaning, camel(h.needs)) for h in HELP if camel(h.needs) in keys.values()]
+    shown = json.dumps(lines, ensure_ascii=False)
+    path = "scene/viewing/measuring.py"
+    made = Translator(path, ("rounded",))
+    functions = [made.function(f) for f in made.tree.body if isinstance(f, ast.FunctionDef)]
+    parts = [
+        NOTE.format("render/ruler.py and " + path) + '\nimport { rounded } from "./interaction";\n',
+        "".join(f"export const {n} = {json.dumps(v)};\n" for n, v in names.items()),
+        "".join(
+            f"export const {n} = {json.dumps([camel(x) for x in v])} as const;\n"
+            for n, v in lists.items()
+        ),
+        "/** Keys of pages to inspect, and the lines of their help. */\n"
+        f"export const INSPECT_KEYS = {json.dumps(keys)} as const;\n"
+        f"export const INSPECT_HELP = {shown} as const;\n",
+        made.constants(),
+        *functions,
+    ]
+    return "\n".join(parts)
+
+
+def triangles() -> str:
+    """The numbers of pictures as triangles, and the functions that color them."""
+    names = {
+        **{"SIGNATURE": stream.SIGNATURE.decode("ascii"), "HEAD": stream.HEAD.size},
+        **{"MOST_SIDE": lattice.MOST_SIDE, "HALVES": lattice.HALVES},
+        **{"PLACES": triangle_arithmetic.PLACES, "CONTEXTS": stream.CONTEXTS},
+        **{n: getattr(shapes, n) for n in ("LEAST_CUT_PX", "MOST_CUT_PX")},
+        **{
+            n: getattr(range_coder, n)
+            for n in ("ALWAYS", "NEVER", "RATES", "UNARY", "NUMBER_CONTEXTS")
+        },
+        **{n: getattr(stream, f"_{n}") for n in stream_names()},
+    }
+    lines = [f"export const {n} = {json.dumps(v)};\n" for n, v in names.items()]
+    for name in ("seen_corner", "seen_color"):
+        text = compile(getattr(triangle_arithmetic, name), "glsl-es300").text
+        kept = (line.strip() for line in text.splitlines() if not line.startswith("//"))
+        lean = "\n".join(line for line in kept if line)
+        lines.append(f"export const {name.upper()} = {json.dumps(lean)};\n")
+    return NOTE.format("triangles/") + "\n" + "".join(lines)
+
+
+def stream_names() -> list[str]:
+    """The numbers of contexts of a file of triangles, and of its steps."""
+    plain = (name.removeprefix("_") for name in vars(stream) if re.fullmatch("_[A-Z_]+", name))
+    return [name for name in plain if name != "ROUNDING"]
+
+
 FILES = {
+    "triangles.ts": triangles,
     "interaction.ts": interaction,
     "packed_values.ts": packed_values,
     "srgb.ts": srgb,
     "bindings.ts": bindings,
     "guide.ts": guide,
+    "inspect.ts": inspect,
 }
 
 

@@ -76,7 +76,8 @@ def stub() -> str:
     """The text of ``__init__.pyi``."""
     made = [STUB_HEAD, *_imports(), "\n", "__version__: str\n"]
     made += [f"\n{_entry(declared)}" for declared in _declared()]
-    listed = "".join(f'    "{name}",\n' for name in _sorted(PUBLIC - {"compile"} | {"__version__"}))
+    starred = PUBLIC - {*distal._NOT_STARRED} | {"__version__"}
+    listed = "".join(f'    "{name}",\n' for name in _sorted(starred))
     return "".join([*made, f"\n__all__ = [\n{listed}]\n"])
 
 

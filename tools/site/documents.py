@@ -115,7 +115,7 @@ class Document:
         self._sections: list[tuple[str, str, list[str]]] = [("", "", [])]
         parser = MarkdownIt("commonmark", {"html": True}).enable("table")
         tokens = parser.parse(file.read_text(encoding="utf-8"))
-        self._name_headings(tokens)
+        self._prepare(tokens)
         parser.options["highlight"] = self._block
         body = str(parser.renderer.render(tokens, parser.options, {}))
         self.html = self._linked(self._live(body))
@@ -136,7 +136,7 @@ class Document:
             if title or text
         ]
 
-    def _name_headings(self, tokens: list[Token]) -> None:
+    def _prepare(self, tokens: list[Token]) -> None:
         slugs: dict[str, int] = {}
         for i, token in enumerate(tokens):
             if token.type == "heading_open":
@@ -147,6 +147,8 @@ class Document:
                 slug = f"{slug}-{count}" if count else slug
                 token.attrSet("id", slug)
                 self._sections.append((slug, title, []))
+            elif token.type == "table_open":
+                token.attrSet("tabindex", "0")  # it scrolls where it is wider than the page
             elif token.type == "inline" and tokens[i - 1].type != "heading_open":
                 self._sections[-1][2].append(re.sub(r"\]\([^)]*\)|[*`\[]", "", token.content))
 
