@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from distal.backends import Artifact, emit, get_target
 from distal.compiler.driver import run_passes
+from distal.devices.resources import load
 from distal.frontend import lower
-from distal.ir.types import Buffer
+from distal.ir.types import Buffer, Texture
 from distal.lang.composed import Composed
 from distal.lang.resources import MovingBuffer
 
@@ -32,6 +33,12 @@ def buffers_of(image: Any, seconds: float) -> dict[str, NDArray[Any]]:
     """The author's buffers of a picture, and the tables of its parts at a time, by name."""
     found = {r.name: r.source for r in lower(image).resources if isinstance(r.type, Buffer)}
     return {name: _numbers(source, seconds) for name, source in found.items()}
+
+
+def textures_of(image: Any) -> dict[str, NDArray[Any]]:
+    """The texels of a picture's textures, by name."""
+    found = {r.name: r for r in lower(image).resources if isinstance(r.type, Texture)}
+    return {name: load(r.source, r.type) for name, r in found.items()}
 
 
 def _numbers(source: Any, seconds: float) -> NDArray[Any]:

@@ -157,13 +157,19 @@ def _texture(entry: dict[str, Any], texels: NDArray[np.float32]) -> Any:
     return texture
 
 
+def buffer_width(count: int) -> int:
+    """How many elements a row of a buffer's texture has; drivers have 8192 rows or more."""
+    return BUFFER_WIDTH << max(0, (count // (BUFFER_WIDTH * 8192)).bit_length())
+
+
 def _buffer(data: NDArray[Any]) -> Any:
     """The elements as texels, row by row, the last row filled up."""
     kind = {"f": "f4", "i": "i4", "u": "u4", "b": "i4"}[data.dtype.kind]
     rows = data.reshape(len(data), -1).astype(kind)
-    height = -(-len(rows) // BUFFER_WIDTH)
-    texels = np.zeros((height * BUFFER_WIDTH, 4), kind)
+    width = buffer_width(len(rows))
+    height = -(-len(rows) // width)
+    texels = np.zeros((height * width, 4), kind)
     texels[: len(rows), : rows.shape[1]] = rows
-    texture = egl.context().texture((BUFFER_WIDTH, height), 4, texels.tobytes(), dtype=kind)
+    texture = egl.context().texture((width, height), 4, texels.tobytes(), dtype=kind)
     texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
     return texture

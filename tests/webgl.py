@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from distal.backends.base import Artifact
 from tests.browser import MESA, SWIFTSHADER, BrowserUnavailableError, browser
 from tests.buffer_data import buffer_data
-from tests.glsl import BUFFER_WIDTH, complete_text, uniform_values
+from tests.glsl import buffer_width, complete_text, uniform_values
 
 PAGE: Final = Path(__file__).with_name("webgl_page.html")
 CONTEXTS: Final = {"glsl-es300": "webgl2", "shadertoy": "webgl2", "glsl-es100": "webgl"}
@@ -184,11 +184,12 @@ def _bound(
 def _rows_of(data: NDArray[Any]) -> NDArray[Any]:
     """Elements as texels, row by row, the last row filled up."""
     elements = data.reshape(len(data), -1)
-    height = -(-len(elements) // BUFFER_WIDTH)
+    width = buffer_width(len(elements))
+    height = -(-len(elements) // width)
     kind = {"f": "f4", "i": "i4", "u": "u4", "b": "i4"}[data.dtype.kind]
-    texels = np.zeros((height * BUFFER_WIDTH, 4), kind)
+    texels = np.zeros((height * width, 4), kind)
     texels[: len(elements), : elements.shape[1]] = elements
-    return texels.reshape(height, BUFFER_WIDTH, 4)
+    return texels.reshape(height, width, 4)
 
 
 def _texels(texels: NDArray[Any]) -> dict[str, Any]:

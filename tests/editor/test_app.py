@@ -397,6 +397,8 @@ def test_names_are_completed_and_calls_explained(tmp_path):
         options = app.page.locator(".cm-tooltip-autocomplete li")
         options.first.wait_for()
         assert options.first.inner_text().startswith("Torus")
+        # For 75 ms after it opened the list takes no keys: Enter would begin a new line.
+        app.page.wait_for_timeout(150)
         app.page.keyboard.press("Enter")
         app.page.keyboard.type("(")
         tip = app.page.locator(".cm-tooltip .name-head")
@@ -410,7 +412,7 @@ def test_names_are_completed_and_calls_explained(tmp_path):
         at = app.page.evaluate(place, SCENE.index("Sphere(size)") + 2)
         app.page.mouse.move(at["left"], at["top"] + 5)
         app.page.locator(".name", has_text="Ball, centred at the origin.").wait_for()
-        app.page.evaluate("() => studio.editor.replace('scene.py', 'for i in ran')")
+        app.page.evaluate("() => studio.editor.replace('scene.py', 'for i in rang')")
         app.page.evaluate("() => studio.editor.goTo(1)")
         app.page.keyboard.press("End")
         app.page.keyboard.press("Control+Space")

@@ -187,6 +187,26 @@ def test_an_endless_loop_is_ended_and_the_next_text_is_answered(server):
         assert until(socket, "scene", 3).objects == ("scene",)
 
 
+def test_the_line_of_an_endless_loop_is_told(tmp_path):
+    (tmp_path / "scene.py").write_text(SCENE)
+    running = StudioServer(SceneFiles(tmp_path / "scene.py"), limit=4.0)
+    threading.Thread(target=running.serve, daemon=True).start()
+    try:
+        with connected(running, cookie_of(running)) as socket:
+            until(socket, "ready")
+            socket.send(look(1, "\nwhile True:\n    pass\n"))
+            assert until(socket, "printed").text == (
+                "warning: scene.py is still running after 3 s\n  --> scene.py:2:1\n   |\n"
+                " 2 | while True:\n   | ^^^^^^^^^^^\n"
+            )
+            assert until(socket, "restarted").reason == (
+                "the scene's code gave no answer within 4 s; "
+                "it was at line 2 of scene.py: while True:"
+            )
+    finally:
+        running.close()
+
+
 def test_code_that_ends_its_process_is_named(server):
     with connected(server, cookie_of(server)) as socket:
         until(socket, "ready")

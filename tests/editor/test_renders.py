@@ -29,6 +29,7 @@ pytest.importorskip("websockets")
 SCENE = '''"""A ball that grows."""
 
 from distal import *
+from distal import time
 from distal.lang import color, slider
 
 size = slider("Size", 0.4, 0.1, 1.0)
@@ -232,7 +233,7 @@ def test_the_command_is_known_before(socket):
     assert command == ("distal render scene.py -o scene.png --size 48x32 --mode path --samples 4")
     socket.send(rendering(2, kind="command", format="bmp"))
     text = until(socket, "mistakes", 2).mistakes[0].message
-    assert text == "there is no format 'bmp'; formats: png, exr, mp4, webm, gif, apng, webp"
+    assert text == "there is no format 'bmp'; formats: png, jpg, exr, mp4, webm, gif, apng, webp"
 
 
 def test_missing_packages_are_named_before(monkeypatch):

@@ -21,10 +21,12 @@ from distal.cli.application import application
 from distal.diagnostics import CompileError, LoadError
 from distal.export import payload as payload_room
 from distal.export import resources
+from distal.export.poster import MOST_TRIANGLE_BYTES
 from distal.export.registry import export
 from distal.images.atomic_files import SaveError
 from distal.ir.types import Buffer, Texture, TextureShape
 from distal.lang import resources as lang
+from distal.triangles import decode
 
 # The issue's measure.
 MOST_KB = 52  # 50 with views of nine locals, their legends and the samples; the goal is 60
@@ -192,6 +194,45 @@ def test_the_poster_is_the_picture(tmp_path):
     expected = obj.render((320, 160), time=1.0, samples=1).array[..., :3] * 255.0
     assert np.abs(shown - np.clip(expected, 0.0, 255.0)).mean() < 6.0
     assert image["alt"] == parts.payload["description"] != ""
+
+
+def test_a_poster_of_triangles_is_smaller_and_has_its_script(tmp_path):
+    obj = distal.load("example:raymarcher")
+    made, parts = {}, {}
+    for kind in ("webp", "triangles", "none"):
+        made[kind] = obj.export(tmp_path / f"{kind}.html", poster=kind, views=["color"])
+        parts[kind] = Parts((tmp_path / f"{kind}.html").read_text(encoding="utf-8"))
+    assert [attrs for tag, attrs in parts["triangles"].tags if tag == "img"] == []
+    (canvas,) = [attrs for tag, attrs in parts["triangles"].tags if tag == "canvas"]
+    data = base64.b64decode(canvas["data-triangles"])
+    assert canvas["role"] == "img" and canvas["aria-label"] == parts["webp"].payload["description"]
+    still = decode(data)
+    expected = obj.render((480, 360), samples=1).array[..., :3] * 255.0
+    assert still.shape == (360, 480, 3)
+    assert np.abs(still - np.clip(expected, 0.0, 255.0)).mean() < 4.0
+    assert len(data) <= MOST_TRIANGLE_BYTES
+    # The script is part of what the poster takes, and no other page has it.
+    assert made["triangles"].parts["poster"] > len(canvas["data-triangles"]) + 4_000
+    assert made["triangles"].parts["player"] == made["webp"].parts["player"]
+    assert [tag for tag, _ in parts["none"].tags if tag in ("img", "canvas")] == []
+
+
+def test_which_posters_there_are(rings, tmp_path):
+    obj, page = distal.load(rings), tmp_path / "p.html"
+    with pytest.raises(ValueError) as caught:
+        obj.export(page, poster="gif")
+    text = """a poster is one of "webp", "triangles", "none", not 'gif'"""
+    assert str(caught.value) == text
+    for options, said in (
+        (("--poster", "gif"), "--poster is one of webp, triangles, none, not 'gif'"),
+        (
+            ("--poster", "triangles", "--no-poster"),
+            "--poster triangles and --no-poster exclude each other",
+        ),
+    ):
+        made = CliRunner().invoke(application, ["export", str(rings), "-o", str(page), *options])
+        assert (made.exit_code, made.output) == (2, f"error: {said}\n")
+    assert not page.exists()
 
 
 def test_what_is_left_out_on_request(rings, tmp_path):

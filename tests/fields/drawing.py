@@ -19,6 +19,7 @@ from tests.fields.rows import Sample, Slot, default_of, slots_of
 
 TRIES: Final = 2000
 FRAME: Final = {"right", "up", "back"}  # axes that stand square on each other
+NUMBERS: Final = BufferType(FLOAT)
 # A polygon without crossings and a line in space, for shapes that take points.
 OUTLINE: Final = [
     (0.6, 0.0), (0.3, 0.25), (0.35, 0.7), (-0.1, 0.3),
@@ -62,9 +63,9 @@ def sample_with(row: Primitive, given: Mapping[str, Any]) -> Sample:
 def random_sample(row: Primitive, rng: np.random.Generator) -> Sample | None:
     """A shape with random numbers, or None where none were found that go together.
 
-    What a texture holds is made for the default numbers, and so these stay.
+    What a texture or a buffer of numbers holds is made for the default numbers, and so these stay.
     """
-    if any(isinstance(s.type, Texture) for s in slots_of(row.distance)):
+    if any(isinstance(s.type, Texture) or s.type is NUMBERS for s in slots_of(row.distance)):
         return default_sample(row)
     for _ in range(TRIES):
         values = drawn(slots_of(row.distance), row.limits, rng)
@@ -136,12 +137,21 @@ def _default(slot: Slot, rng: np.random.Generator) -> Any:
 
 def _points(slot: Slot, rng: np.random.Generator, jitter: float) -> Buffer:
     assert isinstance(slot.type, BufferType), f"{slot.name} needs a default"
+    if slot.type is NUMBERS:
+        return _brick()
     kinds = {VEC2: OUTLINE, VEC3: LINE, VEC4: PLANES}
-    points = np.array(kinds[slot.type.element] if slot.type.element is not FLOAT else [0.5, 0.8])
+    points = np.array(kinds[slot.type.element])
     if slot.type.element is VEC4:
         points[:, 3] *= rng.uniform(1.0 - jitter, 1.0 + jitter, len(points))
         return Buffer(points)
     return Buffer(points + rng.uniform(-jitter, jitter, points.shape))
+
+
+def _brick() -> Buffer:
+    """Distances to a ball of radius 0.3 in a cube of size 1: one brick, stored."""
+    axes = np.meshgrid(*[(np.arange(9) + 0.5) / 9 - 0.5] * 3, indexing="ij")
+    values = np.sqrt(sum(a * a for a in axes)) - 0.3
+    return Buffer(np.concatenate([[1.0], np.zeros(8), values.reshape(-1)]).astype(np.float32))
 
 
 def _texture(type: Texture) -> TextureValue:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from distal import Box, Ellipsoid, Shape
+from distal import Box, Ellipsoid, HalfSpace, InfiniteCylinder, Plane, Shape
 from tests.fields.rows import Doubles
 
 SIZE = (0.4, 0.7, 1.1)
@@ -102,3 +102,15 @@ def test_rotate_then_translate_is_not_translate_then_rotate():
     second = shape.translate(x=1.0).rotate(z=quarter)
     assert first(np.array([[1.0, 0.0, 0.0]]))[0] == pytest.approx(-0.2)
     assert second(np.array([[0.0, 1.0, 0.0]]))[0] == pytest.approx(-0.2)
+
+
+def test_a_box_without_an_end_keeps_its_other_sides_after_a_quarter_turn():
+    """The rounding of a cosine times an infinite side is no extent."""
+    inf, rod = np.inf, InfiniteCylinder(0.25)
+    assert rod.bounds() == ((-0.25, -inf, -0.25), (0.25, inf, 0.25))
+    for lying in (rod.rotate(z=np.pi / 2.0), rod.orient((1.0, 0.0, 0.0))):
+        assert np.allclose(lying.bounds(), ((-inf, -0.25, -0.25), (inf, 0.25, 0.25)))
+    assert np.allclose(rod.rotate(z=0.3).bounds()[1], (inf, inf, 0.25))
+    cut = HalfSpace((0.0, -1.0, 0.0), -0.5) & Box(2.0) & Plane(0.7)
+    assert np.allclose(cut.bounds(), ((-1.0, 0.5, -1.0), (1.0, 0.7, 1.0)))
+    assert HalfSpace((0.6, 0.8, 0.0), 0.5).bounds() == ((-inf,) * 3, (inf,) * 3)

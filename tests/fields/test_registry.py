@@ -46,8 +46,10 @@ WANTED_FLATS: Final = [
     "TangentCam", "ArcCam", "ArchimedeanSpiral", "LogarithmicSpiral", "RoundedPolygon",
 ]  # fmt: skip
 WANTED_LATER_TIERS: Final = [
-    "PolylineTube", "TaperedPolylineTube", "BezierTube", "CubicBezierTube", "TaperedBezierTube",
-    "Helix", "Spring", "VolumeField", "Heightfield", "Metaballs", "Gyroid", "SchwarzP", "Diamond",
+    "PolylineTube", "TaperedPolylineTube", "BezierTube", "CurveTube", "CubicBezierTube",
+    "TaperedBezierTube", "HexagonalLattice", "Isotruss",
+    "Helix", "Spring", "VolumeField", "BrickField", "Heightfield", "Metaballs", "Gyroid",
+    "SchwarzP", "Diamond",
     "Neovius", "Lidinoid", "SplitP", "IWP", "CubicLattice", "BccLattice", "FccLattice",
     "OctetLattice", "VoronoiWalls", "VoronoiCells", "VoronoiLines", "ScatteredBalls",
     "ValueNoiseSolid", "GradientNoiseSolid", "SimplexNoiseSolid", "FbmSolid", "MengerSponge",

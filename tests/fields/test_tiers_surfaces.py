@@ -18,6 +18,8 @@ SURFACES = {
     "Lidinoid": (tpms.LIDINOID_STEEPEST, tpms.LIDINOID_TYPICAL),
     "SplitP": (tpms.SPLIT_P_STEEPEST, tpms.SPLIT_P_TYPICAL),
     "IWP": (tpms.IWP_STEEPEST, tpms.IWP_TYPICAL),
+    "FischerKochS": (tpms.FISCHER_KOCH_S_STEEPEST, tpms.FISCHER_KOCH_S_TYPICAL),
+    "FRD": (tpms.FRD_STEEPEST, tpms.FRD_TYPICAL),
 }
 
 
@@ -48,12 +50,33 @@ def test_minimal_surfaces_steepness_and_thickness(name):
     assert slope[np.abs(d) < 0.002].mean() == pytest.approx(1.0, abs=0.02)
 
 
+def test_the_diamond_lattice_against_all_bonds_around():
+    # The atoms of one kind are a face-centred lattice; each has four bonds, to the corners of a
+    # tetrahedron.
+    cells = np.array(np.meshgrid(*[range(-2, 3)] * 3)).reshape(3, -1).T
+    corners = np.array([(0, 0, 0), (0.5, 0.5, 0), (0.5, 0, 0.5), (0, 0.5, 0.5)])
+    start = (cells[:, None] + corners).reshape(-1, 1, 3)
+    ends = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)]) / 4
+    points = np.random.default_rng(4).uniform(-1.0, 1.0, (200, 1, 1, 3))
+    t = np.clip(((points - start) * ends).sum(-1) / (ends**2).sum(-1), 0.0, 1.0)
+    away = points - start - t[..., None] * ends
+    wanted = np.linalg.norm(away, axis=-1).min(axis=(1, 2))
+    found = lattices.diamond_lattice(points[:, 0, 0], 1.0, 0.05) + 0.05
+    np.testing.assert_allclose(found, wanted, atol=1e-12)
+    moved = lattices.diamond_lattice(2.0 * points[:, 0, 0] + (7, 6, 5), 2.0, 0.1) + 0.1
+    np.testing.assert_allclose(moved, 2.0 * wanted, atol=1e-9)
+
+
 @pytest.mark.parametrize(
     ("lattice", "struts"),
     [
         (lattices.cubic_lattice, [((0, 0, 0), (1, 0, 0))]),
         (lattices.bcc_lattice, [((0, 0, 0), (0.5, 0.5, 0.5))]),
         (lattices.fcc_lattice, [((0, 0, 0), (0.5, 0.5, 0))]),
+        (
+            lattices.kelvin_lattice,
+            [((0.5, 0.25, 0), (0.5, 0, 0.25)), ((0.5, 0.25, 0), (0.25, 0.5, 0))],
+        ),
         (lattices.octet_lattice, [((0, 0, 0), (0.5, 0.5, 0)), ((0.5, 0, 0.5), (0.5, 0.5, 0))]),
     ],
 )

@@ -176,7 +176,7 @@ def flatness(operator: Operator, rng: np.random.Generator) -> tuple[bool, bool]:
         below = {"vec2": True, "Site2": True, "vec3": False, "Site": False}[result]
     if operator.around is not None:
         field = str(operator.around.python_function.__annotations__["field"])
-        below = "Field2" in field or "[vec2]" in field
+        below = "Field2" in field or "[vec2" in field
     if own is None:
         own = _flat_by_box(operator, rng)
     return own, own if below is None else below
@@ -241,7 +241,7 @@ class SiteOf(Composed):
         p = Read("p", self._point)
         given, (values,) = composer.given(body, node, p, ZERO_CELL, composer.values.all(node))
         if node.rule.site is not None:
-            given["field"] = composer.field(node.children[0], values, ZERO_CELL)
+            given["field"] = composer.field_around(node, node.children[0], values, ZERO_CELL)
             place = composer.call(node.rule.site, given)
             inner, cell = composer.site(body, place, ZERO_CELL)
         else:

@@ -3,8 +3,8 @@
 The reference measures the slopes of the plain field; its own gradients and those of the CPU device
 are held against them. Points at creases, jumps and where the field bends too fast to measure are
 told by the field's values alone (``differences``) and left out; a tenth of them at most.
-``DISTAL_GRADIENT_FIELDS`` is how many fields are made. The CPU device compiles a sixth of them, a
-third of them in ``make test-all``.
+``DISTAL_GRADIENT_FIELDS`` is how many fields are made. The CPU device compiles a twelfth of them,
+a third of them in ``make test-all``.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from tests.gradients.fields import Field, make_field
 from tests.gradients.running import Doubles, on_reference, points_of, scope_of
 
 FIELDS = int(os.environ.get("DISTAL_GRADIENT_FIELDS", "64"))
-COMPILED = 3 if all_cases() else 6
+COMPILED = 3 if all_cases() else 12
 PARTS = 8
 POINTS = 50
 

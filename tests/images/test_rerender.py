@@ -15,7 +15,9 @@ from typer.testing import CliRunner
 import distal
 from distal.cli.application import application
 from distal.images.picture_files import read
+from distal.lang import Key, Keys
 from distal.lang.render_options import RenderOptions
+from distal.runtime.frame_history import LiveFrames
 from distal.scene.rerender import difference, plan_rerender, rerender
 from distal.scene.steering import Steering
 from distal.scene.viewing.viewable import viewable
@@ -93,6 +95,19 @@ def test_shape_on_its_stage_and_image_with_a_view(run):
         assert Path(f"{name}.png").read_bytes() == Path(f"{name}.rerendered.png").read_bytes()
 
 
+def test_jpeg_keeps_how_it_was_made(run):
+    render(run, "-o", "a.jpg", "--time", "0.25")
+    assert run("rerender", "a.jpg").exit_code == 0
+    assert Path("a.jpg").read_bytes() == Path("a.rerendered.jpg").read_bytes()
+    assert run("rerender", "a.jpg", "--check").stdout == "a.jpg: identical\n"
+    with Image.open("a.jpg") as image:
+        image.rotate(180).save("a.jpg", comment=image.info["comment"])
+    assert "% of the pixels differ" in run("rerender", "a.jpg", "--check").stdout
+    Path("a.jpg").write_bytes(Path("a.jpg").read_bytes()[:200])
+    broken = run("rerender", "a.jpg")
+    assert broken.exit_code == 1 and broken.stderr.count("\n") == 1
+
+
 def test_exr_keeps_its_light_its_layers_and_its_bits(run):
     pytest.importorskip("OpenEXR", reason="OpenEXR is not installed")
     render(run, "-o", "a.exr", "--bits", "32", "--layers", "depth,material")
@@ -112,6 +127,68 @@ def test_frame_mouse_seed_and_index_of_python_are_kept(run):
     assert (origin.index, origin.seed, origin.mouse) == (7, 9, (25.0, 1.0, 0.0, 0.0))
     again = rerender(plan_rerender(Path("a.png")))
     assert np.array_equal(again.array, picture.array)
+
+
+KEPT = """\
+from distal.lang import Frame, Key, buffer, image, ivec2, key_held, key_pressed, texel, vec4
+
+@buffer
+def sums(frame: Frame) -> vec4:
+    held = 1.0 if key_held(Key.LEFT) else 0.0
+    pressed = 0.5 if key_pressed(Key.SPACE) else 0.0
+    day = frame.date.x * 0.001
+    step = vec4(frame.delta, 0.1 * held + pressed, 0.05 * float(frame.buttons) + day, 1.0)
+    return texel(sums, ivec2(0, 0)) + step
+
+@image
+def kept(frame: Frame) -> vec4:
+    return texel(sums, ivec2(0, 0))
+"""
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"delta": 0.125},
+        {"keys": Keys(held=frozenset({37}), pressed=frozenset({32}))},
+        {"keys": [Key.LEFT]},
+        {"buttons": 3},
+        {"date": (20.0, 0.0, 0.0, 0.0)},
+        {"delta": 0.0625, "keys": [37], "buttons": 1},
+    ],
+    ids=lambda values: "+".join(values),
+)
+def test_what_a_frame_reads_is_kept(run, values):
+    Path("kept.py").write_text(KEPT)
+    seen = viewable(distal.load("kept.py"))
+    still = {"size": (4, 3), "index": 3, "time": 0.5}
+    picture = seen.render(RenderOptions(**still, **values))
+    picture.save("a.png")
+    again = rerender(plan_rerender(Path("a.png")))
+    assert np.array_equal(again.array, picture.array)
+    assert again.provenance == picture.provenance
+    # The values are seen: without them the picture is another one.
+    assert not np.array_equal(seen.render(RenderOptions(**still)).array, picture.array)
+
+
+def test_a_frame_of_a_video_is_made_again(run):
+    Path("kept.py").write_text(KEPT)
+    distal.load("kept.py").video("f_%d.png", duration=0.25, fps=12, size=(4, 3))
+    assert run("rerender", "f_2.png", "--check").stdout == "f_2.png: identical\n"
+
+
+def test_a_frame_that_a_window_drew_says_so(run):
+    Path("kept.py").write_text(KEPT)
+    seen, live = viewable(distal.load("kept.py")), LiveFrames()
+    for time in (0.0, 0.5):
+        picture = seen.render(RenderOptions(size=(4, 3), time=time, history=live))
+    picture.save("a.png")
+    result = run("rerender", "a.png")
+    assert result.exit_code == 0
+    assert (
+        "note: a.png was drawn frame by frame by hand, of which it does not tell: its earlier "
+        "frames are computed with its last keys, mouse and parameters\n"
+    ) in result.stderr
 
 
 def test_camera_that_was_moved_by_hand_is_kept(run):
@@ -287,6 +364,12 @@ def with_texts(path, **changes):
         {"size": "-1x4"},
         {"stage": "[]"},
         {"samples": "1e3"},
+        {"keys": "[[1]]"},
+        {"keys": "[[300], [], []]"},
+        {"keys": '[["a"], [], []]'},
+        {"delta": "nan"},
+        {"buttons": "left"},
+        {"date": "[1]"},
         {"parameters": "[" * 100000},
     ],
     ids=lambda changes: f"{changes}"[:40],
@@ -304,6 +387,7 @@ def test_garbled_texts_are_told_in_one_line(run, changes):
     ("changes", "words"),
     [
         ({"size": "0x4"}, "each side has 1 to 16384 pixels, not 0x4"),
+        ({"delta": "-1.0"}, "delta is the seconds between two frames, more than 0, not -1"),
         ({"size": "99999x4"}, "each side has 1 to 16384 pixels"),
         ({"samples": "0"}, "a pixel has 1 to 65536 samples, not 0"),
         ({"view": "moon"}, "there is no view 'moon'"),
@@ -337,9 +421,9 @@ def test_stripped_and_foreign_files(run):
     stripped = "does not say how it was made: not a picture of distal's, or its metadata was strip"
     for name, words in {
         "b.png": stripped,
-        "c.jpg": "c.jpg is neither a PNG nor an EXR",
-        "d.png": "d.png is neither a PNG nor an EXR",
-        "e.png": "e.png is neither a PNG nor an EXR",
+        "c.jpg": stripped,
+        "d.png": "d.png is no PNG, JPEG or EXR",
+        "e.png": "e.png is no PNG, JPEG or EXR",
         "f.png": "cannot read f.png: No such file",
         ".": "cannot read .: Is a directory",
     }.items():

@@ -192,3 +192,26 @@ def test_code_is_folded_around_what_is_shown():
     parts = folded(SCENE, ("ball", "radius"))
     assert [(first, shown) for _, first, shown in parts] == [(1, False), (3, True), (6, True)]
     assert parts[2][0].startswith("@image\ndef ball")
+
+
+FRAMES = """
+from distal.lang import Frame, buffer, image, ivec2, texel, vec4
+
+
+@buffer
+def trail(frame: Frame) -> vec4:
+    return 0.5 * texel(trail, ivec2(frame.coord))
+
+
+@image
+def picture(frame: Frame) -> vec4:
+    return texel(trail, ivec2(frame.coord))
+"""
+
+
+def test_a_picture_that_keeps_frames_is_not_for_a_lesson(tmp_path):
+    (tmp_path / "ball.py").write_text(FRAMES)
+    with pytest.raises(CompileError) as raised:
+        staged(parse(HEAD + "Text.", tmp_path / "lesson.md"))
+    assert "reads earlier frames or keys, which a lesson's picture has not" in str(raised.value)
+    assert "show it on a page: distal export FILE -o page.html" in str(raised.value)

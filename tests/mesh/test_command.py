@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ size = slider("size", 1.0, low=0.5, high=2.0)
 ball = Sphere(size)
 wire = Sphere(1.0) | Box(4.0, 0.001, 0.001).named("wire")
 scene = Scene(part)
+table = Box(2, 0.2, 2).named("top").translate(y=1) | Box(0.3, 2, 0.3).named("leg")
 pair = part.named("body") | Sphere(0.3).translate(y=2.0).named("knob") | endless
 """
 
@@ -76,6 +78,48 @@ def test_parameters_change_the_mesh(run: Any) -> None:
     assert found["bounds"] == [[-2.0, -2.0, -2.0], [2.0, 2.0, 2.0]]
 
 
+def test_what_a_printer_needs_in_words(run: Any) -> None:
+    done = run("measure", "parts.py:table", "--proved", "--work", "100", "--width", "0.001")
+    lines = {line.split()[0]: line for line in done.stdout.splitlines() if line[0] != " "}
+    assert lines["wall"].startswith("wall     0.2, the least of lines ")
+    assert ": 'top (Box)' (line 11), (" in lines["wall"]
+    # Below the top, without the leg and without what stands on the bed.
+    found = re.match(r"overhang ([\d.]+), ([\d.]+) % of the area, within 45", lines["overhang"])
+    assert float(found[1]) == pytest.approx(4.0 - 0.09, rel=1e-3)
+    assert "flattest at 'top (Box)' (line 11), (" in lines["overhang"]
+    proved = re.match(r"proved   volume ([\d.]+) to ([\d.]+), [\d.]+ % apart", lines["proved"])
+    # The top, and the leg below and above it.
+    assert float(proved[1]) < 0.8 + 0.09 * 1.9 < float(proved[2])
+    rest = done.stdout[done.stdout.index("proved ") :].splitlines()[1:]
+    assert [line.split()[0] for line in rest[:4]] == ["mass", "center", "low", "high"]
+    assert rest[4] == "         by intervals, whatever the slope"
+    assert re.match(r" +[\d.]+ % of the box are undecided after [\d,]+ boxes; the shape", rest[5])
+    assert rest[6] == "         --width is not reached: give a larger --work"
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        (["--width", "0.1"], "error: --width is for --proved, which is not given"),
+        (
+            ["--proved", "--width", "2"],
+            "error: --width is a share from 0 to 2, such as 0.01, not 2",
+        ),
+        (["--proved", "--work", "0"], "error: --work is 1 to 1,000,000,000 boxes, not 0"),
+    ],
+)
+def test_what_cannot_be_proved_with_is_refused(run: Any, given: list[str], message: str) -> None:
+    done = run("measure", "parts.py:table", *given)
+    assert done.exit_code == 2 and message in done.stderr
+
+
+def test_what_a_printer_needs_as_json(run: Any) -> None:
+    found = json.loads(run("measure", "parts.py:table", "--overhang", "0", "--json").stdout)
+    assert found["overhang"]["area"] == 0.0 and found["overhang"]["place"] is None
+    assert found["wall"]["value"] == pytest.approx(0.2, rel=1e-4) and found["wall"]["line"] == 11
+    assert found.get("brackets") is None
+
+
 def test_measures_in_words(run: Any) -> None:
     done = run("measure", "parts.py:part", "--density", "2")
     lines = done.stdout.splitlines()
@@ -88,7 +132,7 @@ def test_measures_in_words(run: Any) -> None:
 def test_lost_parts_are_warned_of(run: Any) -> None:
     done = run("mesh", "parts.py:wire", "-o", "w.stl", "--feature", "0.4", "--tolerance", "0.1")
     assert done.exit_code == 0
-    assert "warning: 'wire' (line 9) is thinner than" in done.stderr
+    assert "warning: 'wire (Box)' (line 9) is thinner than" in done.stderr
 
 
 @pytest.mark.parametrize(
@@ -123,6 +167,11 @@ def test_lost_parts_are_warned_of(run: Any) -> None:
             ("measure", "parts.py:part", "--density", "-1"),
             2,
             "error: --density is a number above 0, not -1\n",
+        ),
+        (
+            ("measure", "parts.py:part", "--overhang", "91"),
+            2,
+            "error: --overhang is an angle from 0 to 90 degrees, not 91\n",
         ),
     ],
 )

@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 from distal import Box, Cylinder, Sphere, gradient
 from distal.cli.application import application
 from distal.mesh import simplify
-from distal.mesh.palette import reduced
+from distal.mesh.palette import nearest, palette_of
 from distal.scene.tree.errors import SceneValueError
 
 PART = (
@@ -65,9 +65,9 @@ def test_a_worse_mesh_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_colors_are_reduced_to_means_of_their_groups() -> None:
     colors = np.array([[1.0, 0, 0]] * 3 + [[0.9, 0, 0]] + [[0, 0, 1.0]] * 4)
-    found = reduced(colors, 2)
+    found = nearest(palette_of(colors, 2), colors)
     assert np.allclose(found[:4], (0.975, 0.0, 0.0)) and np.allclose(found[4:], (0.0, 0.0, 1.0))
-    assert reduced(colors, 3) is colors
+    assert (nearest(palette_of(colors, 3), colors) == colors).all()
 
 
 @pytest.mark.parametrize("count", [1, 3, 16])

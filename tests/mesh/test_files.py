@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from distal.images.atomic_files import SaveError
+from distal.lang.units import UNITS
 from distal.mesh.files.formats import MESH_FORMATS, OUTLINE_FORMATS, write, write_outlines
 from distal.mesh.files.parts import Finish
-from distal.polygons.units import UNITS
 from tests.mesh.sample_solids import Sample, box, sphere, volume
 
 WEB = Path(__file__).parents[2] / "web"

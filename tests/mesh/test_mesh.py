@@ -13,7 +13,7 @@ from distal.devices import threads
 from distal.devices.base import Cancelled
 from distal.diagnostics import CompileError
 from distal.lang import func, length, sqrt, vec3
-from distal.mesh import spacing
+from distal.mesh import spacing, tree_topology
 from distal.mesh.solid import Mesh
 from tests.mesh.noise_fields import at_spacing
 
@@ -171,16 +171,18 @@ def test_lost_parts_are_named() -> None:
     thin = Sphere(1.0) | Box(3.0, 0.001, 0.001).named("wire")
     made = thin.mesh(tolerance=0.05, feature=0.2)
     (warning,) = made.report["warnings"]
-    assert warning.startswith("'wire' (line ") and "is thinner than 0.2 at (" in warning
+    assert warning.startswith("'wire (Box)' (line ") and "is thinner than 0.2 at (" in warning
     assert warning.endswith("parts of it are missing")
     assert made.report["lost"][0]["count"] >= 5
 
 
-def test_cut_corners_are_named() -> None:
+def test_cut_corners_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tree_topology, "MOST_LEVELS", 0)  # otherwise no corner is cut
     made = Box(1.0, 0.7, 0.4).rotate(x=0.3, y=0.5, z=0.7).named("block").mesh(tolerance=0.012)
     report = made.report
     (warning,) = report["warnings"]
-    assert warning.startswith("a corner of 'Box' (line ") and "is cut by up to 0.0" in warning
+    assert warning.startswith("a corner of 'block (Box)' (line ")
+    assert "is cut by up to 0.0" in warning
     assert report["error"]["largest"] <= 0.012 < report["error"]["cut_corner"] < report["spacing"]
 
 
@@ -262,6 +264,11 @@ MISTAKES = {
         lambda: Plane().mesh(),
         "'Plane' has no end along x and y and z, and a mesh is of a part of space with an end",
         "intersect it with a box: shape & Box(…); an own function takes bounds=(low, high)",
+    ),
+    "endless member": (
+        lambda: (Sphere(1.0) | Plane()).mesh(),
+        "'union' has no end along x and y and z, and a mesh is of a part of space with an end",
+        "leave out 'Plane'; distal mesh FILE:NAME meshes one shape of a file",
     ),
     "empty": (
         lambda: (Sphere(1.0) - Sphere(2.0)).mesh(),

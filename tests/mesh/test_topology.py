@@ -67,7 +67,7 @@ def test_orientation_is_outwards() -> None:
 
 def test_without_the_regions_triangles_intersect(monkeypatch: pytest.MonkeyPatch) -> None:
     # The same noise with points anywhere in their cells: this test can fail.
-    def anywhere(lattice, topology, mean, found, margin, rows):  # type: ignore[no-untyped-def]
+    def anywhere(lattice, topology, mean, found, rows):  # type: ignore[no-untyped-def]
         return found[rows]
 
     monkeypatch.setattr(places, "_in_regions", anywhere)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Callable, Iterator
+from enum import Enum
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +36,8 @@ def public_callables() -> Iterator[tuple[str, Callable[..., Any]]]:
             value = getattr(module, name)
             if not callable(value) or id(value) in seen:
                 continue
+            if inspect.isclass(value) and issubclass(value, Enum):
+                continue  # its members are its documentation
             seen.add(id(value))
             yield name, value
             if inspect.isclass(value):

@@ -9,6 +9,9 @@ from __future__ import annotations
 
 import re
 import runpy
+import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -19,6 +22,7 @@ from distal.lang.functions import Image
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs/guide").glob("*.md"))]
+SOUND = ROOT / "examples/frames/arpeggio.wav"
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LOADED = re.compile(r'load\("(\w+\.py)"')
 SIZE = re.compile(r"\b640, 480\b")
@@ -31,6 +35,8 @@ def blocks(page: Path) -> list[str]:
 @pytest.mark.parametrize("page", [p for p in PAGES if blocks(p)], ids=lambda page: page.name)
 def test_its_blocks_run(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    if SOUND.name in page.read_text(encoding="utf-8"):
+        shutil.copy(SOUND, tmp_path)
     are_cells = page.name == "notebook.md"
     if are_cells:
         pytest.importorskip("anywidget", reason="widgets need it: pip install 'distal[notebook]'")
@@ -59,8 +65,28 @@ def test_what_the_guide_to_scenes_names_is_there():
     assert {name for name in classes if not hasattr(distal, name)} == set()
     methods = {name for part in code for name in re.findall(r"\.([a-z_]+)\b", part)}
     known = {*dir(distal.Shape), *dir(distal.Shape2D), *dir(distal.Picture), *dir(distal)}
-    assert methods - known <= {"lang", "py", "png"}  # a module, and the ends of files
+    assert methods - known <= {"lang", "py", "png", "sin"}  # a module, ends of files, and NumPy's
 
 
 def test_there_are_blocks():
     assert {page.name for page in PAGES if blocks(page)} >= {"README.md", "scenes.md"}
+
+
+def test_the_table_of_printable_examples_has_every_part():
+    found = subprocess.run(
+        [sys.executable, "tools/gen_printing.py", "--check"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+    )
+    assert (found.returncode, found.stdout) == (0, "")
+
+
+def test_the_scenes_of_other_tools_have_lines_and_pictures():
+    found = subprocess.run(
+        [sys.executable, "tools/gen_rebuilt.py", "--check"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+    )
+    assert (found.returncode, found.stdout) == (0, "")

@@ -15,10 +15,12 @@ import distal
 from distal import Camera, Scene, Sphere, Torus, time
 from distal.diagnostics import CompileError
 from distal.export import payload as payload_room
+from distal.export.payload import name_of
 from distal.lang import Frame, choice, color, func, image, slider, vec3
 from distal.lang.render_options import RenderOptions
-from distal.notebook.widget import show
+from distal.notebook.widget import LiveView, show
 from distal.scene.steering import Steering
+from distal.scene.viewing.viewable import viewable
 
 softness = slider("Softness", 0.05, high=0.2)
 tint = color("Tint", "#ff8040")
@@ -191,6 +193,72 @@ def test_a_notebook_is_given_a_widget():
     bundle = shown_ball()._repr_mimebundle_()
     data = bundle[0] if isinstance(bundle, tuple) else bundle
     assert "application/vnd.jupyter.widget-view+json" in data
+
+
+@pytest.fixture
+def shell(monkeypatch):
+    """IPython, as a kernel makes it: cells have file names that no file has."""
+    module = pytest.importorskip("IPython.core.interactiveshell")
+    made = module.InteractiveShell()
+    made.kernel = object()
+    monkeypatch.setattr("IPython.get_ipython", lambda: made)
+    monkeypatch.setattr(
+        made.compile, "get_code_name", lambda *_: "/tmp/ipykernel_4711/1234567890.py"
+    )
+    return made
+
+
+def cell(shell, text):
+    """What a cell shows for its last line."""
+    result = shell.run_cell(text, store_history=True)
+    result.raise_error()
+    return shell.display_formatter.format(result.result)[0]
+
+
+WIDGET = "application/vnd.jupyter.widget-view+json"
+
+
+@pytest.mark.parametrize("last", ["egg", "Sphere()", "Circle()", "grey"])
+def test_the_last_line_of_a_cell_is_live(shell, last):
+    text = "from distal import *\nfrom distal.lang import Frame, image, vec3\n"
+    text += "@image\ndef grey(frame: Frame) -> vec3:\n    return vec3(0.5)\n"
+    assert WIDGET in cell(shell, f"{text}egg = Scene(Sphere(0.5))\n{last}\n")
+
+
+def test_a_cell_has_the_title_and_the_code_of_its_variable(shell):
+    cell(shell, "from distal import *\nblue_egg = Scene(Sphere(0.5))\nscene = Scene(Box())\n1")
+    named, plain = (LiveView(shell.user_ns[name]).payload for name in ("blue_egg", "scene"))
+    assert named["name"] == "blue egg"
+    assert named["code"] == ("import distal; blue_egg.render(", ")")
+    assert plain["name"] == "scene"
+    assert plain["code"] == ("import distal; scene.render(", ")")
+    # A scene without a variable: no number of the kernel's temporary file.
+    lone = cell(shell, "Scene(Sphere(0.25))")
+    assert WIDGET in lone
+    assert name_of(viewable(shell.user_ns["_"])) == "scene"
+
+
+def test_a_mistake_is_the_text_of_the_cell(shell):
+    text = "from distal import *\nfrom distal.lang import func, vec3\n"
+    text += "@func\ndef wrong(p: vec3) -> float:\n    return p\nShape.from_function(wrong)\n"
+    shown = cell(shell, text)
+    assert set(shown) == {"text/plain"}
+    assert "error: " in shown["text/plain"]
+    assert "^" in shown["text/plain"]
+
+
+def test_a_terminal_compiles_nothing(shell, monkeypatch):
+    del shell.kernel
+    monkeypatch.setattr("distal.notebook.widget.LiveView", None)
+    assert set(cell(shell, "from distal import *\nScene(Sphere())")) == {"text/plain"}
+
+
+def test_without_the_extra_a_cell_shows_a_still_picture(shell, monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "anywidget", None)
+    monkeypatch.delitem(__import__("sys").modules, "distal.notebook.widget", raising=False)
+    shown = cell(shell, "from distal import *\nSphere()")
+    assert "image/png" in shown
+    assert "pip install 'distal[notebook]'" in shown["text/plain"]
 
 
 def test_without_the_extra_the_mend_is_named(monkeypatch):

@@ -414,7 +414,7 @@ def test_a_page_without_any_rules_shows_no_script(tmp_path):
         assert looked.page.evaluate("document.body.innerText").strip() == "before"
 
 
-def test_the_code_gives_the_same_picture(page):
+def test_the_code_gives_the_same_picture(page, monkeypatch):
     with looked_at(page(SCENE), viewport={"width": 660, "height": 360}) as looked:
         looked.settle()  # from now on keys mean something
         slider = looked.page.get_by_role("slider", name="Softness")
@@ -426,15 +426,20 @@ def test_the_code_gives_the_same_picture(page):
         looked.settle()  # the guide answers later than the hand
         looked.page.get_by_role("combobox", name="View").select_option("normal")
         looked.page.evaluate("document.querySelector('[data-distal]').distal.setTime(1.25)")
-        code = looked.page.evaluate("document.querySelector('[data-distal]').distal.code()")
+        line = looked.page.evaluate("document.querySelector('[data-distal]').distal.code()")
         shown = looked.picture()
-        size = shown.shape[1::-1]
         words = ("softness", "time=1.25", 'view="normal"', "yaw=", "pitch=", "zoom=")
-        assert [word for word in words if word not in code] == []
-        names = {"obj": loaded(SCENE)}
-        exec(f"from distal import *\npasted = obj.render({size}, samples=1, {code})", names)
-        pasted = names["pasted"]
-        assert difference(pasted.array, shown).is_agreement
+        assert [word for word in words if word not in line] == []
+        # It runs beside the scene's file.
+        before, after = 'import distal; distal.load("pebble.py").render(', ').save("pebble.png")'
+        assert line.startswith(f"{before}params=")
+        assert line.endswith(after)
+        arguments = line.removeprefix(before).removesuffix(after)
+        given = f"distal.load('pebble.py').render({shown.shape[1::-1]}, samples=1, {arguments})"
+        monkeypatch.chdir(FOLDER.name)
+        assert difference(eval(given, {"distal": distal}).array, shown).is_agreement
+        exec(line, {})
+        assert Image.open("pebble.png").size == (640, 480)
 
 
 def test_a_page_can_ask_for_nothing_even_if_it_wants_to(page):

@@ -190,7 +190,8 @@ def test_a_key_shows_direct_light_and_paths_again(glass: tuple[Viewable, Path]) 
     with looked_at(page, **options()) as looked:
         film_of(looked, 16)
         assert looked.page.evaluate("document.querySelector('[data-distal]').distal.code()") == (
-            'params={}, mode="path"'
+            'import distal; distal.load("glass.py").render((56, 40), params={}, mode="path")'
+            '.save("glass.png")'
         )
         looked.page.locator("canvas").press("m")
         looked.settle()

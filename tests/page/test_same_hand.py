@@ -142,6 +142,7 @@ def run(built: Path, given: dict[str, Any]) -> dict[str, Any]:
         "--platform=node",
         "--format=esm",
         "--define:PATHS=true",
+        "--define:FRAMES=false",
     )
     esbuild = built / "node_modules" / ".bin" / "esbuild"
     if not (built / "replay.mjs").exists():

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 import distal
 from distal.backends import Artifact
 from tests import webgl
-from tests.buffer_data import buffers_of, text_of
+from tests.buffer_data import buffers_of, text_of, textures_of
 from tests.pictures.comparison import MOST_FAR_OFF, MOST_MEAN, as_bytes, difference
 
 TIMES: Final = (0.0, 2.9, 11.3)
@@ -114,6 +114,12 @@ def buffers(example: str, seconds: float) -> dict[str, NDArray[Any]]:
     return buffers_of(image(example), seconds)
 
 
+@cache
+def textures(example: str) -> dict[str, NDArray[Any]]:
+    """The textures that the text reads."""
+    return textures_of(image(example))
+
+
 def is_moving(example: str) -> bool:
     """Whether its picture reads the time."""
     return "time" in {u["name"] for u in program(example).interface["uniforms"]}
@@ -145,8 +151,8 @@ def by_browser(driver: str) -> Callable[[str, tuple[int, int], float], NDArray[A
 
     def draw(example: str, size: tuple[int, int], seconds: float) -> NDArray[Any]:
         values = {"time": seconds} if is_moving(example) else {}
-        given = {"buffers": buffers(example, seconds), "driver": driver}
-        return webgl.run_webgl(program(example), size, values, **given)
+        given = {"buffers": buffers(example, seconds), "textures": textures(example)}
+        return webgl.run_webgl(program(example), size, values, driver=driver, **given)
 
     return draw
 

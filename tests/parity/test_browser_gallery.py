@@ -16,13 +16,14 @@ import pytest
 import distal
 from tests import webgl
 from tests.browser import BrowserUnavailableError
+from tests.examples import functions_of_a_pixel
 from tests.parity import gallery
 from tests.pictures.comparison import difference
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted(distal.gallery())
 ON_SWIFTSHADER = [
-    *(name for name in EXAMPLES if gallery.is_function_of_a_pixel(name)),
+    *functions_of_a_pixel(),
     *("raymarcher_objects", "sdfray_glass", "sea"),
     *("sdfray_csg_on_checker", "city"),
 ]

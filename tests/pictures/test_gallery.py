@@ -39,6 +39,12 @@ def test_every_example_has_a_poster_that_shows_it():
     assert sorted(distal.loading.posters()) == EXAMPLES
 
 
+def test_every_sheet_of_the_catalogue_has_every_cell():
+    command = [sys.executable, ROOT / "tools/gen_catalogue_sheet.py", "--check"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (0, "")
+
+
 def test_every_example_is_listed_once():
     lines = (ROOT / "docs/gallery.md").read_text().splitlines()
     shown = [line for line in lines if line.startswith("![") and "catalogue_" not in line]

@@ -1,7 +1,8 @@
 """The gallery, at several times: what drivers make of the emitted texts is the CPU's picture.
 
-Scenes of objects are drawn once and at half the size, by a driver of each language; ``make sweep``
-sets ``DISTAL_ALL_PICTURES=1`` and draws them as often and as large as the small examples.
+A sample of the scenes of objects is drawn, once each and at half the size; what they are made of is
+drawn by every language in ``tests/parity``. ``make sweep`` sets ``DISTAL_ALL_PICTURES=1`` and draws
+each as often and as large as the small examples.
 """
 
 from __future__ import annotations
@@ -12,7 +13,8 @@ from functools import cache
 import pytest
 
 import distal
-from tests.buffer_data import buffers_of, text_of
+from tests.buffer_data import buffers_of, text_of, textures_of
+from tests.examples import functions_of_a_pixel
 from tests.pictures.comparison import difference
 
 SIZE = (160, 120)
@@ -54,12 +56,16 @@ def is_small(example):
 # Mesa's software Vulkan draws 10,000 parts wrong by the fragment stage, only along the diagonal of
 # the screen where its two triangles meet; by compute, and by GLSL, they are right.
 BY_COMPUTE = ("beach", "forest")
+# Every shape in one scene: the driver and the CPU need 40 s for it, a twelfth of all these tests.
+# Its shapes and operators are held against the reference one by one in ``tests/fields``.
+LONG_BY_DRIVERS = ("catalogue",)
 
 
 def is_drawn(example, target, time):
     """Whether a picture is among those that are drawn each time."""
     once = "wgsl" if example in BY_COMPUTE else "wgsl-compute"
-    return is_small(example) or (time == 2.5 and target != once)
+    is_once = time == 2.5 and target != once and example not in LONG_BY_DRIVERS
+    return is_small(example) or is_once
 
 
 CASES = [
@@ -98,8 +104,10 @@ def cpu_picture(example, time):
 
 
 @cache
-def buffers(example, time):
-    return buffers_of(image(example), time)
+def data(example, time):
+    """The buffers and textures of an example, by the arguments of what draws it."""
+    shown = image(example)
+    return {"buffers": buffers_of(shown, time), "textures": textures_of(shown)}
 
 
 def drawn(example, target, time):
@@ -109,23 +117,38 @@ def drawn(example, target, time):
     if program.interface["target"].startswith("wgsl"):
         gpu = pytest.importorskip("tests.gpu")
         try:
-            return gpu.run_wgsl(program, size, uniforms, buffers=buffers(example, time))
+            return gpu.run_wgsl(program, size, uniforms, **data(example, time))
         except gpu.GpuUnavailableError as error:
             pytest.skip(str(error))
     glsl = pytest.importorskip("tests.glsl")
     try:
-        return glsl.run_glsl(program, size, uniforms, buffers=buffers(example, time))
+        return glsl.run_glsl(program, size, uniforms, **data(example, time))
     except glsl.egl.EglUnavailableError as error:
         pytest.skip(str(error))
+
+
+def assert_driver_agrees(example, target, time):
+    found = difference(drawn(example, target, time), cpu_picture(example, time))
+    assert found.is_agreement, found
 
 
 # Each example by some of the languages at some of the times; the texts of all are compiled and run
 # on smaller programs in tests/validity and tests/parity.
 @pytest.mark.sample(3, each="example")
-@pytest.mark.parametrize(("example", "target", "time"), CASES)
+@pytest.mark.parametrize(("example", "target", "time"), [c for c in CASES if is_small(c[0])])
 def test_driver_draws_the_cpu_picture(example, target, time):
-    found = difference(drawn(example, target, time), cpu_picture(example, time))
-    assert found.is_agreement, found
+    assert_driver_agrees(example, target, time)
+
+
+@pytest.mark.sample(4)
+@pytest.mark.parametrize(("example", "target", "time"), [c for c in CASES if not is_small(c[0])])
+def test_driver_draws_the_cpu_picture_of_a_scene(example, target, time):
+    assert_driver_agrees(example, target, time)
+
+
+def test_files_that_draw_functions_of_a_pixel_leave_none_out():
+    scenes = [name for name in sorted(distal.gallery()) if name not in functions_of_a_pixel()]
+    assert [name for name in scenes if not isinstance(image(name), distal.Scene)] == []
 
 
 BY_REFERENCE = [n for n in sorted(distal.gallery()) if ALL or n not in LONG_BY_REFERENCE]

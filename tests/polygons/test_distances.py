@@ -283,7 +283,7 @@ def test_the_spacing_that_is_named_is_enough():
         distances.distances(checked(*box()), 0.001)
     enough = float(caught.value.message.split("a spacing of ")[-1].split()[0])
     counts = [np.ceil(1.0 / enough) + 1 + 2 * distances.MARGIN] * 3
-    assert np.prod(counts) <= distances.MOST_NODES
+    assert np.prod(counts) <= distances.MOST_DENSE
 
 
 def test_volumes_of_the_sample_meshes():

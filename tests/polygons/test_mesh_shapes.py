@@ -217,7 +217,9 @@ def test_a_sheet_is_made_of_an_open_mesh():
 def test_a_file_that_did_not_change_is_computed_once(tmp_path, monkeypatch):
     write(tmp_path / "a.stl", Sample(*box()))
     first = Shape.from_mesh(tmp_path / "a.stl", spacing=0.2)
-    monkeypatch.setattr("distal.polygons.importing.read_mesh", lambda path: pytest.fail("read"))
+    monkeypatch.setattr(
+        "distal.polygons.importing.read_mesh", lambda path, **_: pytest.fail("read")
+    )
     assert Shape.from_mesh(tmp_path / "a.stl", spacing=0.2).imported == first.imported
     monkeypatch.undo()
     write(tmp_path / "a.stl", Sample(*box((2.0, 1.0, 1.0)), name="changed"))

@@ -43,6 +43,16 @@ class Pair:
     amount: float
     cell: ivec2
 
+    @func
+    def shifted(self, by: int) -> int:
+        return self.cell.x * by + self.cell.y
+
+    @func
+    def turned(self) -> "Pair":
+        result = self
+        result.cell = self.cell.yx
+        return result
+
 
 @struct
 class Nest:
@@ -50,6 +60,13 @@ class Nest:
     flag: bool
     ints: array[int, 3]
     mask: uint
+
+
+@func
+def joined(first: int, *rest: int) -> int:
+    for i, value in enumerate(rest, start=1):
+        first = first * 31 + value * i
+    return first
 """
 
 INT_LITERALS: Final = (
@@ -412,6 +429,8 @@ class Maker:
     def int_operation(self, type: str, depth: int) -> str:
         kinds = ["+", "-", "*", "//", "%", "&", "|", "^", "<<", ">>", "function", "unary"]
         kinds += ["converted", "composed" if type != "int" else "element"]
+        if type == "int":
+            kinds += ["star", *(["method"] if self.places("Pair") else [])]
         kind = self.pick(kinds)
         if kind == "composed":
             parts = [self.expression("int", depth - 1).text for _ in range(SIZES[type])]
@@ -420,6 +439,14 @@ class Maker:
             return self.element("int", depth) or self.literal("int").text
         if kind == "converted":
             return self.converted_int(type, depth)
+        if kind == "method":
+            turned = self.pick(("", ".turned()", ".turned()"))
+            by = self.expression("int", depth - 1).text
+            return f"{self.pick(self.places('Pair'))}{turned}.shifted({by})"
+        if kind == "star":
+            first = self.expression("int", depth - 1).text
+            rest = self.varying(self.expression("ivec2", depth - 1).text, "ivec2")
+            return self.pick((f"joined({first}, *{rest})", f"joined(*{rest}, {first}, {first})"))
         if kind == "unary":
             a = self.varying(self.expression(type, depth - 1).text, type)
             return self.pick(("(-{})", "(~{})", "abs({})", "sign({})")).format(a)

@@ -237,6 +237,21 @@ class FunctionMaker(Maker):
 
     def each(self, name: str) -> tuple[str, str]:
         found = [local for local in self.locals if local.type in ARRAYS]
+        others = [local for local in found if ARRAYS[local.type][0] == "int"]
+        if others and self.chance(50):
+            # The element is the one that the name stands for; the other name goes unread.
+            pair, array = f"{name}, {name}_b", self.pick(others).name
+            return self.pick(
+                (
+                    (f"for {pair} in enumerate({array}):", "int"),
+                    (f"for {name}_b, {name} in enumerate({array}, {self.index(1)}):", "int"),
+                    (f"for {pair} in zip({array}, {self.pick(found).name}):", "int"),
+                    (
+                        f"for {name}_b, ({pair}_b) in enumerate(zip({array}, range(9, 0, -2))):",
+                        "int",
+                    ),
+                )
+            )
         if found:
             local = self.pick(found)
             return f"for {name} in {local.name}:", ARRAYS[local.type][0]

@@ -232,11 +232,15 @@ def test_a_sky_shows_air_ground_sun_and_glow():
 
 
 def test_a_mixed_surface_mixes_all_its_numbers():
+    bump = {"height": 0.2, "tilt": vec3(0.1, 0.3, 0.2)}
     a = Surface(
-        vec3(0.1, 0.2, 0.3), 0.5, 0.2, 0.1, 1.3, 0.4, 0.2, vec3(1.0, 2.0, 3.0), vec3(0.5), 0.0, 0.1
+        *(vec3(0.1, 0.2, 0.3), 0.5, 0.2, 0.1, 1.3, 0.4, 0.2),
+        *(vec3(1.0, 2.0, 3.0), vec3(0.5), 0.0, 0.1),
+        **bump,
     )
     b = Surface(
-        vec3(0.9, 0.7, 0.2), 0.1, 0.3, 0.6, 2.3, 0.9, 0.8, vec3(0.0, 4.0, 1.0), vec3(0.1), 1.0, 0.7
+        *(vec3(0.9, 0.7, 0.2), 0.1, 0.3, 0.6, 2.3, 0.9, 0.8),
+        *(vec3(0.0, 4.0, 1.0), vec3(0.1), 1.0, 0.7),
     )
     mixed = material.mix_surfaces(a, b, 0.3)
     for name in Surface.__annotations__:

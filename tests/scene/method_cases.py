@@ -44,6 +44,13 @@ from tests.scene.method_fields import (
 
 SOLIDS = [
     # Placing
+    # A parameter as the condition: ``test_alternatives``.
+    Case(
+        "shown",
+        {"condition": True},
+        lambda a, b, p, condition: a(p) if condition else np.full(len(p), 1e12),
+        changed={"condition": [False]},
+    ),
     Case("translate", {"offset": (0.3, -0.2, 0.5)}, lambda a, b, p, offset: a(p - arr(offset))),
     Case(
         "translate",
@@ -129,6 +136,11 @@ SOLIDS = [
         lambda a, b, p, source, target: a(turned_back(p, turn_towards(source, target))),
     ),
     Case(
+        "orient",
+        {"source": (-0.3, 0.9, 0.6)},
+        lambda a, b, p, source: a(turned_back(p, turn_towards((0.0, 1.0, 0.0), source))),
+    ),
+    Case(
         "shear",
         {"xy": 0.3, "xz": -0.4, "yz": 0.5},
         lambda a, b, p, xy, xz, yz: a(
@@ -194,6 +206,14 @@ SOLIDS = [
         {"count": 5, "neighbours": 1},
         copies=lambda q, count, neighbours: around_y(q, count),
         child=BESIDE,
+    ),
+    Case(
+        "repeat_polar",
+        {"count": 5, "neighbours": "all"},
+        lambda a, b, p, count, neighbours: np.min(
+            [a(p @ about(Y, 2.0 * np.pi * i / count)) for i in range(count)], axis=0
+        ),
+        fixed=("neighbours",),
     ),
     Case(
         "repeat_ring",

@@ -33,6 +33,13 @@ from tests.scene.method_fields import (
 )
 
 FLATS = [
+    # A parameter as the condition: ``test_alternatives``.
+    Case(
+        "shown",
+        {"condition": True},
+        lambda a, b, p, condition: a(p) if condition else np.full(len(p), 1e12),
+        changed={"condition": [False]},
+    ),
     Case("translate", {"offset": (0.3, -0.2)}, lambda a, b, p, offset: a(p - arr(offset))),
     Case("rotate", {"angle": 0.7}, lambda a, b, p, angle: a(p @ about(Z, angle)[:2, :2])),
     Case("scale", {"factors": (1.3,)}, lambda a, b, p, factors: factors[0] * a(p / factors[0])),
@@ -111,6 +118,14 @@ FLATS = [
         {"count": 5, "neighbours": 1},
         copies=lambda q, count, neighbours: flat_around(q, count),
         child=FLAT_BESIDE,
+    ),
+    Case(
+        "repeat_polar",
+        {"count": 5, "neighbours": "all"},
+        lambda a, b, p, count, neighbours: np.min(
+            [a(p @ about(Z, 2.0 * np.pi * i / count)[:2, :2]) for i in range(count)], axis=0
+        ),
+        fixed=("neighbours",),
     ),
     Case(
         "split",
@@ -281,6 +296,19 @@ FLATS = [
         # On the surface in the middle of the relief; values as they are at its inner side.
         copies=lambda q, radius, height: [
             (wrapped(joined(*q.T, 0.0), radius), (radius - 0.5 * height) / radius)
+        ],
+        child=SMALL,
+        lands=False,
+    ),
+    Case(
+        "wrap_cylinder",
+        {"radius": 1.2, "height": 0.3, "count": 5},
+        copies=lambda q, radius, height, count: [
+            (
+                wrapped(joined(q[:, 0] + 2.0 * np.pi * radius * i / count, q[:, 1], 0.0), radius),
+                (radius - 0.5 * height) / radius,
+            )
+            for i in range(count)
         ],
         child=SMALL,
         lands=False,

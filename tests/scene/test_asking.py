@@ -62,7 +62,7 @@ def test_what_joins_nothing_is_told_what_does(join, message):
         (Sphere(), "color", "'Sphere' has no 'color'; there is paint(material or color)"),
         (Sphere() | Box(), "extrude", "'Shape' has no 'extrude': it is for flat shapes"),
         (Circle(), "twist", "'Circle' has no 'twist': it is for solids"),
-        (Torus(), "render", "Scene(shape).render("),
+        (Torus(), "save", "there is render((640, 480)).save(file), and mesh().save(file)"),
         (Torus(), "nonsense", "'Torus' has no 'nonsense'"),
     ],
 )

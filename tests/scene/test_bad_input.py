@@ -23,10 +23,26 @@ from distal import (
     Shape,
     Sphere,
     Torus,
+    choose,
+    emissive,
     glass,
 )
 from distal.diagnostics import CompileError
-from distal.lang import Frame, func, image, length, max, slider, vec3, vec4
+from distal.fields.repeat import polar
+from distal.lang import (
+    Frame,
+    choice,
+    func,
+    image,
+    integer,
+    length,
+    max,
+    select,
+    slider,
+    toggle,
+    vec3,
+    vec4,
+)
 
 # The same light, whatever is in the scene.
 PLAIN_LIGHT = {
@@ -37,6 +53,10 @@ PLAIN_LIGHT = {
 }
 LOW = slider("Low", 0.5, -1.0, 1.0)
 HALF = slider("Half", 0.5, 0.1, 1.0)
+MANY = integer("Many", 3, 1, 100)
+SWITCH = toggle("Switch")
+FORM = choice("Form", ["ball", "cube"])
+BESIDE = Sphere(0.5).translate(2, 0, 0)
 
 
 @func
@@ -86,8 +106,8 @@ ERRORS = {
     ),
     "infinite": (
         lambda: Box(math.inf),
-        "'size of Box' takes a finite 32-bit number, not inf",
-        None,
+        "'size of Box' is infinite along all axes, and nothing ends there",
+        "leave one side finite",
     ),
     "nan place": (
         lambda: Sphere().translate(math.nan, 0, 0),
@@ -141,8 +161,95 @@ ERRORS = {
     ),
     "moving count": (
         lambda: Sphere().repeat_polar(HALF),
-        "'count of repeat polar' is fixed when the scene is compiled; the slider 'Half' is not",
+        "'count of repeat polar' takes a whole number; the slider 'Half' is a float",
+        "make it with integer(…)",
+    ),
+    "count that may be 0": (
+        lambda: BESIDE.repeat_polar(integer("Count", 3)),
+        "repeat polar: count must be 1 or more; 'count' goes down to 0",
+        "give the parameter another low, or use clamp",
+    ),
+    "count without limits": (
+        lambda: BESIDE.repeat_polar(MANY // (MANY - 5)),
+        "'count of repeat polar' needs a largest value, and this expression has none that is known",
+        "limit it: clamp(n, 1, 12) of distal.lang",
+    ),
+    "count too large to fit": (
+        lambda: BESIDE.repeat_polar(MANY),
+        "repeat polar gives this shape no bound on its slope where 'count' is 100",
+        f"repeat polar needs {polar.POLAR_FITTING}; its box goes from (1.5, -0.5, -0.5) to "
+        "(2.5, 0.5, 0.5)",
+    ),
+    "count by a toggle": (
+        lambda: BESIDE.repeat_polar(SWITCH),
+        "'count of repeat polar' takes a whole number; the toggle 'Switch' is a bool",
+        "make it with integer(…)",
+    ),
+    "neighbours of a parameter": (
+        lambda: BESIDE.repeat(9.0, neighbours=MANY),
+        "'neighbours of repeat' is fixed when the scene is compiled; the integer 'Many' is not",
         "give a plain whole number",
+    ),
+    # Alternatives
+    "select by a number": (
+        lambda: select(HALF, Sphere(), BESIDE),
+        "'condition of select' takes a condition; the slider 'Half' is a float",
+        "make it with toggle(…), or compare: x > 0.5",
+    ),
+    "select of a number": (
+        lambda: select(SWITCH, Sphere(), 2.0),
+        "select takes shapes, not 2.0",
+        "None shows nothing",
+    ),
+    "select of flat and solid": (
+        lambda: select(SWITCH, Sphere(), Circle()),
+        "select takes flat shapes or solids, not both",
+        "make the flat one solid: .extrude(height) or .revolve()",
+    ),
+    "shown by a number": (
+        lambda: Sphere().shown(0.5),
+        "'condition of select' takes True or False, not float 0.5",
+        None,
+    ),
+    "choose by a toggle": (
+        lambda: choose(SWITCH, [Sphere(), BESIDE]),
+        "'which of choose' takes a choice or a whole number, not a bool",
+        "select(condition, a, b)",
+    ),
+    "choose of too few": (
+        lambda: choose(FORM, [Sphere()]),
+        "choose has 1 shapes, 0 to 0; 'which' goes from 0 to 1",
+        "give as many shapes as there are values",
+    ),
+    "choose without an option": (
+        lambda: choose(FORM, {"ball": Sphere()}),
+        "choose has no shape for the option 'cube' of 'Form'",
+        "'cube': None shows nothing",
+    ),
+    "choose with a wrong option": (
+        lambda: choose(FORM, {"ball": Sphere(), "cubes": Sphere()}),
+        "the choice 'Form' has no option 'cubes'",
+        "did you mean 'cube'?",
+    ),
+    "choose by names of a number": (
+        lambda: choose(MANY, {"ball": Sphere()}),
+        "shapes by name need a choice, whose options are the names",
+        "choose(number, [a, b, c]) for a whole number",
+    ),
+    "choose of no list": (
+        lambda: choose(FORM, 3),
+        "choose takes a list of shapes, or shapes by name, not 3",
+        "choose(form, [a, b]) or choose(form, {'ball': a, 'cube': b})",
+    ),
+    "choose of nothing at all": (
+        lambda: choose(FORM, [None, None]),
+        "choose needs a shape: all of these are None",
+        None,
+    ),
+    "choose beyond the list": (
+        lambda: choose(2, [Sphere(), BESIDE]),
+        "there is no shape 2: choose has shapes 0 to 1",
+        None,
     ),
     "axis of no name": (
         lambda: Sphere().symmetry("w"),
@@ -387,11 +494,26 @@ def test_an_own_function_without_numbers_in_places_is_told():
 
 
 def test_a_black_picture_is_told():
-    ((message, file),) = heard(
-        lambda: Scene(Sphere(), lights=[], background="#000").render(size=(8, 8))
-    )
+    away = Camera((3, 2, 5), target=(30, 20, 50))
+    black = Scene(Sphere(), camera=away, background="#000", floor=False)
+    ((message, file),) = heard(lambda: black.render(size=(8, 8)))
     assert message == "the picture is black: no light comes from what the camera sees"
     assert file == __file__
+
+
+@pytest.mark.parametrize("background", ["#000", "#fff"])
+def test_a_scene_without_lights_is_told(background):
+    dark = Scene(Sphere(), lights=[], background=background)
+    ((message, file),) = heard(lambda: dark.render(size=(8, 8)))
+    assert message == (
+        "the scene has no lights: its shapes are black; leave out lights= for usual ones"
+    )
+    assert file == __file__
+
+
+def test_a_lamp_needs_no_other_light():
+    lamp = Sphere().paint(emissive((1.0, 1.0, 1.0)))
+    assert heard(lambda: Scene(lamp, lights=[], background="#000").render(size=(8, 8))) == []
 
 
 def same(a, b, size=(48, 36), **options):

@@ -86,6 +86,30 @@ def test_a_bolt_has_its_lengths():
     assert min(ends) == pytest.approx(3.0 - 0.541266, abs=2e-6)
 
 
+@pytest.mark.parametrize(("size", "left"), [("M6", False), ("M20", True), ("M2", False)])
+def test_the_depth_of_a_thread_falls_to_nothing_before_the_shank(size, left):
+    """In the middle of a groove, at some shares of the last pitch; the crests stay."""
+    row = METRIC[size]
+    crest, depth, plain = 0.5 * row.diameter, 0.541266 * row.pitch, 3.0 * row.pitch
+    bolt = distal.Bolt(size, plain + 4.0 * row.pitch, thread=4.0 * row.pitch, left=left)
+    shares = np.array([-1.2, -0.5, 0.0, 0.25, 0.5, 0.75, 0.999])
+    heights = -plain - row.pitch * (1.0 - shares)
+    turns = (-1.0 if left else 1.0) * heights / row.pitch
+    low, high = 0.3 * row.diameter, row.diameter
+    at_crests = radii_where_it_ends(bolt, math.tau * turns, heights, low, high)
+    assert at_crests == pytest.approx(np.full(7, crest), abs=2e-6 * row.diameter)
+    in_grooves = radii_where_it_ends(bolt, math.tau * (turns + 0.5), heights, low, high)
+    expected = crest - depth * (1.0 - np.maximum(shares, 0.0))
+    assert in_grooves == pytest.approx(expected, abs=2e-6 * row.diameter)
+
+
+def test_a_thread_up_to_the_head_has_its_full_depth():
+    bolt = distal.Bolt("M6", 12.0, thread=12.0)
+    heights = np.linspace(-0.05, -0.95, 19)
+    ends = radii_where_it_ends(bolt, math.tau * (heights + 0.5), heights)
+    assert ends == pytest.approx(np.full(19, 3.0 - 0.541266), abs=2e-6)
+
+
 def test_holes_let_a_bolt_through_or_take_its_thread():
     plain = distal.MetricHole("M6", 8.0, threaded=False)
     assert values(plain, [[3.2, 4.1, 0.0], [3.4, 0.0, 0.0]]) == pytest.approx([-0.1, 0.1], abs=1e-6)

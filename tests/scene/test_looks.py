@@ -124,7 +124,7 @@ def test_the_box_is_that_of_the_finite_parts():
     assert len(found.endless) == 2
     assert not found.cut
     alone = subject_box(Plane().node, {}, 0.0)
-    assert (alone.low, alone.high) == ((-2.0, -2.0, -2.0), (2.0, 2.0, 2.0))
+    assert (alone.low, alone.high) == ((-2.0, -2.0, -2.0), (2.0, 0.0, 2.0))
     assert alone.cut
     rod = subject_box((Box(1.0, 1.0, 1.0).repeat(0.0, 2.0, 0.0)).node, {}, 0.0)
     assert (rod.low, rod.high) == ((-0.5, -2.0, -0.5), (0.5, 2.0, 0.5))

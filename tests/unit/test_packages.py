@@ -23,6 +23,9 @@ FAILURES = {
 }
 
 
+pytest.importorskip("wgpu")  # not for the first time in place of a broken one
+
+
 @pytest.fixture
 def broken(tmp_path, monkeypatch):
     """Put a package of a given text in the place of the real one."""

@@ -27,10 +27,10 @@ from distal.backends.numpy import interpreter as reference
 from distal.compiler.driver import compile, lower, run_passes
 from distal.diagnostics import CompileError
 from distal.lang import Image
-from distal.loading import load
+from distal.loading import gallery, load
+from tests.examples import functions_of_a_pixel
 
 HERE = Path(__file__).parent
-EXAMPLES = HERE.parent.parent / "examples"
 SIZE = (80, 60)
 VALUES = {"time": 1.3, "index": 3}
 
@@ -60,16 +60,18 @@ def scene_file(path: Path) -> ModuleType:
     return module
 
 
+def image_of(path: Path) -> Image:
+    found = load(path)
+    assert isinstance(found, Image), path.name
+    return found
+
+
 TORTURE = scene_file(HERE / "torture.py")
 GOLDEN = scene_file(HERE.parent / "golden" / "scene.py")
 IMAGES: dict[str, Image] = {n: v for n, v in vars(TORTURE).items() if isinstance(v, Image)}
 IMAGES["scene"] = [v for v in vars(GOLDEN).values() if isinstance(v, Image)][-1]
 # Scenes of objects are drawn by every driver in tests/pictures.
-IMAGES |= {
-    path.stem: found
-    for path in sorted(EXAMPLES.glob("*.py"))
-    if isinstance(found := load(path), Image)
-}
+IMAGES |= {name: image_of(gallery()[name]) for name in functions_of_a_pixel()}
 
 ALL = [
     pytest.param(name, target, id=f"{name}-{target}")

@@ -11,7 +11,7 @@ import pytest
 
 import distal
 from distal.images.atomic_files import SaveError
-from distal.video import video
+from distal.video import encoding, video
 from distal.video.moving_picture import MovingPicture
 from tests.video.moving import decode, scene_file
 
@@ -134,6 +134,55 @@ def test_a_scene_that_fails_in_the_middle_keeps_the_pieces(moving, tmp_path, mon
     assert (folder / "000000-000039.mp4").exists()
     monkeypatch.undo()
     assert video(moving, out, **WISHES).rendered == 140
+
+
+@pytest.mark.parametrize("quality", ["high", "lossless"])
+def test_frames_of_a_slow_segment_are_kept(moving, tmp_path, monkeypatch, quality):
+    monkeypatch.setattr(encoding, "KEEP_AFTER_S", 0.0)
+    wishes = {**WISHES, "quality": quality}
+    whole, told = MovingPicture.picture, []
+
+    def picture(self, index, at, size=None):
+        if index == 70:
+            time.sleep(0.3)  # the frames before it are written
+            raise distal.LoadError("the author's message")
+        return whole(self, index, at, size)
+
+    monkeypatch.setattr(MovingPicture, "picture", picture)
+    out = tmp_path / "out.mp4"
+    with pytest.raises(distal.LoadError, match="the author's message"):
+        video(moving, out, **wishes, tell=told.append)
+    folder = tmp_path / ".out.mp4.distal"
+    singles = sorted(path.name for path in folder.glob("*.png"))
+    assert len(singles) >= 25
+    assert singles == [f"frame-{i:05d}.png" for i in range(40, 40 + len(singles))]
+    kept = 40 + len(singles)
+    assert told == [f"{kept} of 180 frames are kept in {folder}; continue with the same command"]
+
+    monkeypatch.setattr(MovingPicture, "picture", whole)
+    (folder / singles[3]).write_bytes(b"")  # a damaged one is rendered again
+    told.clear()
+    assert video(moving, out, **wishes, tell=told.append).rendered == 181 - kept
+    assert told == [f"continues: {kept - 1} of 180 frames are there"]
+    assert not folder.exists()
+    uninterrupted = tmp_path / "whole.mp4"
+    video(moving, uninterrupted, **wishes)
+    continued = decode(out).frames
+    expected = decode(uninterrupted).frames
+    assert len(continued) == 180
+    assert all((a == b).all() for a, b in zip(continued, expected, strict=True))
+
+
+def test_frames_of_a_quick_segment_are_not_written(moving, tmp_path):
+    seen = set()
+    folder = tmp_path / ".out.mp4.distal"
+    video(
+        moving,
+        tmp_path / "out.mp4",
+        **WISHES,
+        progress=lambda *_: seen.update(path.suffix for path in folder.iterdir()),
+    )
+    assert ".png" not in seen
 
 
 @pytest.mark.parametrize("suffix", ["mp4", "webm", "gif", "apng", "webp"])

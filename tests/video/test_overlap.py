@@ -87,7 +87,7 @@ def test_a_failure_of_the_maker_drops_what_waits():
 
 
 def test_several_take_at_once():
-    together = threading.Barrier(3, timeout=5.0)
+    together = threading.Barrier(3, timeout=60.0)
     with taking(lambda item: together.wait(), workers=3) as taker:
         for i in range(3):
             taker.put(i)
@@ -98,7 +98,7 @@ def test_what_is_made_ahead_comes_in_order():
 
     def make(i):
         if i == 0:
-            assert gate.wait(10.0)  # the first is ready last
+            assert gate.wait(60.0)  # the first is ready last
         else:
             gate.set()
         return i * i

@@ -1,7 +1,6 @@
 """Hands on the camera of a real window: never inside a solid, never black; keys show the scene."""
 
 import math
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,7 @@ import pytest
 import distal
 from distal.scene.steering import Steering
 from distal.scene.viewing.guide import Guide, Moment
-from tests.window.display import DisplayUnavailableError, Window, screen
+from tests.window.display import Window
 
 SIZE = (320, 240)
 MIDDLE = (160, 120)
@@ -27,15 +26,6 @@ room = Scene(
     camera=Camera((0, 1.6, 2.5), (0, 1.2, 0)),
 )
 """
-
-
-@pytest.fixture(scope="module")
-def display() -> Iterator[str]:
-    try:
-        with screen() as name:
-            yield name
-    except DisplayUnavailableError as error:
-        pytest.skip(str(error))
 
 
 def told(shown: dict[str, Any]) -> Steering:

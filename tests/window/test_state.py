@@ -2,9 +2,10 @@
 
 import math
 import os
+import queue
 import threading
-import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ import distal
 from distal import Box, Camera, Plane, Scene, Sphere, matte
 from distal.lang import Frame, choice, color, image, integer, point, slider, toggle, vec3
 from distal.lang.render_options import RenderOptions
+from distal.saved_files import FileWatcher
 from distal.scene.steering import STILL, Steering
 from distal.scene.viewing import interaction
 from distal.scene.viewing.key_bindings import BINDINGS, HELP
@@ -22,10 +24,12 @@ from distal.window.dials import Dial, dials
 from distal.window.gestures import Mouse, orbited, panned, zoomed
 from distal.window.keys import Action, action_of_character, action_of_key
 from distal.window.layout import BAR_HEIGHT, Table, time_track
-from distal.window.reload import FileWatcher, files_in
+from distal.window.reload import files_in
 from distal.window.resolution import STAIRS, ResolutionChooser
 from distal.window.session import Session
 from distal.window.worker import Worker
+
+LONG_S = 60.0  # for what comes at once; a loaded machine may take seconds
 
 radius = slider("Radius", 1.0, 0.5, 2.0)
 count = integer("Count", 3, 1, 9)
@@ -488,12 +492,13 @@ def test_the_worker_keeps_order_tells_errors_and_can_be_left() -> None:
     worker = Worker(post)  # type: ignore[arg-type]
     worker.submit(lambda _: 1, told.append)
     worker.submit(lambda _: 1 / 0, told.append)
-    worker.submit(lambda cancel: cancel.wait(20), told.append)
+    running = threading.Event()
+    worker.submit(lambda cancel: running.set() or cancel.wait(LONG_S), told.append)
     for _ in range(2):
-        assert arrived.acquire(timeout=5)
-    time.sleep(0.05)
+        assert arrived.acquire(timeout=LONG_S)
+    assert running.wait(LONG_S)
     worker.cancel()
-    assert arrived.acquire(timeout=5)
+    assert arrived.acquire(timeout=LONG_S)
     assert told == []  # nothing is done in the worker's own thread
     for call in posted:
         call()  # type: ignore[operator]
@@ -501,11 +506,39 @@ def test_the_worker_keeps_order_tells_errors_and_can_be_left() -> None:
     assert isinstance(told[1], ZeroDivisionError)
     assert told[2] is True
     assert worker.waiting == 0
-    stuck = threading.Event()
-    worker.submit(lambda _: stuck.wait(20), told.append)
-    time.sleep(0.05)
+    stuck, begun = threading.Event(), threading.Event()
+    worker.submit(lambda _: begun.set() or stuck.wait(LONG_S), told.append)
+    assert begun.wait(LONG_S)
     assert not worker.stop(0.1)
     stuck.set()
+
+
+def test_the_worker_leaves_a_job_that_never_ends() -> None:
+    posted: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    told: list[object] = []
+    worker = Worker(posted.put)
+    stuck, begun = threading.Event(), threading.Event()
+    left: list[threading.Thread] = []
+
+    def endless(_: threading.Event) -> None:
+        left.append(threading.current_thread())
+        begun.set()
+        stuck.wait(LONG_S)
+
+    worker.submit(endless, told.append)
+    worker.submit(lambda _: "after it", told.append)
+    assert begun.wait(LONG_S)  # a job that has not begun is not left: the new thread runs it
+    worker.abandon()
+    worker.submit(lambda _: "new", told.append)
+    for _ in range(2):
+        posted.get(timeout=LONG_S)()
+    assert told == ["after it", "new"]
+    assert worker.waiting == 0
+    assert not worker.stop(0.1)  # the thread that was left still runs
+    stuck.set()
+    left[0].join(LONG_S)
+    assert posted.empty()  # what the thread that was left made is posted nowhere
+    assert worker.stop(LONG_S)
 
 
 # Keys

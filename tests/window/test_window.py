@@ -4,7 +4,6 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,10 +16,11 @@ from PIL import Image
 import distal
 from distal.images.picture_files import read
 from distal.lang.render_options import RenderOptions
+from distal.scene.section import CutPlane
 from distal.scene.steering import Steering
 from distal.scene.viewing.viewable import viewable
 from tests.pictures.comparison import difference
-from tests.window.display import DisplayUnavailableError, Window, screen
+from tests.window.display import Window
 
 SIZE = (320, 240)
 MIDDLE = (160, 110)  # of the window, away from what is drawn over the picture
@@ -42,15 +42,15 @@ MOUSE = """from distal.lang import Frame, image, vec3
 def pointer(frame: Frame) -> vec3:
     return vec3(frame.mouse.xy / frame.resolution, 0.25)
 """
+ENDLESS_IMAGE = """from distal.lang import Frame, image, vec3
 
-
-@pytest.fixture(scope="module")
-def display() -> Iterator[str]:
-    try:
-        with screen() as name:
-            yield name
-    except DisplayUnavailableError as error:
-        pytest.skip(str(error))
+@image
+def pointer(frame: Frame) -> vec3:
+    x = frame.time
+    while x > -1.0:
+        x = x * 0.5
+    return vec3(x)
+"""
 
 
 def told(shown: dict[str, Any]) -> Steering:
@@ -219,7 +219,7 @@ def test_saving_shows_the_scene_anew_and_mistakes_over_the_last_good_picture(
         count = len(window.events)
         parts.unlink()
         gone = window.wait(lambda event: event["event"] == "trouble", count)["text"]
-        assert "No module named 'parts'" in gone
+        assert "there is no module 'parts'" in gone
         assert window.errors.count(trouble) == 1
 
         # Good again.
@@ -232,6 +232,50 @@ def test_saving_shows_the_scene_anew_and_mistakes_over_the_last_good_picture(
         assert not is_trouble_seen(window)
         red, green, blue = middle_color(window)
         assert green > 2 * max(red, blue)
+        assert window.end() == 130
+
+
+@pytest.mark.parametrize("endless", ["while True: pass", "import time; time.sleep(1e6)"])
+def test_a_file_that_never_ends_is_said_and_survived(
+    display: str, tmp_path: Path, endless: str
+) -> None:
+    scene, parts = tmp_path / "scene.py", tmp_path / "parts.py"
+    scene.write_text(SCENE)
+    parts.write_text(PARTS.format(color="#ff0000"))
+    with Window(display, ["scene.py", "--device", "cpu", "--size", "320x240"], tmp_path) as window:
+        window.sharp()
+        count = len(window.events)
+        scene.write_text(f"{endless}\n{SCENE}")
+        said = window.wait(lambda event: event["event"] == "hangs", count)["text"]
+        assert said.startswith("warning: scene.py is still running after 3 s\n  --> scene.py:1:1\n")
+        window.wait(lambda event: event["event"] == "drawn" and event["trouble"] == said, count)
+        assert is_trouble_seen(window)
+        assert window.screenshot(SIZE)[100:140, 140:180, 0].max() > 0.5  # the picture before it
+
+        count = len(window.events)
+        scene.write_text(SCENE)
+        window.wait(lambda event: event["event"] == "loaded", count)
+        window.wait(lambda event: event["event"] == "drawn" and not event["trouble"], count)
+        assert not is_trouble_seen(window)
+
+        count = len(window.events)
+        scene.write_text(f"{endless}\n{SCENE}")
+        window.wait(lambda event: event["event"] == "hangs", count)
+        assert window.errors.count("still running after 3 s") == 2
+        assert window.end() == 130
+
+
+def test_a_picture_that_never_ends_is_given_up_when_it_is_saved(
+    display: str, tmp_path: Path
+) -> None:
+    scene = tmp_path / "mouse.py"
+    scene.write_text(ENDLESS_IMAGE)
+    with Window(display, ["mouse.py", "--device", "cpu", "--size", "320x240"], tmp_path) as window:
+        time.sleep(4.0)
+        count = len(window.events)
+        scene.write_text(MOUSE)
+        window.wait(lambda event: event["event"] == "loaded", count)
+        window.wait(lambda event: event["event"] == "drawn" and "shown" in event, count)
         assert window.end() == 130
 
 
@@ -288,3 +332,45 @@ def test_without_a_display_one_line_says_so(name: str, reason: str) -> None:
     )
     assert ended.returncode == 1
     assert ended.stderr == f"error: no window can be opened here: {reason}\n"
+
+
+@pytest.mark.parametrize("device", ["cpu", "gpu"])
+def test_keys_cut_a_scene_open(display: str, tmp_path: Path, device: str) -> None:
+    (tmp_path / "parts.py").write_text(PARTS.format(color="#c04020"))
+    (tmp_path / "scene.py").write_text(SCENE)
+    path = str(tmp_path / "scene.py")
+    with Window(display, [path, "--device", device, "--size", "320x240"], tmp_path) as window:
+        whole = window.sharp()
+        assert whole["section"] is None
+
+        def cut(normal: list[float], offset: float) -> dict[str, Any]:
+            """What is on the screen once it is sharp and cut by this plane."""
+
+            def holds(event: dict[str, Any]) -> bool:
+                found = event.get("shown", {}).get("section")
+                is_sharp = event["event"] == "drawn" and event["shown"]["is_final"]
+                return (
+                    is_sharp
+                    and found is not None
+                    and found["Section_normal"] == normal
+                    and found["Section_offset"] == pytest.approx(offset, abs=1e-6)
+                )
+
+            shown: dict[str, Any] = window.wait(holds)["shown"]
+            return shown
+
+        window.hands("mousemove", *MIDDLE, "key", "o", "key", "x", "key", "x", "key", "Prior")
+        shown = cut([0.0, 1.0, 0.0], 0.05)  # a fortieth of 2 above the middle
+        section = shown["section"]
+        plane = CutPlane((0.0, 1.0, 0.0), section["Section_offset"], section["Section_hatch"])
+        options = RenderOptions(size=SIZE, samples=samples_of(device))
+        seen = viewable(distal.load(path))
+        asked = seen.render(options, steering=told(shown), section=plane).array
+        screen = window.screenshot(SIZE)
+        assert difference(screen, asked).is_agreement
+        assert difference(screen, seen.render(options).array).mean > 5
+        window.hands("key", "X")
+        cut([0.0, -1.0, 0.0], -0.05)
+        count = len(window.events)
+        window.hands("key", "x", "key", "x")
+        window.sharp(count, section=None)

@@ -1,8 +1,8 @@
-from distal.lang import (func, length, vec3)
+from distal.lang import func, length, vec3
 
 
 @func
-def sphere(p: vec3, *radii: float) -> float:
+def sphere(p: vec3, *radii: float, **more: float) -> float:
     return length(p) - 1.0
 
 

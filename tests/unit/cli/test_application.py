@@ -53,7 +53,7 @@ def scene(monkeypatch):
     scene = Double()
     scene.loaded = []
 
-    def load(path, name=None):
+    def load(path, name, say):
         scene.loaded.append((path, name))
         return scene
 
@@ -61,8 +61,8 @@ def scene(monkeypatch):
         text = f"// {target} {after}\n"
         return SimpleNamespace(text=text, interface={"a": 1}, vertex="vertex\n")
 
+    monkeypatch.setattr("distal.load_watch.load_watched", load)
     # Into the namespace itself: asking for the real names first would import the whole compiler.
-    monkeypatch.setitem(vars(distal), "load", load)
     monkeypatch.setitem(vars(distal), "compile", compile)
     monkeypatch.setitem(vars(distal), "gallery", lambda: {"ball": Path("/g/ball.py")})
     return scene
@@ -97,7 +97,7 @@ def test_render_hands_on_time_device_and_threads(scene, run):
 
 
 def test_a_function_is_no_picture(scene, run, monkeypatch):
-    monkeypatch.setitem(vars(distal), "load", lambda path, name=None: hidden)
+    monkeypatch.setattr("distal.load_watch.load_watched", lambda path, name, say: hidden)
     result = run("render", "s.py:hidden", "-o", "a.png")
     assert result.exit_code == 1
     assert result.stderr == (
@@ -168,8 +168,22 @@ def test_a_processor_that_cannot_is_one_line(scene, run, monkeypatch):
     assert "there is no CPU feature level 'mmx'" in result.stderr
 
 
-def test_output_is_needed_and_checked_before_any_work(scene, run):
-    assert run("render", "s.py").exit_code == 2
+@pytest.mark.parametrize(
+    ("source", "file"),
+    [("a/s.py", "s.png"), ("s.py:picture", "s_picture.png"), ("example:sea", "sea.png")],
+)
+def test_without_an_output_the_picture_is_named_like_the_scene(scene, run, source, file):
+    result = run("render", source, "--size", "4x3")
+    assert result.exit_code == 0, result.output
+    assert Path(file).read_bytes().startswith(b"\x89PNG")
+
+
+def test_output_is_checked_before_any_work(scene, run):
+    result = run("render", "s.py", "-o", "a.jpg", "--transparent")
+    assert (result.exit_code, result.stderr) == (
+        2,
+        "error: a JPEG has no transparency: -o FILE.png\n",
+    )
     for name in ("a.bmp", "nowhere/a.png"):
         result = run("render", "s.py", "-o", name)
         assert result.exit_code == 1
@@ -235,8 +249,11 @@ def test_compile_refuses_wrong_usage(scene, run, words):
     assert list(Path().iterdir()) == []
 
 
-def test_examples_are_listed(scene, run):
-    assert run("examples").stdout == "example:ball\t/g/ball.py\n"
+def test_examples_are_listed(scene, run, monkeypatch):
+    monkeypatch.setattr(
+        "distal.cli.application.frame_examples", lambda: {"coral": Path("/g/frames/coral.py")}
+    )
+    assert run("examples").stdout == "example:ball\t/g/ball.py\nexample:coral\t/g/frames/coral.py\n"
 
 
 @pytest.mark.parametrize(("state", "code"), [(State.OPTIONAL, 0), (State.BROKEN, 1)])

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
 from PIL import Image
 
@@ -18,6 +19,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job ign
 import distal, time
 from distal.cli import main
 
+from distal import load_watch
 from distal.scene import rendering
 
 def slow(scene, view, options):
@@ -25,7 +27,7 @@ def slow(scene, view, options):
     time.sleep(60)
 
 rendering.render_scene = slow
-distal.load = lambda path, name=None: distal.Scene(distal.Sphere(1.0))
+load_watch.load_watched = lambda path, name, say: distal.Scene(distal.Sphere(1.0))
 main()
 """
 
@@ -130,6 +132,20 @@ def test_a_warning_is_one_line(tmp_path):
     assert last.startswith("a.png: 4x4")
 
 
+def test_a_scene_alone_is_rendered(tmp_path):
+    (tmp_path / "ball.py").write_text("from distal import *\nball = Sphere(1.0)\n")
+    command = (sys.executable, "-m", "distal.cli")
+    for scene, file in (("ball.py", "ball.png"), ("ball.py:ball", "ball_ball.png")):
+        words = (*command, scene, "--size", "4x3")
+        subprocess.run(words, cwd=tmp_path, env=environment(), check=True, capture_output=True)
+        with Image.open(tmp_path / file) as image:
+            assert image.size == (4, 3)
+    wrong = subprocess.run(
+        (*command, "bal.py"), cwd=tmp_path, env=environment(), capture_output=True, text=True
+    )
+    assert (wrong.returncode, wrong.stderr) == (1, "error: there is no file bal.py\n")
+
+
 def test_the_scene_is_not_overwritten_by_its_text(tmp_path):
     (tmp_path / "s.py").write_text(SMALL_SCENE)
     answer = subprocess.run(
@@ -186,6 +202,32 @@ def test_help_begins_with_what_a_newcomer_asks_for():
     words = [sys.executable, "-m", "distal.cli", "--help"]
     told = subprocess.run(words, env=environment(), capture_output=True, text=True, check=True)
     commands = re.findall(r"^\W*(\w+)  +[A-Z]", told.stdout.partition("Commands")[2], re.MULTILINE)
-    assert commands[:4] == ["render", "view", "studio", "video"]
+    assert commands[:4] == ["render", "view", "studio", "new"]
     assert commands[-1] == "doctor"
     assert commands == list(COMMANDS)
+
+
+def test_a_new_scene_is_rendered_and_never_written_over(tmp_path):
+    def run(*words):
+        command = (sys.executable, "-m", "distal.cli", *words)
+        given = {"cwd": tmp_path, "env": environment(), "capture_output": True, "text": True}
+        return subprocess.run(command, **given)
+
+    made = run("new", "first")
+    assert (made.returncode, made.stdout) == (0, "")
+    assert made.stderr.startswith("first.py: a first scene. Go on with\n")
+    assert run("first.py", "--size", "16x12").returncode == 0
+    with Image.open(tmp_path / "first.png") as picture:
+        assert np.asarray(picture).std() > 20.0
+    text = (tmp_path / "first.py").read_text()
+    again = run("new", "first.py")
+    assert (again.returncode, again.stderr) == (
+        1,
+        "error: first.py is there already; give another name\n",
+    )
+    assert (tmp_path / "first.py").read_text() == text
+    assert run("new").returncode == 0 and (tmp_path / "scene.py").exists()
+    wrong = run("new", "a.txt")
+    assert (wrong.returncode, wrong.stderr) == (2, "error: a scene is a Python file: a.py\n")
+    missing = run("new", "nowhere/a.py")
+    assert missing.returncode == 1 and missing.stderr.startswith("error: cannot write nowhere/a.py")

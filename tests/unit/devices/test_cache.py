@@ -148,6 +148,7 @@ def test_leftovers_of_killed_writers_go_and_those_of_living_ones_stay(folder: Pa
         (folder / name).write_bytes(b"half")
         os.utime(folder / name, (when, when))
     (folder / ".new-aaaaaaaaaaaaaaaa").symlink_to(folder / "notes")
+    module._stored_since_scan.clear()  # as in another process
     with (folder / ".new-fedcba9876543210").open() as held:
         fcntl.flock(held, fcntl.LOCK_EX)
         cache.store("b", b"code")
@@ -236,6 +237,21 @@ def test_the_longest_unused_go_first(folder: Path) -> None:
     assert cache.size()[1] <= 5000
 
 
+def test_a_process_reads_all_sizes_at_its_first_store_and_each_sixteenth_of_the_limit(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scans: list[int] = []
+    shrink = Cache._shrink
+    monkeypatch.setattr(Cache, "_shrink", lambda self, at: (scans.append(i), shrink(self, at)))
+    cache = Cache(folder, limit=160_000)
+    for i in range(100):
+        cache.store(f"k{i:02d}", bytes(3000))
+    # Each file has 48 bytes more; the fourth since the last scan passes 10,000 bytes.
+    assert scans == [0, *range(4, 100, 4)]
+    assert cache.size()[1] <= 160_000 * 17 // 16
+    assert cache.load("k99") is not None
+
+
 def test_writers_side_by_side_leave_whole_files(folder: Path) -> None:
     payloads = [bytes([i]) * 200_000 for i in range(8)]
     seen: list[bytes | None] = []
@@ -271,6 +287,7 @@ def test_a_writer_that_dies_leaves_nothing_that_counts(folder: Path) -> None:
     (left,) = (file for file in folder.iterdir() if file.name.startswith(".new-"))
     old = time.time() - module.LEFTOVER_AGE_S - 1.0
     os.utime(left, (old, old))
+    module._stored_since_scan.clear()  # as in another process
     Cache(folder).store("c", b"code")
     assert not left.exists()
 

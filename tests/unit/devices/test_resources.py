@@ -11,8 +11,9 @@ from PIL import Image
 
 from distal.devices.resources import load, texels
 from distal.diagnostics import LoadError
-from distal.ir.types import FLOAT, INT, UINT, VEC3, Buffer, TextureShape
+from distal.ir.types import FLOAT, INT, TEXTURE_3D, UINT, VEC3, Buffer, TextureShape
 from distal.lang import Buffer as DeclaredBuffer
+from distal.lang import Texture3D
 
 FLAT, CUBE, VOLUME = TextureShape.FLAT, TextureShape.CUBE, TextureShape.VOLUME
 
@@ -40,6 +41,22 @@ def test_bytes_become_shares() -> None:
 def test_a_volume_keeps_its_order() -> None:
     data = np.random.default_rng(1).random((2, 3, 4, 4), np.float32)
     assert np.array_equal(texels(data, VOLUME), data)
+
+
+@pytest.mark.parametrize("axes", ["zyx", "xyz", "yxz", "zxy"])
+def test_the_axes_of_a_volume_are_named(axes: str) -> None:
+    numbers = np.random.default_rng(1).random((2, 3, 4), np.float32)
+    stored = numbers.transpose(["zyx".index(axis) for axis in axes])
+    found = load(Texture3D(stored, axes=axes), TEXTURE_3D)
+    assert np.array_equal(found[..., 0], numbers)
+    assert np.array_equal(found[..., 2], numbers)
+    assert found.flags.c_contiguous
+
+
+@pytest.mark.parametrize("axes", ["xyw", "xy", "xxyz", 3])
+def test_other_axes_are_refused(axes: Any) -> None:
+    with pytest.raises(ValueError, match="axes are 'zyx' or another order of the three, not "):
+        Texture3D([[[0.0]]], axes=axes)
 
 
 @pytest.mark.parametrize(

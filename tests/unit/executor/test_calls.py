@@ -108,7 +108,7 @@ def beyond_the_near(x: float) -> float:
 
 
 @func
-def starred(*numbers: float) -> float:
+def starred(**numbers: float) -> float:
     return 1.0
 
 
@@ -195,7 +195,7 @@ def test_what_cannot_change_is_not_looked_at_again() -> None:
 
 
 def test_mistakes_in_the_definition_come_before_those_of_the_call() -> None:
-    with pytest.raises(distal.CompileError, match=r"'\*numbers' is not part of scene code"):
+    with pytest.raises(distal.CompileError, match=r"'\*\*numbers' is not part of scene code"):
         starred(1.0)
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import pytest
 
-from distal.lang import func
+from distal.lang import func, struct
 from tests.unit.frontend.evaluation import value
 
 
@@ -39,6 +40,71 @@ def counting_down(x: float) -> float:
     for i in range(10, -4, -3):
         total = total * 2.0 + float(i) * x
     return total
+
+
+SIZES = [0.5, 1.5, 2.5]
+
+
+@struct
+class Line:
+    start: float
+    slope: float = 2.0
+
+    @func
+    def at(self, x: float) -> float:
+        return self.start + self.slope * x
+
+    @func
+    def moved(self, by: float, *more: float) -> Line:
+        moved = Line(self.start + by, self.slope)
+        for step in more:
+            moved = Line(moved.start + step, moved.slope)
+        return moved
+
+    @staticmethod
+    @func
+    def level(height: float) -> Line:
+        return Line(height, slope=0.0)
+
+
+@func
+def methods(x: float) -> float:
+    line = Line(x).moved(1.0, 2.0, *SIZES)
+    return line.at(2.0) - Line.level(x).at(7.0) * Line.at(line, 0.5)
+
+
+@func
+def enumerated(x: float) -> float:
+    for i, size in enumerate(SIZES):
+        x = x * float(i + 1) + size
+    for i, size in enumerate(SIZES, start=int(x)):
+        x += size * float(i)
+    return x
+
+
+@func
+def zipped(x: float) -> float:
+    for a, b, c in zip(SIZES, (x, 3.0), range(9, 0, -2), strict=False):
+        x = x * 0.5 + a * b - float(c)
+    for i, (a, b) in enumerate(zip(SIZES, SIZES, strict=True)):
+        for c in (x, 2.0):
+            if i == 1:
+                break
+            x += a * b * c
+    return x
+
+
+@func
+def weighted(first: float, *rest: float, factor: float = 1.0) -> float:
+    for i, more in enumerate(rest):
+        first += more * float(i + 1) * factor
+    return first / float(len(rest))
+
+
+@func
+def starred(x: float) -> float:
+    pair = (x, 2.0)
+    return weighted(*pair, *SIZES, factor=0.5) + weighted(x, *[*pair, x]) + max(*pair, 3.0)
 
 
 @func
@@ -214,6 +280,10 @@ FLOAT_FUNCTIONS = [
     *(while_with_power_in_condition, assigned_in_branches, one_name_in_two_loops, swap),
     *(chained_assignment, chained_comparison, conditions, powers, floats_floored, lists),
     *(math_functions, nested_function, lambdas, tuples, literals, returned_literal),
+    methods,
+    enumerated,
+    zipped,
+    starred,
 ]
 
 
@@ -225,11 +295,33 @@ def test_floats(scene: Any, x: float) -> None:
 
 def _python(scene: Any) -> Any:
     """The plain function, calling plain functions."""
+    return _with_plain_names(scene, dict(scene.python_function.__globals__))
+
+
+def _with_plain_names(scene: Any, names: dict[str, Any]) -> Any:
     function = scene.python_function
-    names = {k: getattr(v, "python_function", v) for k, v in function.__globals__.items()}
-    return type(function)(
-        function.__code__, names, function.__name__, function.__defaults__, function.__closure__
-    )
+    for name, found in list(names.items()):
+        names[name] = getattr(found, "python_function", found)
+    names["Line"] = _plain_line(names)
+    made = type(function)(function.__code__, names, function.__name__, function.__defaults__)
+    made.__kwdefaults__ = function.__kwdefaults__
+    return made
+
+
+def _plain_line(names: dict[str, Any]) -> Any:
+    """The struct with the methods that Python runs."""
+
+    @dataclass
+    class Plain:
+        start: float
+        slope: float = 2.0
+
+    plain: Any = Plain
+    for name in ("at", "moved", "level"):
+        written = getattr(Line, name).python_function
+        function = type(written)(written.__code__, names, name)
+        setattr(plain, name, staticmethod(function) if name == "level" else function)
+    return plain
 
 
 @func

@@ -108,7 +108,20 @@ def test_wrong_array_is_refused(array, words):
     assert words in str(caught.value)
 
 
-@pytest.mark.parametrize("name", ["a.jpg", "a", "a.png.tiff"])
+@pytest.mark.parametrize("name", ["a.jpg", "a.JPEG"])
+def test_a_jpeg_is_close_and_opaque(tmp_path, name):
+    Picture(gradient()).save(tmp_path / name)
+    with Image.open(tmp_path / name) as image:
+        assert (image.format, image.mode, image.size) == ("JPEG", "RGB", (5, 3))
+        assert np.abs(np.asarray(image) / 255.0 - gradient()[..., :3]).max() < 0.05
+    with pytest.raises(SaveError, match=r"^a JPEG has no transparency: save a \.png$"):
+        Picture(gradient(alpha=0.5)).save(tmp_path / "b.jpg")
+    with pytest.raises(SaveError, match=r"a channel has 8 bits$"):
+        Picture(gradient()).save(tmp_path / "b.jpg", bits=16)
+    assert not (tmp_path / "b.jpg").exists()
+
+
+@pytest.mark.parametrize("name", ["a.gif", "a", "a.png.tiff"])
 def test_unknown_suffix_names_what_is_possible(tmp_path, name):
     with pytest.raises(SaveError, match=r"pictures end in \.png"):
         Picture(gradient()).save(tmp_path / name)

@@ -9,10 +9,12 @@ from distal.lang import (
     Field3,
     Floats,
     Frame,
+    Key,
     Texture2D,
     abs,
     any,
     array,
+    buffer,
     clamp,
     color,
     dot,
@@ -21,6 +23,7 @@ from distal.lang import (
     image,
     integer,
     ivec2,
+    key_held,
     length,
     mat2,
     max,
@@ -40,7 +43,9 @@ from distal.lang import (
     toggle,
     uint,
     value_and_gradient,
+    vec2,
     vec3,
+    vec4,
 )
 
 softness = slider("Blend softness", 0.3)
@@ -58,6 +63,13 @@ class Hit:
     distance: float
     position: vec3 = vec3(0)
     material: int = 0
+
+    @func
+    def moved(self, by: vec3, *more: vec3) -> Hit:
+        position = self.position + by
+        for i, step in enumerate(more):
+            position = position + step * float(i)
+        return Hit(self.distance, position)
 
 
 @func
@@ -99,6 +111,14 @@ def hashed(h: uint) -> uint:
     h ^= h >> 16
     h = h * 747796405 + 1
     return pcg(h) & 255
+
+
+@buffer
+def trail(frame: Frame) -> vec4:
+    old = texel(trail, ivec2(frame.coord))
+    for weight, side in zip((0.5, 0.25), (vec2(0.1, 0.0), vec2(0.0, 0.1)), strict=True):
+        old = old + weight * sample(trail, frame.coord / frame.resolution + side)
+    return old * frame.delta if key_held(Key.SPACE) else old
 
 
 @image

@@ -1,10 +1,8 @@
 from distal.lang import func
 
-SIZES = [1.0, 2.0]
-
 
 @func
 def scene(x: float) -> float:
-    for i, size in enumerate(SIZES):
-        x += size
+    for i, size in enumerate(3):
+        x += size * float(i)
     return x

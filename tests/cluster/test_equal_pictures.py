@@ -1,0 +1,136 @@
+"""Pictures of a cluster are those of one process, bit for bit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import distal
+from distal import Box, Scene, Sphere
+from distal.cluster import ClusterError, WorkerPool, pool_of
+from distal.cluster import pool as pools
+from distal.devices.base import Cancelled
+from distal.lang import Frame, Texture2D, fract, image, sample, slider, vec3
+from distal.lang.render_options import RenderOptions
+from distal.lang.runtime_access import executor
+
+ROWS = np.random.default_rng(1).random((7, 5, 4)).astype(np.float32)
+TEXTURE = Texture2D(ROWS)
+GLOW = slider("Glow", 0.4, 0.0, 1.0)
+
+
+@image
+def tinted(frame: Frame) -> vec3:
+    """A texture, a parameter, the time and the frame's numbers."""
+    at = frame.coord / frame.resolution
+    color = sample(TEXTURE, at * 2.0).xyz
+    return fract(color + vec3(GLOW, frame.time, float(frame.index) * 0.1 + at.x))
+
+
+def equal(obj, client, size=(70, 50), **options):
+    """Check that all that is known of two pictures is the same."""
+    alone = obj.render(size, **options)
+    together = obj.render(size, cluster=client, **options)
+    np.testing.assert_array_equal(together.array, alone.array)
+    assert together.metadata == alone.metadata
+    if alone.light is not None:
+        np.testing.assert_array_equal(together.linear, alone.linear)
+    return together
+
+
+@pytest.mark.parametrize("size", [(1, 1), (65, 17), (200, 130), (16, 300)])
+def test_an_image_of_any_size(client, size):
+    equal(tinted, client, size, time=1.25, params={"Glow": 0.7}, index=3)
+
+
+def test_samples_of_an_image(client):
+    equal(tinted, client, samples=4)
+
+
+@pytest.mark.parametrize("name", ["castle", "bricks", "lithophane"])
+def test_scenes_with_tables_and_data(client, name):
+    """Adaptive samples, parts that move, buffers, textures."""
+    equal(distal.load(f"example:{name}"), client, (96, 64), time=0.8, mode="direct")
+
+
+def test_frozen_numbers_layers_and_views(client):
+    scene = Scene(Box(1.0).paint("#c44") - Sphere(0.6))
+    equal(scene, client, freeze=True)
+    equal(scene, client, view="normal")
+    equal(scene, client, samples=3, transparent=True)
+    made = equal(scene, client, layers=("depth", "material"))
+    assert set(made.layers) == {"depth", "material"}
+
+
+def test_paths_and_photons(client):
+    scene = distal.load("example:caustics")
+    equal(scene, client, (48, 32), mode="path", spp=8)
+
+
+def test_other_numbers_take_the_same_program(client):
+    """A slider moves numbers alone: nothing is sent or compiled again."""
+    scene = Scene(Sphere(slider("Size", 0.5, 0.1, 1.0)))
+    pool = WorkerPool(client)
+    for size in (0.3, 0.8):
+        equal(scene, pool, params={"Size": size})
+        kept = len(pool._sent)
+    assert len(pool._sent) == kept
+
+
+def test_whole_pictures(client):
+    pool = WorkerPool(client)
+    pictures = [tinted, distal.load("example:bricks").program("color", None, encoded=True)[0]]
+    for each in pictures:
+        options = RenderOptions(size=(80, 60), time=0.5)
+        made = pool.picture(each, options, exact=True)
+        alone = executor().render(each, options)
+        np.testing.assert_array_equal(made.array, alone.array)
+        assert made.metadata == alone.metadata
+        levels = pool.picture(each, options).array
+        assert levels.dtype == np.float32
+        np.testing.assert_array_equal(np.rint(levels * 255.0), levels * 255.0)
+
+
+def test_progress_and_cancel(client):
+    seen = []
+    tinted.render((300, 200), cluster=client, progress=seen.append)
+    assert seen == sorted(seen) and seen[-1] == 1.0 and len(seen) >= 3
+    with pytest.raises(Cancelled):
+        tinted.render((300, 200), cluster=client, cancel=lambda: True)
+
+
+def test_another_version_is_refused(client, monkeypatch):
+    monkeypatch.setattr(pools, "__version__", "9.9")
+    with pytest.raises(ClusterError) as caught:
+        tinted.render((8, 8), cluster=WorkerPool(client))
+    worker = next(iter(client.nthreads()))
+    assert str(caught.value).startswith("the worker tcp://127.0.0.1:")
+    assert f"has distal {distal.__version__}, this process 9.9" in str(caught.value)
+    assert worker.startswith("tcp://127.0.0.1:")
+
+
+def test_other_processors_are_told_once(client):
+    told = []
+    pool = WorkerPool(client, tell=told.append)
+    pool._own_level = "sse2"
+    for _ in range(2):
+        tinted.render((8, 8), cluster=pool)
+    assert len(told) == 1
+    assert "this machine with sse2: the last bits of pixels may differ" in told[0]
+
+
+def test_devices_of_workers_and_wrong_clusters(client):
+    with pytest.raises(ValueError, match="workers render on their CPU, not on 'reference'"):
+        tinted.render((8, 8), cluster=client, device="reference")
+    with pytest.raises(TypeError, match=r"cluster is a dask.distributed.Client, not str"):
+        tinted.render((8, 8), cluster="local")
+    assert pool_of(client) is pool_of(client)
+
+
+def test_mistakes_of_a_scene_are_told_here(client):
+    @image
+    def wrong(frame: Frame) -> vec3:
+        return frame.coord
+
+    with pytest.raises(distal.CompileError, match="wrong"):
+        wrong.render((8, 8), cluster=client)
