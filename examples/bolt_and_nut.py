@@ -7,7 +7,7 @@ printed parts need; the second bolt is cut open to show it.
 from distal import Bolt, Box, Camera, MetricThread, Nut, Plane, Scene, Sky, brass, matte, steel
 from distal.lang import slider
 
-down = slider("Nut", 17.0, low=7.0, high=30.0, help="How far below the head the nut is.")
+down = slider("Nut", 17.0, low=12.0, high=30.0, help="How far below the head the nut is.")
 gap = slider("Gap", 0.25, low=0.05, high=0.4, help="Between the two threads, in millimetres.")
 
 STEEL = steel(roughness=0.3)
