@@ -287,6 +287,8 @@ class Operator:
         linear: Whether the value is linear in p if that of the child is.
         turn: For a rigid move or a uniform scale: ``(p, …) -> vec3``, as ``point`` for a unit
             direction p. Chords of the child are those of the result, with ``finish`` for lengths.
+        changes: How much the value changes at most for each unit of a number, by the number's name;
+            of others it is found by intervals where a number differs from place to place.
         approximates: What the operator replaces by simpler pieces, or None.
     """
 
@@ -312,6 +314,7 @@ class Operator:
     local: bool = True
     linear: bool = False
     turn: Func | None = None
+    changes: Mapping[str, float] = field(default_factory=dict)
     approximates: Approximation | None = None
 
     @property

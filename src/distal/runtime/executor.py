@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from distal.devices.cpu import CpuKernel
     from distal.devices.gpu import GpuKernel
     from distal.images.height_map import HeightMap
-    from distal.runtime import fills, function_tapes, heights, sweeps
+    from distal.runtime import fills, function_tapes, heights, number_slopes, sweeps
     from distal.tape import box_tape, proofs
     from distal.tape.interval_rules import Ends
     from distal.tape.proofs import Proof, Refutation
@@ -62,6 +62,7 @@ else:
     heights = LazyModule("distal.runtime.heights")
     box_tape = LazyModule("distal.tape.box_tape")
     proofs = LazyModule("distal.tape.proofs")
+    number_slopes = LazyModule("distal.runtime.number_slopes")
     sweeps = LazyModule("distal.runtime.sweeps")
 
 
@@ -416,6 +417,33 @@ class PythonExecutor(StandardExecutor):
             columns: The values of each of its parameters, one row each; or the two ends of these.
         """
         return sweeps.sweep(self.lower(function, None), columns)
+
+    def added_slope(
+        self,
+        numbers: Composed,
+        shape: Composed,
+        changes: Sequence[float | None],
+        unknown: number_slopes.Unknown,
+        inner: Sequence[number_slopes.Inner],
+        region: tuple[Sequence[float], Sequence[float]],
+    ) -> float:
+        """Return by how much a shape is steeper at most because its numbers differ by place.
+
+        Args:
+            numbers: The numbers, as a function of the point and of unknown values.
+            shape: The shape, as a function of the point, the numbers, the unknown values, and the
+                values of the shapes below it.
+            changes: How much the value changes for each unit of each number, where that is known.
+            unknown: The ends of the components of the unknown values.
+            inner: What is known of the shapes below it.
+            region: The corners of the region.
+
+        Raises:
+            TapeError: No bound is known; the message says why.
+        """
+        lowered = self.lower(numbers, None), self.lower(shape, None)
+        what = number_slopes.VaryingShape(*lowered, changes, unknown, inner)
+        return number_slopes.added_slope(what, *region)
 
     def fill(
         self,

@@ -148,7 +148,8 @@ def sweep(lowered: Lowered, columns: Sequence[Column]) -> list[Ends]:
     module = run_passes(lowered.module, get_target("llvm"), PRECISION, after=_LAST_PASS)
     entry = module.function(module.entry)
     args = [_of_column(column) for column in columns]
-    uniforms = {u.name: _of_uniform(u) for u in module.uniforms if u.origin is not Origin.NUMBER}
+    varying = (u for u in module.uniforms if u.origin is not Origin.NUMBER)
+    uniforms = {u.name: tuple(swept(*ends) for ends in ends_of_uniform(u)) for u in varying}
     try:
         found = followed(module, args, uniforms, buffers_of(module), _IntervalScalars())
     except TapeError:
@@ -165,8 +166,8 @@ def _of_column(column: Column) -> tuple[Scalar, ...]:
     return tuple(map(swept, low.T, high.T))
 
 
-def _of_uniform(uniform: UniformDeclaration) -> tuple[Scalar, ...]:
-    """Return what the values of a parameter or of the time are between."""
+def ends_of_uniform(uniform: UniformDeclaration) -> list[tuple[float, float]]:
+    """Return what each component of a parameter or of the time is between."""
     about: dict[str, Any] = dict(uniform.interface)
     low, high = about.get("low"), about.get("high")
     if uniform.type is INT and about.get("options"):
@@ -174,4 +175,4 @@ def _of_uniform(uniform: UniformDeclaration) -> tuple[Scalar, ...]:
     if uniform.type not in (FLOAT, INT):
         low = high = None
     ends = -np.inf if low is None else low, np.inf if high is None else high
-    return (swept(*ends),) * component_count(uniform.type)
+    return [ends] * component_count(uniform.type)

@@ -11,18 +11,19 @@ Source: L. B. Rall, "Automatic Differentiation" (1981).
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from distal.tape.operations import ELEMENTARY, NUMBER, OPERATIONS
-from distal.tape.tape import Tape
 
 Doubles: TypeAlias = NDArray[np.float64]
 
 # Operations that may jump. A slope says nothing of a function that jumps.
-JUMPS: Final = ("floor", "ceil", "round", "trunc", "less", "less_equal", "equal", "select")
+STEPS: Final = ("floor", "ceil", "round", "trunc")
+JUMPS: Final = (*STEPS, "less", "less_equal", "equal", "select")
 # Elementary functions whose derivative has a rule here.
 _RULES: Final = (
     *("sin", "cos", "tan", "asin", "acos", "atan", "atan2"),
@@ -183,10 +184,21 @@ class Derivatives:
     smaller than what the intervals allow.
     """
 
-    def __init__(self, tape: Tape, values: Doubles, size: int) -> None:
-        self._rows = tape.operations.tolist()
+    def __init__(
+        self, rows: Sequence[Sequence[int]], values: Doubles, size: int, axes: Mapping[int, int]
+    ) -> None:
+        """Take the values of a tape's operations.
+
+        Args:
+            rows: The operations, as a tape has them.
+            values: The intervals of their values, (operations, 2, cells).
+            size: The number of axes.
+            axes: The axes of the inputs, by operation.
+        """
+        self._rows = rows
         self._values = values
         self._size = size
+        self._axes = axes
         self._intervals: list[Doubles] = []
         self._lengths: list[Doubles] = []
 
@@ -195,6 +207,19 @@ class Derivatives:
 
         The lower one is 0, the upper one is not finite, if none is known.
         """
+        self._follow()
+        low, high = self._intervals[-1]
+        least = np.maximum(np.maximum(low, -high), 0.0)
+        with np.errstate(over="ignore"):
+            below = np.sqrt((least**2).sum(axis=0))
+        return np.nan_to_num(below, posinf=0.0), self._lengths[-1]
+
+    def of(self, results: Sequence[int]) -> list[tuple[Doubles, Doubles]]:
+        """Return the intervals of some operations' derivatives, and bounds on their lengths."""
+        self._follow()
+        return [(self._intervals[i], self._lengths[i]) for i in results]
+
+    def _follow(self) -> None:
         with np.errstate(all="ignore"):
             for index, (number, _, *operands, _) in enumerate(self._rows):
                 row = OPERATIONS[number]
@@ -204,25 +229,22 @@ class Derivatives:
                 self._intervals.append(interval)
                 # A bound that is not known is no bound.
                 self._lengths.append(np.fmin(np.where(np.isnan(length), np.inf, length), of_axes))
-        low, high = self._intervals[-1]
-        least = np.maximum(np.maximum(low, -high), 0.0)
-        with np.errstate(over="ignore"):
-            below = np.sqrt((least**2).sum(axis=0))
-        return np.nan_to_num(below, posinf=0.0), self._lengths[-1]
 
     def _derivative(self, name: str, operands: list[int], index: int) -> tuple[Doubles, Doubles]:
         """Return the intervals of an operation's derivatives, and a bound on their length."""
         shape = (2, self._size, self._values.shape[-1])
         if not operands:
             interval = np.zeros(shape)
-            if name in ("x", "y", "z") and "xyz".index(name) < self._size:
-                interval[:, "xyz".index(name)] = 1.0
+            if index in self._axes:
+                interval[:, self._axes[index]] = 1.0
             return interval, np.sqrt((interval[0] ** 2).sum(axis=0))
         a = operands[0]
         da, la = self._intervals[a], self._lengths[a]
         if len(operands) == 1:
             if name == "sqrt":
                 return self._root(a, index)
+            if name in STEPS:
+                return np.zeros(shape), np.zeros(shape[-1])
             if name in _INVERSE:
                 terms = self._terms(self._clamped(a), _INVERSE[name])
                 if terms is not None:
@@ -258,6 +280,14 @@ class Derivatives:
                 factors = power_factors(va, vb, lb) if name == "pow" else angle_factors(va, vb)
                 interval = _times(factors[0], da) + _times(factors[1], db)
                 return interval, _largest(factors[0]) * la + _largest(factors[1]) * lb
+            case "select":  # of a value without jumps: ``JUMPS`` are refused for others
+                never, always = va[1] < 0.5, va[0] > 0.5
+                dc, lc = self._intervals[operands[2]], self._lengths[operands[2]]
+                interval = np.where(always, db, np.where(never, dc, _hull(db, dc)))
+                length = np.where(always, lb, np.where(never, lc, np.maximum(lb, lc)))
+                return interval, length
+            case "less" | "less_equal" | "equal":
+                return np.zeros(shape), np.zeros(shape[-1])
             case _:
                 return np.full(shape, np.nan), np.full(shape[-1], np.nan)
 

@@ -24,6 +24,7 @@ from distal.tape.runtime import TapeProgram
 from distal.tape.tape import Tape, TapeError
 
 _CELLS: Final = {2: 48, 3: 14}  # along each side of the region, at first
+_AXES: Final = {"x": 0, "y": 1, "z": 2}
 _CHUNK: Final = 256  # cells that are looked at together, to limit the memory
 _ROUNDS: Final = 5  # of cutting the cells that decide
 _MOST_CUT: Final = 2048  # cells that are cut in a round
@@ -144,7 +145,10 @@ class _ProvedCells:
     """
 
     def __init__(self, program: TapeProgram, size: int) -> None:
+        rows = program.tape.operations.tolist()
+        names = [OPERATIONS[row[0]].name for row in rows]
         self._program = program
+        self._rows = rows, {i: _AXES[n] for i, n in enumerate(names) if _AXES.get(n, size) < size}
         self._size = size
         self.ends: Doubles = np.empty((2, 0, size))
         self.slopes: Doubles = np.empty(0)
@@ -162,7 +166,8 @@ class _ProvedCells:
             # If an end is not finite, nothing is known of the value.
             known: NDArray[np.bool_] = np.logical_and.reduce(np.isfinite(values), axis=1)
             values = np.where(known[:, None], values, np.nan)
-            below, above = Derivatives(self._program.tape, values, self._size).bounds()
+            rows, axes = self._rows
+            below, above = Derivatives(rows, values, self._size, axes).bounds()
             least.append(below)
             slopes.append(above)
             lowest.append(np.where(known[-1], values[-1, 0], -np.inf))

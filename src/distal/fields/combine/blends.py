@@ -35,6 +35,7 @@ class Blend:
         local: Whether it is the hard minimum if the two distances differ enough.
         steep: Whether its slope may be sqrt(slope_a^2 + slope_b^2) instead of the larger of the
             two.
+        change: How much the value changes at most for each unit of ``k``.
         width: It equals the hard minimum where the distances differ by ``width * k`` or more. None
             if the difference alone does not say where.
         intersection: A separate intersection, if it does not follow from the union.
@@ -45,6 +46,7 @@ class Blend:
     counted: bool = False
     local: bool = True
     steep: bool = False
+    change: float = 1.0
     width: float | None = None
     intersection: Func[..., Any] | None = None
 
@@ -55,7 +57,7 @@ BLENDS: Final[dict[str, Blend]] = {
     "quartic": Blend(smooth.quartic, smooth.quartic_mix, width=16.0 / 3.0),
     "circular": Blend(smooth.circular, smooth.circular_mix, width=1.0 / smooth.CORNER),
     "circular_geometric": Blend(
-        smooth.circular_geometric, smooth.circular_geometric_mix, steep=True
+        smooth.circular_geometric, smooth.circular_geometric_mix, steep=True, change=3.5
     ),
     "exponential": Blend(smooth.exponential, smooth.exponential_mix, local=False),
     "root": Blend(smooth.root, smooth.root_mix, local=False),
@@ -67,6 +69,7 @@ BLENDS: Final[dict[str, Blend]] = {
         edge_profiles.counted_edge_mix,
         counted=True,
         steep=True,
+        change=2.0,
         intersection=edge_profiles.columns_intersection,
     ),
     "stairs": Blend(edge_profiles.stairs, edge_profiles.counted_edge_mix, counted=True, width=1.0),
@@ -226,6 +229,7 @@ def _declare(name: str, blend: Blend) -> None:
             limits={"k": Limit.NOT_NEGATIVE},
             requires=_count_requirement if counted else None,
             local=blend.local,
+            changes={"k": blend.change},
             **row,
         )
 

@@ -8,6 +8,7 @@ all copies would be like the first.
 from __future__ import annotations
 
 from distal.fields.guarantees import Operator
+from distal.lang.places import CELL
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
 from distal.scene.tree.varying import VaryingNumber
@@ -27,14 +28,15 @@ def check_cells(root: Node) -> None:
             continue
         seen.add((id(node), inside))
         for material in (node.material, node.cut_material):
-            if material is not None and not inside and "cell" in material.uses and _repeats(node):
+            if material is not None and not inside and CELL in material.uses and _repeats(node):
                 refuse(
                     "this material tells cells apart, but it paints what is repeated already",
                     "paint first, then repeat: shape.paint(by_cell()).repeat(2.0)",
                     material.call.place or node.place,
                 )
         for name, value in node.constants.items():
-            if isinstance(value, VaryingNumber) and not inside and _repeats(node):
+            varies = isinstance(value, VaryingNumber) and CELL in value.uses
+            if varies and not inside and _repeats(node):
                 refuse(
                     f"'{name} of {node.rule.name}' depends on the cell, but stands after the "
                     "repetition",

@@ -26,6 +26,7 @@ from distal.ir.build import number as constant_number
 from distal.ir.nodes import Call, Expr, FunctionRef, Param, Read, Return
 from distal.ir.types import FLOAT, VEC2, VEC3, FunctionType, Struct
 from distal.lang.functions import Func
+from distal.lang.places import CELL
 from distal.lang.resources import Buffer, TextureValue
 from distal.scene.lowering.bounds import BoundsComposer
 from distal.scene.lowering.part_functions import PartFunctions
@@ -94,7 +95,8 @@ class ShapeComposer:
         found = self._uses_cell.get(id(node))
         if found is None:
             names = {n for f in rule_functions(node) for n in self.assembly.parameter_names(f)}
-            varies = any(isinstance(v, VaryingNumber) for v in node.constants.values())
+            numbers = (v for v in node.constants.values() if isinstance(v, VaryingNumber))
+            varies = any(CELL in number.uses for number in numbers)
             found = varies or "cell" in names or any(map(self.uses_cell, node.children))
             self._uses_cell[id(node)] = found
         return found
@@ -369,7 +371,7 @@ class ShapeComposer:
 
         Arguments as for ``distance``.
         """
-        with self.values.in_cell(cell):
+        with self.values.at(cell, p):
             own, shares = self.values.split(node, values)
             given = {**own, "p": p, "cell": cell}
             taken = {n for f in rule_functions(node) for n in self.assembly.parameter_names(f)}

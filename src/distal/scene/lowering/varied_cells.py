@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from itertools import product
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from distal.diagnostics import Span
 from distal.fields.guarantees import ENDLESS, UNBOUNDED, Operator
@@ -20,10 +20,10 @@ from distal.fields.repeat.grid import REPEAT_MIRRORED
 from distal.fields.repeat.varied import BOUNDS_IN_CELLS, IN_CELLS
 from distal.frontend import Assembly
 from distal.ir.build import field
-from distal.ir.nodes import Construct, Param, Read, Return
-from distal.ir.types import FLOAT, VEC3, Kind, Type, Vector, component_count, tuple_type
+from distal.ir.nodes import Construct, Expr, Param, Read, Return
+from distal.ir.types import FLOAT, VEC2, VEC3, Kind, Type, Vector, component_count, tuple_type
 from distal.lang.composed import Composed
-from distal.lang.places import CELL, random_numbers_in
+from distal.lang.places import CELL, POINT, random_numbers_in
 from distal.lang.runtime_access import executor
 from distal.packages import PackageError, imported
 from distal.scene.lowering.bounds import BoundsComposer, packed_types
@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
+
+Spans: TypeAlias = "Sequence[tuple[float, float]]"
 
 # The most cells that are each looked at by themselves.
 _MOST_CELLS: Final = 4096
@@ -80,21 +82,11 @@ def with_bounds_of_cells(
             "numbers that depend on the cell need NumPy, for the box around all cells", None, place
         )
     around = Node(rule, rule.lies_flat(child.flat), (child,), numbers, constants, place)
-    function = _BoundsInCells(child, varied)
-    ends = executor().sweep(function, (_cells(around, np), *function.random_columns(np)))
-    spans = [(_least(np, low), _most(np, high)) for low, high in ends]
-    count = sum(component_count(type) for type in packed_types(child.flat))
-    _check(varied, spans[count:], rule, place)
-    found = _bounds(spans[:count], flat=child.flat)
+    function = BoundsOfVaried(child, varied)
+    bounds, of_numbers = function.swept(np, _cells(around, np))
+    refuse_beyond(varied, of_numbers, f"in the cells of {rule.name}")
+    found = _bounds(bounds, flat=child.flat)
     return Node(IN_CELLS, child.flat, (child,), found, place=child.place)
-
-
-def _least(np: Any, ends: Any) -> float:
-    return float(np.min(ends))
-
-
-def _most(np: Any, ends: Any) -> float:
-    return float(np.max(ends))
 
 
 def _cells(around: Node, np: Any) -> Any:
@@ -104,8 +96,8 @@ def _cells(around: Node, np: Any) -> Any:
     assert isinstance(rule, Operator)
     if rule.cells is not None:
         ends = executor().sweep(_CellsOf(around), ())
-        low = [_least(np, end) for end, _ in ends[:3]]
-        high = [_most(np, end) for _, end in ends[3:]]
+        low = [float(np.min(end)) for end, _ in ends[:3]]
+        high = [float(np.max(end)) for _, end in ends[3:]]
     low = [a if abs(a) < ENDLESS else -math.inf for a in low]
     high = [b if abs(b) < ENDLESS else math.inf for b in high]
     sides = [b - a + 1.0 for a, b in zip(low, high, strict=True)]
@@ -115,10 +107,17 @@ def _cells(around: Node, np: Any) -> Any:
     return np.array([low]), np.array([high])
 
 
-def _check(
-    varied: Sequence[VariedNumber], spans: Sequence[tuple[float, float]], rule: Operator, place: Any
-) -> None:
-    """Refuse numbers that are beyond their limit in some cell, or may be infinite."""
+def refuse_beyond(varied: Sequence[VariedNumber], spans: Spans, where: str) -> None:
+    """Refuse numbers that are beyond their limit somewhere, or may be infinite.
+
+    Args:
+        varied: The numbers.
+        spans: The ends of each of their components.
+        where: Where the numbers are between these ends.
+
+    Raises:
+        SceneValueError: At the line of the shape with the number.
+    """
     at = 0
     for each in varied:
         type = each.number.number.type
@@ -129,7 +128,7 @@ def _check(
             for word, end in (("down", low), ("up", high)):
                 if not abs(end) < ENDLESS:
                     refuse(
-                        f"'{each.label}' has no known limit in the cells of {rule.name}",
+                        f"'{each.label}' has no known limit {where}",
                         "limit it: clamp(…, low, high) of distal.lang, or % for a pattern that "
                         "returns; a parameter needs low= and high=",
                         each.node.place,
@@ -137,8 +136,7 @@ def _check(
                 wrong = complaint(end, each.limit)
                 if wrong is not None:
                     refuse(
-                        f"'{each.label}' must be {wrong}; in the cells of {rule.name} it goes "
-                        f"{word} to {end:.6g}",
+                        f"'{each.label}' must be {wrong}; {where} it goes {word} to {end:.6g}",
                         None,
                         each.node.place,
                     )
@@ -149,7 +147,7 @@ def _is_float(type: Type) -> bool:
     return type is FLOAT or (isinstance(type, Vector) and type.kind is Kind.FLOAT)
 
 
-def _bounds(spans: Sequence[tuple[float, float]], *, flat: bool) -> dict[str, Number]:
+def _bounds(spans: Spans, *, flat: bool) -> dict[str, Number]:
     """Return the numbers of the operator ``IN_CELLS`` from the ends of the packed bounds."""
     found: dict[str, Number] = {}
     at = 0
@@ -166,28 +164,47 @@ def _bounded(end: float) -> float:
     return end if abs(end) < UNBOUNDED else math.copysign(UNBOUNDED, end)
 
 
-class _BoundsInCells(Composed):
-    """The bounds of a shape and its numbers that differ, as a function of the cell."""
+class BoundsOfVaried(Composed):
+    """The bounds of a shape and its numbers that differ, as a function of the cell and the point.
 
-    def __init__(self, node: Node, varied: Sequence[VariedNumber]) -> None:
-        self.name = f"bounds of {node.rule.name} in its cells"
+    Args:
+        node: The shape.
+        varied: The numbers.
+        in_place: Whether the numbers may depend on the point.
+    """
+
+    def __init__(
+        self, node: Node, varied: Sequence[VariedNumber], *, in_place: bool = False
+    ) -> None:
+        self.name = f"bounds of {node.rule.name}"
         self._node, self._varied = node, varied
         expressions = (each.number.expression for each in varied)
         self._random = sorted(frozenset().union(*map(random_numbers_in, expressions)))
+        point = ((POINT, VEC2 if node.flat else VEC3),) if in_place else ()
         random = ((f"random_{i}", FLOAT) for i in range(len(self._random)))
-        self.signature = ((CELL, VEC3), *random)
+        self.signature = ((CELL, VEC3), *point, *random)
         numbers = (each.number.number.type for each in varied)
         self.result: Type = tuple_type((*packed_types(node.flat), *numbers))
 
-    def random_columns(self, np: Any) -> Sequence[Any]:
-        """Return the ends of the parameters that stand for random numbers."""
-        return ((np.zeros(1), np.ones(1)),) * len(self._random)
+    def swept(self, np: Any, *columns: Any) -> tuple[Spans, Spans]:
+        """Return the ends of the bounds, and those of the numbers.
+
+        Args:
+            np: NumPy.
+            columns: The cells, and the points.
+        """
+        random = ((np.zeros(1), np.ones(1)),) * len(self._random)
+        ends = executor().sweep(self, (*columns, *random))
+        spans = [(float(np.min(low)), float(np.max(high))) for low, high in ends]
+        count = sum(map(component_count, packed_types(self._node.flat)))
+        return spans[:count], spans[count:]
 
     def compose(self, assembly: Assembly) -> str:
         """Add the function to the program, and return its name."""
         params = [Param(name, type) for name, type in self.signature]
-        cell, *random = (Read(param.name, param.type) for param in params)
-        site = {CELL: cell, **dict(zip(self._random, random, strict=True))}
+        names = (CELL, *((POINT,) if POINT in dict(self.signature) else ()), *self._random)
+        reads = (Read(param.name, param.type) for param in params)
+        site: dict[str, Expr] = dict(zip(names, reads, strict=True))
         values = Values(assembly, site)
         body = StatementList(taken={param.name for param in params})
         found = BoundsComposer(values).of(body, self._node, values.all(self._node))

@@ -19,7 +19,7 @@ from distal.frontend.signatures.signatures import read_signature
 from distal.ir.types import FLOAT, VEC2, VEC3, Vector
 from distal.lang.functions import Func
 from distal.lang.lazy_module import LazyModule
-from distal.lang.places import CELL
+from distal.lang.places import PLACES
 from distal.lang.resources import Texture2D
 from distal.scene.tree.arguments import RESERVED, RESERVED_OF_SHAPES, arguments
 from distal.scene.tree.calls import result_of
@@ -34,7 +34,7 @@ else:
 
 
 # What numbers of shapes may depend on.
-_VARIES: Final = frozenset((CELL,))
+_VARIES: Final = PLACES
 # The functions that normalize, by ``flat`` and by whether there are bounds.
 _NORMALIZED: Final[Mapping[tuple[bool, bool], Func]] = {
     (False, False): normalizing.normalized,

@@ -21,7 +21,7 @@ from distal.ir.nodes import Call, Param, Read, Return
 from distal.ir.types import FLOAT, INT, VEC3, Type
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
-from distal.lang.places import CELL
+from distal.lang.places import PLACES
 from distal.lang.presentable import Presentable
 from distal.lang.runtime_access import executor, viewing
 from distal.scene.lowering.derived import BoundsOf, GradientOf
@@ -29,6 +29,7 @@ from distal.scene.lowering.parts.table import rolled_for
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.lowering.slope_limit import check_gradient, check_slope
 from distal.scene.lowering.varied_cells import with_bounds_of_cells
+from distal.scene.lowering.varied_places import with_bounds_of_places
 from distal.scene.objects.binding import bound, own_node
 from distal.scene.objects.materials import as_material
 from distal.scene.objects.other_names import instead
@@ -89,7 +90,7 @@ class BaseShape(Composed, Presentable):
                 "repeat, array and mirror show many copies for the price of one",
                 node.place,
             )
-        self.__dict__["node"] = node
+        self.__dict__["node"] = with_bounds_of_places(node)
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a {type(self).__name__} does not change; make another")
@@ -313,7 +314,7 @@ class BaseShape(Composed, Presentable):
         if rule.repeats:
             own = with_bounds_of_cells(own, rule, numbers, constants, place)
         children = (own, *(other.node for other in others))
-        node = Node(rule, flat, children, numbers, constants, place)
+        node = with_bounds_of_places(Node(rule, flat, children, numbers, constants, place))
         check_slope(node)
         return self._of(node)
 
@@ -613,6 +614,6 @@ def joining(
         hint = did_you_mean(min(unknown), {"smooth", "blend", *numbered})
         refuse_kind(f"a {blend} {kind} has no '{min(unknown)}'", hint, place)
     limit = rule.limits.get("k", Limit.ANY)
-    number(smooth, Asked("smooth", kind, FLOAT, limit, place=place, varies=frozenset((CELL,))))
+    number(smooth, Asked("smooth", kind, FLOAT, limit, place=place, varies=PLACES))
     numbers, constants = bound(rule, (smooth,), extra, place)
     return rule, numbers, constants

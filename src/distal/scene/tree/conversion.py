@@ -288,7 +288,7 @@ def _check_places(held: Expression, asked: Asked) -> None:
             )
         refuse(
             f"'{asked.label}' cannot depend on the place",
-            "numbers of materials may; a shape takes displace, or Shape.from_function",
+            "numbers of shapes, of operators and of materials may",
             asked.place,
         )
 

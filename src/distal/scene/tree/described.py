@@ -11,6 +11,7 @@ from typing import Final
 from distal.fields.repeat.varied import IN_CELLS
 from distal.scene.tree.node import Node
 from distal.scene.tree.shown_numbers import listed, placed
+from distal.scene.tree.varying import holds
 
 _MOST_CHILDREN: Final = 4
 _DEEPEST: Final = 3
@@ -31,7 +32,7 @@ def described(kind: str, node: Node) -> str:
 
 
 def _of(node: Node, depth: int) -> str:
-    if node.rule is IN_CELLS:
+    if node.rule is IN_CELLS or holds(node.rule):
         return _of(node.children[0], depth)
     numbers = listed(node.numbers, node.constants)
     if not node.children:

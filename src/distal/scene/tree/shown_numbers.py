@@ -13,6 +13,7 @@ from typing import Any, Final
 from distal.diagnostics import Span
 from distal.fields.guarantees import ended
 from distal.lang.expressions import Expression
+from distal.lang.places import POINT
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.varying import VaryingNumber
 
@@ -33,7 +34,7 @@ def listed(values: Mapping[str, Any], constants: Mapping[str, Any] | None = None
         if isinstance(value, bool | int | float)
     ]
     shown += [
-        f"{name}=by cell"
+        f"{name}=by {'place' if POINT in value.uses else 'cell'}"
         for name, value in (constants or {}).items()
         if isinstance(value, VaryingNumber)
     ]

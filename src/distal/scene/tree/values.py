@@ -16,7 +16,7 @@ from distal.fields.guarantees import Operator
 from distal.frontend import Assembly
 from distal.ir.nodes import Const, Expr, Let, Read, Stmt
 from distal.ir.types import BOOL, INT, Type
-from distal.lang.places import CELL
+from distal.lang.places import CELL, POINT
 from distal.lang.resources import Buffer, TextureValue
 from distal.scene.tree.conversion import NO_VALUES
 from distal.scene.tree.node import Node, Rule
@@ -91,10 +91,10 @@ class Values:
         self._alive: list[Node] = []  # keys are ids, so the nodes must stay alive
 
     @contextmanager
-    def in_cell(self, cell: Expr) -> Iterator[None]:
-        """Emit numbers that depend on the cell for this one, within the block."""
+    def at(self, cell: Expr, p: Expr) -> Iterator[None]:
+        """Emit numbers that depend on the cell or the place for these, within the block."""
         before = self._site
-        self._site = {CELL: cell}
+        self._site = {CELL: cell, POINT: p}
         try:
             yield
         finally:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Final, Protocol
 
 from distal.fields.guarantees import Limit, Operator
+from distal.fields.place.within import WITHIN, WITHIN_FLAT
 from distal.frontend import Assembly
 from distal.ir.build import integer
 from distal.ir.build import number as constant_number
@@ -23,7 +24,7 @@ from distal.lang.places import CELL, POINT, at_place, places_in
 from distal.lang.resources import Buffer, TextureValue
 from distal.render.patterns import cell_number
 from distal.scene.tree.conversion import HostNumber, Number
-from distal.scene.tree.node import Node
+from distal.scene.tree.node import Node, Rule
 
 # With the id of a number: the key in ``Assembly.made`` of the expression that reads its column.
 COLUMN: Final = "column"
@@ -74,10 +75,9 @@ class VaryingNumber:
         """Emit the number at a place; ``site`` gives the cell and the point."""
         assembly = composer.assembly
         found = expression_of(assembly, self.number, self.name)
-        known = {CELL: ZERO_CELL, **site}
-        if POINT in site:
-            p = site[POINT]
-            known[POINT] = Compose((p, constant_number(0.0)), VEC3) if p.type is VEC2 else p
+        known = {CELL: ZERO_CELL, POINT: ZERO_CELL, **site}
+        p = known[POINT]
+        known[POINT] = Compose((p, constant_number(0.0)), VEC3) if p.type is VEC2 else p
 
         def random(cell: Expr, seed: int) -> Expr:
             given = {"cell": cell, "seed": constant_number(float(seed)), "salt": integer(_SALT)}
@@ -177,8 +177,16 @@ class VariedNumber:
         return self.node.rule.limits.get(self.number.name, Limit.ANY)
 
 
+def holds(rule: Rule) -> bool:
+    """Return whether an operator holds the bounds of a shape whose numbers differ by place."""
+    return rule in (WITHIN, WITHIN_FLAT)
+
+
 def varied_in(root: Node) -> list[VariedNumber]:
-    """Return the numbers of a tree that differ in the cells of a repetition around it."""
+    """Return the numbers of a tree that differ in the cells of a repetition around it.
+
+    Below an operator that holds the bounds of all places (``varied_places``) they are its matter.
+    """
     return root.derived("numbers of cells", lambda: list(_varied_in(root)))
 
 
@@ -194,5 +202,5 @@ def _varied_in(root: Node) -> Iterator[VariedNumber]:
             if isinstance(value, VaryingNumber):
                 yield VariedNumber(node, value)
         # What is below a repetition has the cells of that one.
-        if not (isinstance(node.rule, Operator) and node.rule.repeats):
+        if not (isinstance(node.rule, Operator) and (node.rule.repeats or holds(node.rule))):
             stack.extend(node.children)
