@@ -50,6 +50,7 @@ from distal import (
     noise,
     palette,
     pattern,
+    place,
     plastic,
     radial_gradient,
     stripes,
@@ -94,7 +95,7 @@ def row(*shapes):
 
 def plain():
     """Blends, cuts, repetitions, deformations, patterns; four kinds of lights, fog."""
-    bar = Box(0.7, 1.4, 0.7).twist(0.9).round(0.05).paint(stripes())
+    bar = Box(0.7, 1.4, 0.7).twist(0.9).round(0.05 + 0.03 * np.sin(9.0 * place.y)).paint(stripes())
     melted = (
         Sphere(0.5)
         .paint("#c33")
@@ -104,7 +105,12 @@ def plain():
     field = Capsule().scale(0.3).paint(by_cell()).repeat(0.5, 0.0, 0.5, count=(7, 1, 3))
     own = Shape.from_function(lumpy, slope=2.0, depth=0.05).paint(pattern(by_height))
     lifted = Hexagon().extrude(0.4).rotate(x=1.0).paint(gradient("#024", "#fa5"))
-    ring = Circle(0.2).translate(0.5, 0).revolve().paint(noise("#fff", "#06c"))
+    ring = (
+        Circle(0.2 - 0.04 * np.sin(30.0 * place.x))
+        .translate(0.5, 0)
+        .revolve()
+        .paint(noise("#fff", "#06c"))
+    )
     front = [lifted.translate(-1.2, 0.2, 1.4), ring.translate(1.2, -0.1, 1.4)]
     ground = [field.translate(0, -0.7, -1.6), Plane(-1.0).paint(checker())]
     return Scene(

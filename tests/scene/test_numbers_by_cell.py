@@ -266,9 +266,9 @@ WRONG = [
         "numbers of shapes that are repeated, and of their materials, may",
     ),
     (
-        lambda: Sphere(place.x),
-        "'radius of Sphere' cannot depend on the place",
-        "numbers of materials may; a shape takes displace, or Shape.from_function",
+        lambda: Camera(fov=1.0 + 0.1 * place.x),
+        "'fov of Camera' cannot depend on the place",
+        "numbers of shapes, of operators and of materials may",
     ),
     (
         lambda: Scene(Box(0.4).repeat(1.0).rotate(y=cell.x)),

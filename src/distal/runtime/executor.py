@@ -426,6 +426,8 @@ class PythonExecutor(StandardExecutor):
         unknown: number_slopes.Unknown,
         inner: Sequence[number_slopes.Inner],
         region: tuple[Sequence[float], Sequence[float]],
+        *,
+        own: bool,
     ) -> float:
         """Return by how much a shape is steeper at most because its numbers differ by place.
 
@@ -437,12 +439,13 @@ class PythonExecutor(StandardExecutor):
             unknown: The ends of the components of the unknown values.
             inner: What is known of the shapes below it.
             region: The corners of the region.
+            own: Whether the shape is a function of the author.
 
         Raises:
             TapeError: No bound is known; the message says why.
         """
         lowered = self.lower(numbers, None), self.lower(shape, None)
-        what = number_slopes.VaryingShape(*lowered, changes, unknown, inner)
+        what = number_slopes.VaryingShape(*lowered, changes, unknown, inner, own)
         return number_slopes.added_slope(what, *region)
 
     def fill(

@@ -60,6 +60,8 @@ class VaryingShape:
             not known.
         unknown: The ends of the components of the unknown values.
         inner: The inner shapes.
+        own: Whether the shape is a function of the author, of which nothing is known; a shape of
+            the library has no jumps.
     """
 
     numbers: Lowered
@@ -67,6 +69,7 @@ class VaryingShape:
     changes: Sequence[float | None]
     unknown: Unknown
     inner: Sequence[Inner]
+    own: bool
 
 
 def added_slope(what: VaryingShape, low: Sequence[float], high: Sequence[float]) -> float:
@@ -105,6 +108,9 @@ class _Cells:
         self._what, self._size = what, size
         self._numbers, self._shape = _recorded(what.numbers), _recorded(what.shape)
         inputs = self._shape.inputs
+        self._numbers.refuse_jumps()
+        if what.own:
+            self._shape.refuse_jumps()
         # A point moves no inner shape's value by more than its slope, wherever it is.
         reads = set(self._numbers.reads(0))
         self._cut = sorted(reads if what.inner else reads | {*self._shape.reads(0)})

@@ -259,6 +259,8 @@ class Derivatives:
         va, vb = self._values[a], self._values[b]
         match name:
             case "add":
+                if self._is_of_a_box(a, b) or self._is_of_a_box(b, a):
+                    return _hull(da, db), np.maximum(la, lb)
                 return da + db, la + lb
             case "sub":
                 return _minus(da, db), la + lb
@@ -317,6 +319,34 @@ class Derivatives:
         low = np.fmax(plain[0], -length)
         high = np.fmin(plain[1], length)
         return np.stack([low, high]), length
+
+    def _is_of_a_box(self, outer: int, inner: int) -> bool:
+        """Return whether of ``length(max(t, 0))`` and ``min(max(t), 0)`` one is 0 everywhere.
+
+        Then the derivative of their sum is that of one of them.
+        """
+        number, _, first, limit, *_ = self._rows[inner]
+        if self._rows[outer][0] != NUMBER["sqrt"] or number != NUMBER["min"]:
+            return False
+        terms = self._terms(self._rows[outer][2], "square")
+        if terms is None or not self._is_zero(limit):
+            return False
+        largest = self._leaves(first)
+        for term in terms:
+            name, _, part, floor, *_ = self._rows[term]
+            is_positive_part = name == NUMBER["max"] and self._is_zero(floor)
+            if not self._is_zero(term) and not (is_positive_part and part in largest):
+                return False
+        return True
+
+    def _leaves(self, value: int) -> list[int]:
+        """Return what a value is the largest of."""
+        number, _, a, b, *_ = self._rows[value]
+        return [*self._leaves(a), *self._leaves(b)] if number == NUMBER["max"] else [value]
+
+    def _is_zero(self, value: int) -> bool:
+        """Return whether a value is the constant 0."""
+        return self._rows[value][0] == NUMBER["const"] and not self._values[value].any()
 
     def _clamped(self, value: int) -> int:
         """Return what a value is the larger one of, beside a constant; else the value."""

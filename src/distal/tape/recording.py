@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 
 from distal.ir.nodes import Module
 from distal.ir.types import Type, component_count
-from distal.tape.derivative_bounds import Derivatives
+from distal.tape.derivative_bounds import JUMPS, Derivatives
 from distal.tape.from_ir import PRECISION, followed
 from distal.tape.interval_rules import Ends, interval_of
 from distal.tape.operations import NUMBER, OPERATIONS
 from distal.tape.scalars import Scalar, Scalars, Varying
+from distal.tape.tape import TapeError
 
 Doubles: TypeAlias = NDArray[np.float64]
 _Row: TypeAlias = tuple[int, int, int, int]
@@ -127,6 +128,16 @@ class Recording:
                 held.append(own)
         ends = [[np.broadcast_to(end, (count,)) for end in pair] for pair in held]
         return np.array(ends, np.float64)
+
+    def refuse_jumps(self) -> None:
+        """Refuse a function that may jump: its derivatives say nothing of its slope.
+
+        Raises:
+            TapeError: It may jump.
+        """
+        names = {OPERATIONS[number].name for number, *_ in self._rows}
+        if jumps := sorted(names & {*JUMPS}):
+            raise TapeError(f"it may jump: it uses {jumps[0]}")
 
     def reads(self, parameter: int) -> list[int]:
         """Return which components of a parameter the results depend on."""

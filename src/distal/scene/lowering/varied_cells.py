@@ -107,13 +107,19 @@ def _cells(around: Node, np: Any) -> Any:
     return np.array([low]), np.array([high])
 
 
-def refuse_beyond(varied: Sequence[VariedNumber], spans: Spans, where: str) -> None:
+def refuse_beyond(
+    varied: Sequence[VariedNumber],
+    spans: Spans,
+    where: str,
+    instead: str = "% for a pattern that returns",
+) -> None:
     """Refuse numbers that are beyond their limit somewhere, or may be infinite.
 
     Args:
         varied: The numbers.
         spans: The ends of each of their components.
         where: Where the numbers are between these ends.
+        instead: For the hint: another way to limit them than ``clamp``.
 
     Raises:
         SceneValueError: At the line of the shape with the number.
@@ -129,8 +135,8 @@ def refuse_beyond(varied: Sequence[VariedNumber], spans: Spans, where: str) -> N
                 if not abs(end) < ENDLESS:
                     refuse(
                         f"'{each.label}' has no known limit {where}",
-                        "limit it: clamp(…, low, high) of distal.lang, or % for a pattern that "
-                        "returns; a parameter needs low= and high=",
+                        f"limit it: clamp(…, low, high) of distal.lang, or {instead}; a parameter "
+                        "needs low= and high=",
                         each.node.place,
                     )
                 wrong = complaint(end, each.limit)

@@ -15,17 +15,18 @@ import math
 from collections.abc import Sequence
 from typing import Any, Final, NoReturn, TypeAlias
 
+from distal.fields.boxes import given_slope
 from distal.fields.guarantees import ENDLESS, UNBOUNDED, Operator, Primitive
 from distal.fields.place.within import WITHIN, WITHIN_FLAT
 from distal.frontend import Assembly
 from distal.ir.build import field
 from distal.ir.nodes import Construct, Expr, Param, Read, Return
-from distal.ir.types import FLOAT, VEC2, VEC3, Struct, Type, component_count, tuple_type
+from distal.ir.types import FLOAT, VEC2, VEC3, Struct, Type, tuple_type
 from distal.lang.composed import Composed
 from distal.lang.places import CELL, POINT, random_numbers_in
 from distal.lang.runtime_access import executor
 from distal.packages import PackageError, imported
-from distal.scene.lowering.bounds import BoundsComposer, packed_types
+from distal.scene.lowering.bounds import BoundsComposer
 from distal.scene.lowering.varied_cells import BoundsOfVaried, refuse_beyond
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.errors import refuse
@@ -84,9 +85,7 @@ def with_bounds_of_places(node: Node) -> Node:
     return Node(around, node.flat, (node,), numbers, place=node.place)
 
 
-def _box(
-    node: Node, varied: Sequence[VariedNumber], np: Any
-) -> tuple[Corner, Corner, float]:
+def _box(node: Node, varied: Sequence[VariedNumber], np: Any) -> tuple[Corner, Corner, float]:
     """Return the box of a shape, and a bound on the slope with constant numbers."""
     size = 2 if node.flat else 3
     function = BoundsOfVaried(node, varied, in_place=True)
@@ -102,7 +101,7 @@ def _box(
             break
     in_cells = any(CELL in each.number.uses for each in varied)
     where = "where the shape may be, in any cell" if in_cells else "where the shape may be"
-    refuse_beyond(varied, of_numbers, where)
+    refuse_beyond(varied, of_numbers, where, "a wave: sin of distal.lang")
     corners = tuple(
         tuple(min(max(end, -UNBOUNDED), UNBOUNDED) for end in corner) for corner in (low, high)
     )
@@ -139,9 +138,11 @@ def _added_slope(
     numbers, shape = NumbersInPlace(node, own), ShapeOfNumbers(node, own)
     known = node.rule.changes if isinstance(node.rule, Operator) else {}
     changes = [known.get(number.name) for number in own]
-    region = low, high
+    is_own = isinstance(node.rule, Primitive) and node.rule.slope is given_slope
     try:
-        return executor().added_slope(numbers, shape, changes, numbers.unknown, inner, region)
+        return executor().added_slope(
+            numbers, shape, changes, numbers.unknown, inner, (low, high), own=is_own
+        )
     except TapeError as error:
         _refuse_slope(own, f"no bound on its slope is known: {error}", node)
 
