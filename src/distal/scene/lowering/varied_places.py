@@ -71,7 +71,6 @@ def with_bounds_of_places(node: Node) -> Node:
             node.place,
         )
     low, high, slope = _box(node, varied_in(node), np)
-    low, high = _widened(low, high)
     slope += _added_slope(node, own, low, high, np)
     if not slope < ENDLESS:
         _refuse_slope(own, f"the slope of '{rule.name}' has no end", node)
@@ -86,29 +85,29 @@ def with_bounds_of_places(node: Node) -> Node:
 
 
 def _box(node: Node, varied: Sequence[VariedNumber], np: Any) -> tuple[Corner, Corner, float]:
-    """Return the box of a shape, and a bound on the slope with constant numbers."""
+    """Return the box of a shape, and a bound on the slope within it with constant numbers."""
     size = 2 if node.flat else 3
     function = BoundsOfVaried(node, varied, in_place=True)
+    cells = np.full((1, 3), -math.inf), np.full((1, 3), math.inf)
     low, high = (-math.inf,) * size, (math.inf,) * size
     for _ in range(_ROUNDS):
-        cells = np.full((1, 3), -math.inf), np.full((1, 3), math.inf)
-        bounds, of_numbers = function.swept(np, cells, (np.array([low]), np.array([high])))
-        lows, highs = bounds[2 : 2 + size], bounds[2 + size : 2 + 2 * size]
+        bounds, _ = function.swept(np, cells, (np.array([low]), np.array([high])))
         before = low, high
-        low = tuple(a if abs(a) < ENDLESS else -math.inf for a, _ in lows)
-        high = tuple(b if abs(b) < ENDLESS else math.inf for _, b in highs)
+        low = tuple(a if abs(a) < ENDLESS else -math.inf for a, _ in bounds[2 : 2 + size])
+        high = tuple(
+            b if abs(b) < ENDLESS else math.inf for _, b in bounds[2 + size : 2 + 2 * size]
+        )
         if (low, high) == before:
             break
+    low, high = _widened(low, high)
+    bounds, of_numbers = function.swept(np, cells, (np.array([low]), np.array([high])))
     in_cells = any(CELL in each.number.uses for each in varied)
     where = "where the shape may be, in any cell" if in_cells else "where the shape may be"
     refuse_beyond(varied, of_numbers, where, "a wave: sin of distal.lang")
-    corners = tuple(
-        tuple(min(max(end, -UNBOUNDED), UNBOUNDED) for end in corner) for corner in (low, high)
-    )
-    return corners[0], corners[1], bounds[0][1]
+    return low, high, bounds[0][1]
 
 
-def _widened(low: Sequence[float], high: Sequence[float]) -> tuple[Corner, Corner]:
+def _widened(low: Corner, high: Corner) -> tuple[Corner, Corner]:
     """Return a box that is larger by a share of its longest side that has an end.
 
     A ray ends a little before the surface. There the field has to be that of the shape, too, so
@@ -120,11 +119,7 @@ def _widened(low: Sequence[float], high: Sequence[float]) -> tuple[Corner, Corne
 
 
 def _added_slope(
-    node: Node,
-    own: Sequence[VaryingNumber],
-    low: Sequence[float],
-    high: Sequence[float],
-    np: Any,
+    node: Node, own: Sequence[VaryingNumber], low: Corner, high: Corner, np: Any
 ) -> float:
     """Return by how much the slope grows because numbers change from place to place."""
     inner = []
@@ -164,7 +159,8 @@ class _OfPlace(Composed):
         self._node, self._own = node, own
         held = (number.expression for number in own)
         self._random = sorted(frozenset().union(*map(random_numbers_in, held)))
-        self._unknown = ((CELL, VEC3), *((f"random_{i}", FLOAT) for i in range(len(self._random))))
+        random: list[tuple[str, Type]] = [(f"random_{i}", FLOAT) for i in range(len(self._random))]
+        self._unknown: list[tuple[str, Type]] = [(CELL, VEC3), *random]
         self._point = VEC2 if node.flat else VEC3
 
     def _site(self) -> dict[str, Expr]:
