@@ -27,7 +27,7 @@ _LARGEST_SEED: Final = 1_000_000
 
 # The index of the repetition that contains a shape: 0, 1, 2 … along each axis.
 cell: Final = Expression(_CELL)
-# The point, in the coordinates of the shape or operator that has the number, or of the painted shape.
+# The point: in the coordinates of the shape or operator with the number, or of what is painted.
 place: Final = Expression(_PLACE)
 
 
