@@ -28,7 +28,7 @@ from distal.cli.base import (
     load_picture,
     reporting,
 )
-from distal.lang.units import UNITS
+from distal.lang.units import meters_of
 
 
 @application.command()
@@ -61,8 +61,7 @@ def view(
     from distal.window.opening import view as show
     from distal.window.screen import LARGEST_SIDE, check_display
 
-    if unit not in UNITS:
-        raise UsageError(f"--unit is one of {', '.join(UNITS)}, not {unit!r:.40}")
+    meters_of(unit, UsageError)
     width_height, seconds = read_size(size, LARGEST_SIDE), read_time(at)
     check_display()
     path, name = read_scene(scene)
