@@ -32,7 +32,8 @@ from distal.editor.places import column, shapes_of
 from distal.editor.programs import KeptPrograms, key_of, numbers_of
 from distal.editor.scene_folder import check_name, encoded_text
 from distal.export.page_options import PageOptions
-from distal.export.payload import Facts, framed, lowered, parameter_entry, payload
+from distal.export.page_programs import framed, lowered
+from distal.export.payload import Facts, parameter_entry, payload
 from distal.ir.nodes import Module, Origin
 from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed

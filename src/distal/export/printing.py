@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from distal.diagnostics import LoadError
 from distal.export.page_options import PageOptions, check_buttons
-from distal.export.payload import PagePrograms
+from distal.export.page_programs import PagePrograms
 from distal.lang.units import MILLIMETER, meters_of
 from distal.mesh.files import stl, three_mf
 from distal.mesh.meshing import MeshRequest, extent_of
