@@ -16,6 +16,7 @@ import typer
 
 from distal.cli.arguments import read_assignments, read_time
 from distal.cli.base import (
+    JsonOption,
     SceneArgument,
     SetOption,
     TimeOption,
@@ -43,9 +44,7 @@ def check(
     at: TimeOption = "0",
     assignments: SetOption = None,
     seed: Annotated[int, typer.Option(min=0, help="What random points start from.")] = 0,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Plain values for editors, on one line.")
-    ] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Show what shapes guarantee, where slope comes from, and which guarantees do not hold."""
     from distal.scene.checks.validation import check as run_checks

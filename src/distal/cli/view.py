@@ -23,6 +23,7 @@ from distal.cli.base import (
     SetOption,
     SizeOption,
     TimeOption,
+    UnitOption,
     application,
     chosen_device,
     load_picture,
@@ -51,10 +52,7 @@ def view(
     look: LookOption = None,
     mode: ModeOption = None,
     caustics: CausticsOption = True,
-    unit: Annotated[
-        str,
-        typer.Option(help="The length of one scene unit, for the ruler: um, mm, cm, m, inch, ft."),
-    ] = "mm",
+    unit: UnitOption = "mm",
 ) -> None:
     """Show a scene in a window, and reload it whenever its file is saved. H shows the keys."""
     from distal.lang.render_options import RenderOptions
