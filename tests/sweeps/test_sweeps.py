@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 
 import numpy as np
 import pytest
@@ -66,9 +67,8 @@ def test_values(name, given, values):
     ],
 )
 def test_wrong_values(name, given, words):
-    with pytest.raises(ValueError, match="") as caught:
+    with pytest.raises(ValueError, match=f"^{re.escape(words)}"):
         axis_of(name, given, ALL)
-    assert str(caught.value).startswith(words)
 
 
 def test_a_sheet_shows_each_picture_at_its_place(tmp_path):

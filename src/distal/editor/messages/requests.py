@@ -6,7 +6,7 @@ Input: nothing. Output: frozen records, each with its kind and the type of its r
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 from distal.editor.messages.kinds import Message, message
 from distal.editor.messages.records import Change, Value
@@ -39,6 +39,11 @@ class AppRequest(Message):
     result: ClassVar[type | None] = None
     id: int
     revision: int
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """The two numbers, which each answer has."""
+        return {"id": self.id, "revision": self.revision}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
