@@ -142,7 +142,7 @@ def _rows(report: ValidationReport) -> Iterator[tuple[str, str, str, str]]:
         stack.extend((c, depth + 1) for c in reversed(row.children))
         yield (
             "  " * depth + row.node.name,
-            f"slope {row.promised.slope:.3g}" + (" (estimate)" if row.node.estimate else ""),
+            f"slope {row.declared.slope:.3g}" + (" (estimate)" if row.node.estimate else ""),
             _claims(row),
             f"{_box(row)}  {_line(row.node.place)}".rstrip(),
         )
@@ -159,7 +159,7 @@ def _claims(row: ShapeReport) -> str:
 
 def _box(row: ShapeReport) -> str:
     n = 2 if row.node.flat else 3
-    low, high = row.promised.low[:n], row.promised.high[:n]
+    low, high = row.declared.low[:n], row.declared.high[:n]
     if not any(map(math.isfinite, (*low, *high))):
         return "no box"
     return f"box {_corner(low)} to {_corner(high)}"
@@ -178,17 +178,17 @@ def _slope(report: ValidationReport) -> Iterator[str]:
     from distal.scene.checks.validation import described
 
     whole = report.shapes[0]
-    yield f"slope of '{whole.node.name}': {whole.promised.slope:.3g}"
+    yield f"slope of '{whole.node.name}': {whole.declared.slope:.3g}"
     for i in reversed(report.slope_from):
         row = report.shapes[i]
         where = f" at {_line(row.node.place)}" if row.node.place else ""
         if row.children:
             yield (
                 f"  {described(row.node)} raises the slope from {row.raised:.3g} "
-                f"to {row.promised.slope:.3g}{where}"
+                f"to {row.declared.slope:.3g}{where}"
             )
         else:
-            yield f"  {described(row.node)} has the slope {row.promised.slope:.3g}{where}"
+            yield f"  {described(row.node)} has the slope {row.declared.slope:.3g}{where}"
 
 
 def _measurements(report: ValidationReport) -> Iterator[str]:
