@@ -55,7 +55,7 @@ def check(
     check_processor()
     obj: Any = load(scene)
     if not isinstance(obj, BaseShape | Scene):
-        message = f"'{obj.name}' is no scene and no shape; claims are checked of these"
+        message = f"'{obj.name}' is no scene and no shape; guarantees are checked of these"
         raise LoadError(message)
     values = read_assignments(assignments or (), obj.parameters())
     shape = obj.subject if isinstance(obj, Scene) else obj

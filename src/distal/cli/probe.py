@@ -142,7 +142,7 @@ def _shape(found: Probed) -> Iterator[str]:
     from distal.scene.checks.validation import described, guarantee_names
 
     leaf = found.path[-1]
-    claims = ", ".join(guarantee_names(leaf)) or "no claims beside its slope"
+    claims = ", ".join(guarantee_names(leaf)) or "no guarantees besides its slope"
     yield f"shape     {described(leaf)}: {claims}"
     if len(found.path) > 1:
         yield f"part of   {' > '.join(node.name for node in found.path[:-1])}"
