@@ -42,7 +42,7 @@ HEAD: Final = """\
 Every shape of the library, and every way to make shapes of shapes. `from distal import Torus`;
 operators are methods of shapes, and `shape.apply("twist", ...)` takes each by the name it has here.
 
-What a field promises:
+What a field guarantees:
 
 - **exact**: the value is the distance to the surface, negative inside. *exact outside* and *exact
   inside* say it of one side.
@@ -58,7 +58,7 @@ What a field promises:
 What was measured, by the checks that the tests run too (`make sweep-fields` runs more of them), at
 the shape's own numbers and at random ones: **error** is the largest difference between a value that
 is claimed exact and the distance to the surface, in units of the shape's size. **steepest** is the
-largest share of the promised slope that a search for violations found; 1 is a bound that is
+largest share of the declared slope that a search for violations found; 1 is a bound that is
 reached.
 """
 

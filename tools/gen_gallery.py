@@ -83,7 +83,7 @@ def make_page() -> str:
             parts.append(f"\n## {title}\n")
             parts += [_entry(name) for name in dict.fromkeys(names)]
     parts.append("\n## The catalogue\n\nDrawn by `python tools/gen_catalogue_sheet.py`; what each ")
-    parts.append("shape promises stands in the [catalogue](reference/catalogue.md).\n")
+    parts.append("shape guarantees stands in the [catalogue](reference/catalogue.md).\n")
     parts += [f"\n{text}\n\n![{n}](pictures/catalogue_{n}.webp)\n" for n, text in SHEETS.items()]
     return "".join(parts)
 

@@ -275,6 +275,12 @@ def test_words_of_commands():
     assert export_arguments(page, "a.html") == [
         *("export", "scene.py", "-o", "a.html", "--time", "1.5", "--embed"),
     ]
+    page = request_of(ExportRequest, format="page", size=(800, 600), look="night", mode="path")
+    assert export_arguments(page, "a.html")[4:] == [
+        *("--size", "800x600", "--look", "night", "--mode", "path"),
+    ]
+    text = request_of(ExportRequest, format="isf", size=(800, 600), look="night", mode="path")
+    assert export_arguments(text, "a.fs")[4:] == ["--target", "isf", "--look", "night"]
 
 
 def test_a_name_is_taken_once(tmp_path):

@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 import os
 import queue
+import re
 import subprocess
 import sys
 import threading
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -17,6 +19,7 @@ import pytest
 import distal
 from distal.editor.literals import spliced
 
+ROOT = Path(__file__).parents[2]
 SPHERE = """\
 from distal import Box, Scene, Sphere
 from distal.lang import slider
@@ -239,6 +242,15 @@ def test_texts_exports_and_writes_are_answered(child: Child) -> None:
         made = spliced(made, edit["start"], edit["end"], edit["text"])
     assert "from distal import Camera, Box" in made
     assert "Box(0.5), camera=Camera((1.0, 2.0, 3.0)))" in made
+
+
+def test_a_picture_with_frames_is_exported_to_all_tabs(child: Child) -> None:
+    text = (ROOT / "examples/frames/coral.py").read_text(encoding="utf-8")
+    made = child.ask("export", text, format="shadertoy")["result"]
+    tabs = re.findall(r"The tab (.*) of a shader on shadertoy", made["text"])
+    assert tabs == ["Buffer A", "Buffer B", "Buffer C", "Buffer D", "Image"]
+    assert made["text"].count("void mainImage(") == 5
+    assert made["name"] == "scene.shadertoy.txt"
 
 
 def test_pixels_and_checks_are_answered(child: Child) -> None:

@@ -19,8 +19,7 @@ from typer.testing import CliRunner
 import distal
 from distal.cli.application import application
 from distal.diagnostics import CompileError, LoadError
-from distal.export import payload as payload_room
-from distal.export import resources
+from distal.export import page_programs, resources
 from distal.export.poster import MOST_TRIANGLE_BYTES
 from distal.export.registry import export
 from distal.images.atomic_files import SaveError
@@ -244,7 +243,7 @@ def test_what_is_left_out_on_request(rings, tmp_path):
 
 
 def test_a_view_that_webgl_cannot_show_is_left_out(rings, tmp_path, monkeypatch):
-    compiled = payload_room.compiled
+    compiled = page_programs.compiled
 
     def refusing(image):
         if "signal" in image.name or image.name.endswith(bad):
@@ -252,7 +251,7 @@ def test_a_view_that_webgl_cannot_show_is_left_out(rings, tmp_path, monkeypatch)
         return compiled(image)
 
     bad = "nothing"
-    monkeypatch.setattr(payload_room, "compiled", refusing)
+    monkeypatch.setattr(page_programs, "compiled", refusing)
     path = tmp_path / "p.html"
     obj = distal.load(rings)
     obj_view = distal.scene.viewing.viewable.viewable(obj).image("signal").name

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import struct
 import wave
 from fractions import Fraction
 from pathlib import Path
@@ -211,6 +212,30 @@ def test_what_is_no_sound_is_one_line(
     with pytest.raises(LoadError, match=re.escape(message)) as caught:
         bars_of(SoundFile(tmp_path / name)).render(size=(2, 2))
     assert "\n" not in str(caught.value)
+
+
+def with_format(path: Path, kind: int, samples: NDArray[Any]) -> Path:
+    """Write a WAV file of one channel with samples of a format: 1 for PCM, 3 for floats."""
+    size, data = samples.itemsize, samples.tobytes()
+    head = struct.pack("<IHHIIHH", 16, kind, 1, 8000, 8000 * size, size, 8 * size)
+    body = b"WAVEfmt " + head + b"data" + struct.pack("<I", len(data)) + data
+    path.write_bytes(b"RIFF" + struct.pack("<I", len(body)) + body)
+    return path
+
+
+def test_samples_of_64_bits_are_refused(tmp_path: Path) -> None:
+    file = with_format(tmp_path / "wide.wav", 1, np.zeros(99, np.int64))
+    with pytest.raises(
+        LoadError, match=r"wide\.wav: it has 64 bits a sample; 8, 16, 24 and 32 can"
+    ):
+        read(file)
+
+
+def test_samples_may_be_floats(tmp_path: Path) -> None:
+    pytest.importorskip("av", reason="PyAV is not installed")
+    samples = np.linspace(-1.0, 1.0, 999, dtype=np.float32)
+    found = read(with_format(tmp_path / "floats.wav", 3, samples))
+    np.testing.assert_array_equal(found.channels, samples[None])
 
 
 def test_a_sound_that_is_too_long_is_named(tmp_path: Path, monkeypatch: Any) -> None:

@@ -14,7 +14,7 @@ from traitlets import TraitError
 import distal
 from distal import Camera, Scene, Sphere, Torus, time
 from distal.diagnostics import CompileError
-from distal.export import payload as payload_room
+from distal.export import page_programs
 from distal.export.payload import name_of
 from distal.lang import Frame, choice, color, func, image, slider, vec3
 from distal.lang.render_options import RenderOptions
@@ -157,7 +157,7 @@ def test_a_wrong_option_is_refused(options, error, message):
 
 
 def test_a_view_that_webgl_cannot_show_is_none(monkeypatch):
-    compiled = payload_room.compiled
+    compiled = page_programs.compiled
 
     def refusing(image):
         if "depth" in image.name:
@@ -165,7 +165,7 @@ def test_a_view_that_webgl_cannot_show_is_none(monkeypatch):
         return compiled(image)
 
     scene = ball()
-    monkeypatch.setattr(payload_room, "compiled", refusing)
+    monkeypatch.setattr(page_programs, "compiled", refusing)
     widget = scene.show()
     widget.view = "normal"
     with pytest.raises(TraitError, match="there is no view 'depth'"):

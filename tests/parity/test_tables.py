@@ -12,7 +12,7 @@ import pytest
 from distal.backends import emit, get_target
 from distal.compiler.driver import run_passes
 from distal.devices import gpu as gpu_device
-from distal.export.payload import PagePrograms
+from distal.export.page_programs import PagePrograms
 from distal.frontend import lower
 from distal.lang import Frame, array, func, image, ivec2, mat2, struct, uint, vec2, vec3, vec4
 from distal.scene.viewing.viewable import viewable

@@ -102,16 +102,6 @@ def test_narrowness_is_one_minus_the_cosine(angle):
     assert found == pytest.approx(2 * math.sin(angle / 2) ** 2, rel=1e-5)
 
 
-def test_a_triangle_is_uniform():
-    found = np.asarray(warps.in_triangle(square()), float)
-    assert found.min() >= 0
-    assert found.sum(1).max() <= 1 + 1e-6
-    # By (sum, share of the first): the sum's square and the share are uniform.
-    total = np.maximum(found.sum(1), 1e-12)
-    cells = counted(np.stack([np.minimum(total**2, 1 - 1e-9), found[:, 0] / total], 1), 12, 12)
-    assert deviation(cells, np.full(144, COUNT / 144)) < SURPRISING
-
-
 def visible_density(view, alpha):
     """Visible normals as Heitz (2014) writes them, by Smith's Lambda."""
 

@@ -352,12 +352,6 @@ def test_the_look_of_places_is_its_numbers():
     assert (found.occlusion, found.fog_density) == pytest.approx((0.3, 0.05))
 
 
-def test_a_pixels_angle_is_its_share_of_the_screen():
-    found = camera.pixel_angle(0.8, 240.0)
-    assert found == pytest.approx(2.0 * math.tan(0.4) / 240.0, rel=1e-6)
-    assert camera.pixel_angle(-0.8, 240.0) == pytest.approx(found)
-
-
 # Locals of an author's picture
 
 

@@ -57,8 +57,8 @@ def test_library_shapes_hold_and_say_nothing():
     assert found.findings == ()
     assert found.slope_from == ()
     assert [row.node.name for row in found.shapes] == ["translate", "Box"]
-    assert found.shapes[0].promised.low == (0.0, -1.0, -1.0)
-    assert found.shapes[1].promised.high == (1.0, 1.0, 1.0)
+    assert found.shapes[0].declared.low == (0.0, -1.0, -1.0)
+    assert found.shapes[1].declared.high == (1.0, 1.0, 1.0)
     measured = found.shapes[0].measured
     assert measured.median == pytest.approx(1.0, abs=1e-6)
     assert measured.slope == pytest.approx(1.0, abs=1e-6)
@@ -177,7 +177,7 @@ def test_a_twist_tells_how_much_it_raises_the_slope_and_what_it_loses():
     row = found.shapes[twist]
     assert row.node.rule.name == "twist"
     assert row.raised == 1.0
-    assert row.promised.slope == pytest.approx(shape.slope)
+    assert row.declared.slope == pytest.approx(shape.slope)
     notes = [f.diagnostic.message for f in found.findings if f.shape == twist]
     assert notes == [
         f"twist(rate=3) raises the slope from 1 to {shape.slope:.3g}",
@@ -322,8 +322,8 @@ def test_plain_values_are_json_without_infinity():
 
 def test_measurements_are_the_same_for_the_same_seed():
     shape = Box(1.0).twist(2.0)
-    promised = bounds_of_nodes(shape.node, {}, 0.0)[id(shape.node)]
-    first, again, other = (measure(shape, promised, {}, 0.0, seed) for seed in (1, 1, 2))
+    declared = bounds_of_nodes(shape.node, {}, 0.0)[id(shape.node)]
+    first, again, other = (measure(shape, declared, {}, 0.0, seed) for seed in (1, 1, 2))
     assert first == again
     assert first != other
     assert math.isclose(first.median, other.median, rel_tol=0.05)

@@ -15,7 +15,6 @@ from distal.scene.objects.lights import (
     HemisphereLight,
     PointLight,
     SpotLight,
-    as_light,
 )
 from distal.scene.tree.errors import SceneTypeError, SceneValueError
 from tests.scene.probing import emitted
@@ -112,11 +111,6 @@ def test_light_from_everywhere():
             lambda: AmbientLight(0.1, "#fff", 2.0),
             SceneTypeError,
             "AmbientLight: too many positional arguments",
-        ),
-        (
-            lambda: as_light(PointLight),
-            SceneTypeError,
-            "a light is wanted, not the class PointLight",
         ),
     ],
 )

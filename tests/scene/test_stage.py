@@ -53,6 +53,14 @@ def test_the_frame_follows_parameters():
     assert not shown[0].any()
 
 
+def test_a_cut_scene_is_developed_too():
+    scene = stage(Sphere())
+    assert scene.sectioned.tone_map == scene.tone_map  # is kept by the scene
+    developed = scene.developed(exposure=3.0, tone_map="aces")
+    assert developed.sectioned.tone_map == "aces"
+    assert developed.sectioned.numbers["exposure"].value == 3.0
+
+
 def test_light_is_developed_anew_and_the_scene_stays():
     scene = stage(Sphere())
     # Without a number of samples, the display values decide where more are taken.

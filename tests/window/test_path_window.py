@@ -18,7 +18,8 @@ from distal.window import film_renderer
 from distal.window.film_renderer import FilmRenderer
 from distal.window.frame_renderers import PixelRenderer
 from distal.window.keys import Action
-from distal.window.session import Session, Shot
+from distal.window.session import Session
+from distal.window.shot import Shot
 from tests.window.test_refinement import SIZE, Frames
 
 side = slider("Side", 1.0, 0.5, 2.0)

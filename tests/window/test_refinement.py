@@ -25,7 +25,8 @@ from distal.window.frame_renderers import (
     TextureRenderer,
 )
 from distal.window.frame_scheduler import FrameRequest, FrameScheduler
-from distal.window.session import Session, Shot
+from distal.window.session import Session
+from distal.window.shot import Shot
 from tests.pictures.comparison import difference
 
 SIZE = (96, 72)

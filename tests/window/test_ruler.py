@@ -135,7 +135,7 @@ def test_keys_that_do_nothing_say_why(tmp_path: Path) -> None:
 def test_an_unknown_unit_is_refused_before_a_window_opens() -> None:
     found = CliRunner().invoke(application, ["view", "example:enclosure", "--unit", "mile"])
     assert found.exit_code == 2
-    assert "--unit is one of um, mm, cm, m, inch, ft, not 'mile'" in found.output
+    assert "a unit is one of um, mm, cm, m, inch, ft, not 'mile'" in found.output
 
 
 def drawn(ruler: ShownRuler, back: float, size: tuple[int, int] = SIZE) -> np.ndarray:

@@ -17,7 +17,7 @@ from typer.models import CommandInfo
 
 import distal
 from distal.cli import COMMANDS, SHORT
-from distal.cli.arguments import UsageError, read_scene
+from distal.cli.arguments import UsageError, check_is_not_scene, read_scene
 from distal.cli.base import SceneArgument, answer, application, load, reporting
 from distal.compiler.driver import COMPILE_TARGETS, IR_TARGET
 from distal.export.texts import with_header, write_files
@@ -65,8 +65,7 @@ def compile(
     if output is not None:
         if output.suffix.lower() in (".json", ".vert"):
             raise UsageError(f"'{output}' is where the interface or the vertex stage goes")
-        if output.resolve() == Path(read_scene(scene)[0]).resolve():
-            raise UsageError(f"'{output}' is the scene itself")
+        check_is_not_scene(output, scene)
         check_destination(output)
     artifact = distal.compile(load(scene), target=target.value, after=after)
     text = with_header(artifact, target.value, _file_name(scene))

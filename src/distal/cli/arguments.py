@@ -10,6 +10,7 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
+from pathlib import Path
 
 from distal.ir.limits import LARGEST_TIME
 from distal.lang.parameter_values import LARGEST_FLOAT, Value
@@ -32,6 +33,27 @@ def read_scene(text: str) -> tuple[str, str | None]:
     if path in ("", EXAMPLE_PREFIX):
         raise UsageError(f"'{text}' names no {'example' if path else 'file'}")
     return path, name
+
+
+def check_is_not_scene(output: Path, scene: str) -> None:
+    """Check that a file to write is not the scene's own.
+
+    Raises:
+        UsageError: It is.
+    """
+    if output.resolve() == Path(read_scene(scene)[0]).resolve():
+        raise UsageError(f"'{output}' is the scene itself")
+
+
+def check_lengths(**lengths: float | None) -> None:
+    """Check that lengths are above 0 and finite.
+
+    Raises:
+        UsageError: One is not.
+    """
+    for name, length in lengths.items():
+        if length is not None and not 0.0 < length < float("inf"):
+            raise UsageError(f"--{name} is a length above 0, not {length:g}")
 
 
 def read_size(text: str, largest: int) -> tuple[int, int]:

@@ -21,6 +21,7 @@ from distal.cli.messages import say
 from distal.devices.memory_limit import is_limited, require
 from distal.diagnostics import CompileError, DeviceError, LoadError
 from distal.images.atomic_files import SaveError
+from distal.lang.units import UNITS
 from distal.packages import explained
 from distal.runtime import device_names
 from distal.version import __version__
@@ -180,6 +181,24 @@ SetOption = Annotated[
     typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter; may be repeated."),
 ]
 
+UnitOption = Annotated[str, typer.Option(help=f"The length of one scene unit: {', '.join(UNITS)}.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Plain values, on one line.")]
+ToleranceOption = Annotated[
+    float | None,
+    typer.Option(
+        metavar="LENGTH",
+        help="How far the mesh may be from the surface, in scene units.",
+        show_default="0.002 of the largest side",
+    ),
+]
+FeatureOption = Annotated[
+    float | None,
+    typer.Option(
+        metavar="LENGTH",
+        help="The diameter of the smallest parts and gaps that must be found.",
+        show_default=False,
+    ),
+]
 ThreadsOption = Annotated[
     int | None, typer.Option(min=1, max=1024, help="CPU threads; one per core if not given.")
 ]

@@ -16,6 +16,7 @@ import typer
 
 from distal.cli.arguments import read_assignments, read_time
 from distal.cli.base import (
+    JsonOption,
     SceneArgument,
     SetOption,
     TimeOption,
@@ -43,9 +44,7 @@ def check(
     at: TimeOption = "0",
     assignments: SetOption = None,
     seed: Annotated[int, typer.Option(min=0, help="What random points start from.")] = 0,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Plain values for editors, on one line.")
-    ] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Show what shapes guarantee, where slope comes from, and which guarantees do not hold."""
     from distal.scene.checks.validation import check as run_checks
@@ -56,7 +55,7 @@ def check(
     check_processor()
     obj: Any = load(scene)
     if not isinstance(obj, BaseShape | Scene):
-        message = f"'{obj.name}' is no scene and no shape; claims are checked of these"
+        message = f"'{obj.name}' is no scene and no shape; guarantees are checked of these"
         raise LoadError(message)
     values = read_assignments(assignments or (), obj.parameters())
     shape = obj.subject if isinstance(obj, Scene) else obj
@@ -143,7 +142,7 @@ def _rows(report: ValidationReport) -> Iterator[tuple[str, str, str, str]]:
         stack.extend((c, depth + 1) for c in reversed(row.children))
         yield (
             "  " * depth + row.node.name,
-            f"slope {row.promised.slope:.3g}" + (" (estimate)" if row.node.estimate else ""),
+            f"slope {row.declared.slope:.3g}" + (" (estimate)" if row.node.estimate else ""),
             _claims(row),
             f"{_box(row)}  {_line(row.node.place)}".rstrip(),
         )
@@ -160,7 +159,7 @@ def _claims(row: ShapeReport) -> str:
 
 def _box(row: ShapeReport) -> str:
     n = 2 if row.node.flat else 3
-    low, high = row.promised.low[:n], row.promised.high[:n]
+    low, high = row.declared.low[:n], row.declared.high[:n]
     if not any(map(math.isfinite, (*low, *high))):
         return "no box"
     return f"box {_corner(low)} to {_corner(high)}"
@@ -179,17 +178,17 @@ def _slope(report: ValidationReport) -> Iterator[str]:
     from distal.scene.checks.validation import described
 
     whole = report.shapes[0]
-    yield f"slope of '{whole.node.name}': {whole.promised.slope:.3g}"
+    yield f"slope of '{whole.node.name}': {whole.declared.slope:.3g}"
     for i in reversed(report.slope_from):
         row = report.shapes[i]
         where = f" at {_line(row.node.place)}" if row.node.place else ""
         if row.children:
             yield (
                 f"  {described(row.node)} raises the slope from {row.raised:.3g} "
-                f"to {row.promised.slope:.3g}{where}"
+                f"to {row.declared.slope:.3g}{where}"
             )
         else:
-            yield f"  {described(row.node)} has the slope {row.promised.slope:.3g}{where}"
+            yield f"  {described(row.node)} has the slope {row.declared.slope:.3g}{where}"
 
 
 def _measurements(report: ValidationReport) -> Iterator[str]:

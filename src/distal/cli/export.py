@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 import typer
 
 from distal.backends import TEXT_TARGETS
-from distal.cli.arguments import UsageError, read_scene, read_size, read_time
+from distal.cli.arguments import UsageError, check_is_not_scene, check_lengths, read_size, read_time
 from distal.cli.base import (
     CausticsOption,
     LookOption,
@@ -27,7 +27,6 @@ from distal.cli.base import (
     load_picture,
     reporting,
 )
-from distal.cli.mesh import check_lengths
 from distal.cli.messages import say
 
 if TYPE_CHECKING:
@@ -209,8 +208,7 @@ def _check(
     for flag, option in given.items():
         if option not in FORMATS[name].option_names:
             raise UsageError(f"{flag} is for pages, and {output} is a text ({name})")
-    if output.resolve() == Path(read_scene(scene)[0]).resolve():
-        raise UsageError(f"'{output}' is the scene itself")
+    check_is_not_scene(output, scene)
     check_destination(output)
     if name == "html" and not is_without_poster:
         check_processor()

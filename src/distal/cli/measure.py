@@ -11,9 +11,19 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from distal.cli.arguments import UsageError
-from distal.cli.base import SceneArgument, SetOption, TimeOption, answer, application, reporting
-from distal.cli.mesh import FeatureOption, ToleranceOption, check_lengths, load_solid
+from distal.cli.arguments import UsageError, check_lengths
+from distal.cli.base import (
+    FeatureOption,
+    JsonOption,
+    SceneArgument,
+    SetOption,
+    TimeOption,
+    ToleranceOption,
+    answer,
+    application,
+    reporting,
+)
+from distal.cli.mesh import load_solid
 
 if TYPE_CHECKING:
     from distal.mesh.brackets import Brackets
@@ -56,7 +66,7 @@ def measure(
     ] = None,
     at: TimeOption = "0",
     assignments: SetOption = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Plain values, on one line.")] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Show volume, area, mass, center, inertia, box, walls, gaps and overhang of a solid."""
     from distal.cli.report import ProgressBar

@@ -12,11 +12,21 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from distal.cli.arguments import UsageError, read_assignments, read_scene, read_time
+from distal.cli.arguments import (
+    UsageError,
+    check_is_not_scene,
+    check_lengths,
+    read_assignments,
+    read_time,
+)
 from distal.cli.base import (
+    FeatureOption,
+    JsonOption,
     SceneArgument,
     SetOption,
     TimeOption,
+    ToleranceOption,
+    UnitOption,
     answer,
     application,
     check_processor,
@@ -29,23 +39,6 @@ if TYPE_CHECKING:
     from distal.mesh.scene_parts import SceneParts
     from distal.mesh.solid import Mesh
     from distal.scene.objects.shape import Shape
-
-ToleranceOption = Annotated[
-    float | None,
-    typer.Option(
-        metavar="LENGTH",
-        help="How far the mesh may be from the surface, in scene units.",
-        show_default="0.002 of the largest side",
-    ),
-]
-FeatureOption = Annotated[
-    float | None,
-    typer.Option(
-        metavar="LENGTH",
-        help="The diameter of the smallest parts and gaps that must be found.",
-        show_default=False,
-    ),
-]
 
 
 @application.command()
@@ -60,9 +53,7 @@ def mesh(
     ],
     tolerance: ToleranceOption = None,
     feature: FeatureOption = None,
-    unit: Annotated[
-        str, typer.Option(help="The length of one scene unit: um, mm, cm, m, inch or ft.")
-    ] = "mm",
+    unit: UnitOption = "mm",
     bed: Annotated[
         bool, typer.Option("--bed", help="Stand the part on 0, centered, as printers want it.")
     ] = False,
@@ -84,9 +75,7 @@ def mesh(
     ] = False,
     at: TimeOption = "0",
     assignments: SetOption = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print the report as JSON, on one line.")
-    ] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Save a shape's surface as triangles: closed, with sharp edges, in a unit of length."""
     from distal.cli.messages import say
@@ -96,8 +85,7 @@ def mesh(
     from distal.mesh.meshing import MeshRequest
     from distal.packages import imported
 
-    if output.resolve() == Path(read_scene(scene)[0]).resolve():
-        raise UsageError(f"'{output}' is the scene itself")
+    check_is_not_scene(output, scene)
     check_lengths(tolerance=tolerance, feature=feature)
     if colors is not None and not 1 <= colors <= palette.MOST:
         raise UsageError(f"--colors is a number from 1 to {palette.MOST}, not {colors}")
@@ -126,17 +114,6 @@ def mesh(
             say(line)
     if check and any(any(made.report["check"].values()) for made in found.meshes):
         raise typer.Exit(1)
-
-
-def check_lengths(**lengths: float | None) -> None:
-    """Check that lengths are above 0 and finite.
-
-    Raises:
-        UsageError: One is not.
-    """
-    for name, length in lengths.items():
-        if length is not None and not 0.0 < length < float("inf"):
-            raise UsageError(f"--{name} is a length above 0, not {length:g}")
 
 
 def load_solid(

@@ -14,6 +14,7 @@ import typer
 
 from distal.cli.arguments import read_assignments, read_pixel, read_size, read_time
 from distal.cli.base import (
+    JsonOption,
     SceneArgument,
     SetOption,
     SizeOption,
@@ -49,9 +50,7 @@ def probe(
     size: SizeOption = "640x480",
     at: TimeOption = "0",
     assignments: SetOption = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Plain values for editors, on one line.")
-    ] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Show what one pixel sees: its ray, the march, the shape; of an @image its locals."""
     from distal.lang.functions import Func, Image
@@ -143,7 +142,7 @@ def _shape(found: Probed) -> Iterator[str]:
     from distal.scene.checks.validation import described, guarantee_names
 
     leaf = found.path[-1]
-    claims = ", ".join(guarantee_names(leaf)) or "no claims beside its slope"
+    claims = ", ".join(guarantee_names(leaf)) or "no guarantees besides its slope"
     yield f"shape     {described(leaf)}: {claims}"
     if len(found.path) > 1:
         yield f"part of   {' > '.join(node.name for node in found.path[:-1])}"

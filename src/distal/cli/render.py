@@ -30,6 +30,7 @@ from distal.cli.base import (
     Device,
     DeviceOption,
     LookOption,
+    ModeOption,
     ProgressKind,
     ProgressOption,
     SamplesOption,
@@ -171,13 +172,7 @@ def render(
     at: TimeOption = "0",
     assignments: SetOption = None,
     samples: SamplesOption = None,
-    mode: Annotated[
-        str | None,
-        typer.Option(
-            help="direct: from each light to the first surface; path: exact, by many random paths.",
-            show_default=False,
-        ),
-    ] = None,
+    mode: ModeOption = None,
     time_limit: Annotated[
         float | None,
         typer.Option(metavar="S", help="In mode path: begin no more samples after S seconds."),

@@ -7,18 +7,25 @@ exact they are in words or as JSON.
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from distal.cli.arguments import UsageError, read_assignments, read_scene, read_time
+from distal.cli.arguments import (
+    UsageError,
+    check_is_not_scene,
+    check_lengths,
+    read_assignments,
+    read_time,
+)
 from distal.cli.base import (
+    JsonOption,
     SceneArgument,
     SetOption,
     TimeOption,
+    UnitOption,
     answer,
     application,
     check_processor,
@@ -72,17 +79,13 @@ def slice(
             show_default="0.0002 of the largest side",
         ),
     ] = None,
-    unit: Annotated[
-        str, typer.Option(help="The length of one scene unit: um, mm, cm, m, inch or ft.")
-    ] = "mm",
+    unit: UnitOption = "mm",
     kind: Annotated[
         str, typer.Option("--format", help="Of the files in a folder: svg or dxf.")
     ] = "svg",
     at: TimeOption = "0",
     assignments: SetOption = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print the report as JSON, on one line.")
-    ] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Save outlines for cutters: of a flat shape, of a solid's layers, or of one slice."""
     from distal.cli.report import ProgressBar
@@ -118,11 +121,8 @@ def _check(scene: str, output: Path, axis: str, kind: str, **lengths: float | No
     Raises:
         UsageError: One is invalid.
     """
-    if output.resolve() == Path(read_scene(scene)[0]).resolve():
-        raise UsageError(f"'{output}' is the scene itself")
-    for name, length in lengths.items():
-        if length is not None and not 0.0 < length < math.inf:
-            raise UsageError(f"--{name} is a length above 0, not {length:g}")
+    check_is_not_scene(output, scene)
+    check_lengths(**lengths)
     if axis not in ("x", "y", "z"):
         raise UsageError(f"--axis is x, y or z, not '{axis}'")
     if kind not in ("svg", "dxf"):

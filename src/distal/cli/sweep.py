@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from distal.cli.arguments import UsageError, read_size
+from distal.cli.arguments import UsageError, read_size, read_time
 from distal.cli.base import (
     AdapterOption,
     ClusterOption,
@@ -22,6 +22,7 @@ from distal.cli.base import (
     SamplesOption,
     SceneArgument,
     ThreadsOption,
+    TimeOption,
     TimeoutOption,
     application,
     chosen_device,
@@ -57,7 +58,7 @@ def sweep(
     size: Annotated[
         str, typer.Option("--size", metavar="WxH", help="Of each picture, in pixels.")
     ] = "160x120",
-    at: Annotated[float, typer.Option("--time", metavar="S", help="Seconds.")] = 0.0,
+    at: TimeOption = "0",
     samples: SamplesOption = None,
     mode: ModeOption = None,
     view: Annotated[str, typer.Option(help="What to show, as in distal render.")] = "color",
@@ -81,13 +82,15 @@ def sweep(
     from distal.lang.render_options import LARGEST_SIDE_PX
     from distal.sweeps import sweep as run
 
-    width_height = read_size(size, LARGEST_SIDE_PX)
+    width_height, seconds = read_size(size, LARGEST_SIDE_PX), read_time(at)
     device_name = chosen_device(device, adapter)
     values: dict[str, str] = {}
     for text in assignments:
         name, equals, given = text.partition("=")
         if not equals:
             raise UsageError(f"--set takes NAME=VALUES, not '{text:.60}'")
+        if name.strip() in values:
+            raise UsageError(f"--set gives '{name.strip()}' twice")
         values[name.strip()] = given
     bar = frame_progress(shown_progress)
     bar.stage(LOADING)
@@ -100,7 +103,7 @@ def sweep(
                 values,
                 output,
                 size=width_height,
-                time=at,
+                time=seconds,
                 samples=samples,
                 mode=mode,
                 view=view,

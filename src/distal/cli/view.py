@@ -23,12 +23,13 @@ from distal.cli.base import (
     SetOption,
     SizeOption,
     TimeOption,
+    UnitOption,
     application,
     chosen_device,
     load_picture,
     reporting,
 )
-from distal.lang.units import UNITS
+from distal.lang.units import meters_of
 
 
 @application.command()
@@ -51,18 +52,14 @@ def view(
     look: LookOption = None,
     mode: ModeOption = None,
     caustics: CausticsOption = True,
-    unit: Annotated[
-        str,
-        typer.Option(help="The length of one scene unit, for the ruler: um, mm, cm, m, inch, ft."),
-    ] = "mm",
+    unit: UnitOption = "mm",
 ) -> None:
     """Show a scene in a window, and reload it whenever its file is saved. H shows the keys."""
     from distal.lang.render_options import RenderOptions
     from distal.window.opening import view as show
     from distal.window.screen import LARGEST_SIDE, check_display
 
-    if unit not in UNITS:
-        raise UsageError(f"--unit is one of {', '.join(UNITS)}, not {unit!r:.40}")
+    meters_of(unit, UsageError)
     width_height, seconds = read_size(size, LARGEST_SIDE), read_time(at)
     check_display()
     path, name = read_scene(scene)

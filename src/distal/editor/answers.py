@@ -32,7 +32,7 @@ from distal.editor.messages import (
     Written,
 )
 from distal.editor.shape_map import shape_map
-from distal.export import page, texts
+from distal.export import page, shadertoy, texts
 from distal.export.page_options import PageOptions, TextOptions
 from distal.lang.lazy_module import LazyModule
 from distal.scene.objects.field import BaseShape
@@ -113,13 +113,16 @@ def _export(work: AnswerWork) -> Result:
         known = ", ".join((PAGE, *TEXT_TARGETS))
         raise ValueError(f"there is no format '{request.format[:40]}'; formats: {known}")
     suffix = TEXT_TARGETS[request.format].suffix or ".txt"
-    values = TextOptions(params=params, view=request.view)
-    return ExportedFile(
-        name=f"{stem}{suffix}",
-        media_type="text/plain",
-        text=texts.text(seen, request.format, values).text,
-        command=shown(export_arguments(request, f"{stem}{suffix}")),
-    )
+    values = TextOptions(params=params, time=request.time, view=request.view)
+    name = f"{stem}{suffix}"
+    command = shown(export_arguments(request, name))
+    if request.format == shadertoy.TARGET and shadertoy.has_passes(seen, values):
+        # One file for all tabs, of which each says its name; the command writes one for each.
+        name = f"{stem}.shadertoy.txt"
+        text = "\n".join(each.text for each in shadertoy.passes(seen, values))
+    else:
+        text = texts.text(seen, request.format, values).text
+    return ExportedFile(name=name, media_type="text/plain", text=text, command=command)
 
 
 def _check(work: AnswerWork) -> Result:

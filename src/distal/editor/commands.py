@@ -14,6 +14,7 @@ from typing import Any, Final
 from distal.editor.messages import ExportRequest, PictureRequest, SourceRequest, Value
 
 PAGE: Final = "page"  # the format of ``export`` that is no shader
+_SIZE: Final = (640, 480)  # of a page that gives none
 _WHOLE: Final = 2.0**53  # greater floats are written with an exponent
 
 
@@ -72,8 +73,11 @@ def export_arguments(request: ExportRequest, output: str) -> list[str]:
     return [
         *("export", _source(request), "-o", output),
         *_given("--target", request.format, wanted=not is_page),
+        *_given("--size", "{}x{}".format(*request.size), wanted=is_page and request.size != _SIZE),
         *_given("--view", request.view, wanted=request.view != "color"),
         *_given("--time", _number(request.time), wanted=request.time != 0.0),
+        *_given("--look", request.look),
+        *_given("--mode", request.mode, wanted=is_page),
         *(["--embed"] if request.embed else []),
         *_given("--title", request.title),
         *values(request.values),

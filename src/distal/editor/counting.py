@@ -19,7 +19,7 @@ from distal.backends.glsl.timing import CHOICE, REPEATS, Repetitions
 from distal.backends.glsl.work import WorkCounts
 from distal.compiler.driver import run_passes
 from distal.editor.messages import Counting, LineTiming
-from distal.export.payload import TARGET, PagePrograms, lowered
+from distal.export.page_programs import TARGET, PagePrograms, lowered
 from distal.ir.nodes import Module
 from distal.passes.cost import own_cost
 from distal.scene.viewing.viewable import Viewable

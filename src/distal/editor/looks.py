@@ -32,7 +32,8 @@ from distal.editor.places import column, shapes_of
 from distal.editor.programs import KeptPrograms, key_of, numbers_of
 from distal.editor.scene_folder import check_name, encoded_text
 from distal.export.page_options import PageOptions
-from distal.export.payload import Facts, framed, lowered, parameter_entry, payload
+from distal.export.page_programs import framed, lowered
+from distal.export.payload import Facts, parameter_entry, payload
 from distal.ir.nodes import Module, Origin
 from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed
@@ -86,7 +87,7 @@ class Looks:
             loaded = load_text(file, files[request.main], request.object, given)
         obj = loaded.picture
         # From here on no code of the author runs, except functions that compute numbers.
-        self._tell(Progress(id=request.id, revision=request.revision, done=0.0, label="compiling"))
+        self._tell(Progress(**request.numbers, done=0.0, label="compiling"))
         seen = viewable(obj, self._values_of(obj, request), request.time, request.look)
         return loaded, seen.in_mode(request.mode)
 
@@ -97,8 +98,7 @@ class Looks:
             span = replace(span, file=Path(span.file).name)
             place = f"line {span.line} of {span.file}: {span.text.strip():.80}"
         text = replace(found, span=span, hint=None).text("warning")
-        number: dict[str, Any] = {"id": request.id, "revision": request.revision}
-        self._tell(Printed(**number, text=f"{text}\n", hangs=place))
+        self._tell(Printed(**request.numbers, text=f"{text}\n", hangs=place))
 
     @staticmethod
     def _values_of(obj: Any, request: SourceRequest) -> dict[str, Any]:
@@ -142,7 +142,7 @@ class Looks:
         module = _lowered(seen, request.view)
         key = key_of(module)
         common: dict[str, Any] = {
-            **{"id": request.id, "revision": request.revision},
+            **request.numbers,
             **{"key": key, "edits": edits, "literals": literals},
         }
         if request.lean and key == request.known:
@@ -194,8 +194,7 @@ class Looks:
             key = key_of(module)
             content = self._content(seen, request, module, key)
         return SceneFound(
-            id=request.id,
-            revision=request.revision,
+            **request.numbers,
             key=key,
             payload=_without_held(content) if held else content,
             objects=loaded.names,

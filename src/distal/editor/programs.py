@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from distal.backends.base import Artifact
 from distal.backends.clike.interface import plain
-from distal.export.payload import compiled_module, lowered
+from distal.export.page_programs import compiled_module, lowered
 from distal.ir.nodes import Module, Origin
 from distal.ir.printer import print_identity
 from distal.lang.composed import Composed

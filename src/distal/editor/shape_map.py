@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 
 from distal.editor.messages import ShapeMap
-from distal.export.payload import PagePrograms, compiled
+from distal.export.page_programs import PagePrograms, compiled
 from distal.scene.lowering.part_map import PartMap, holders
 from distal.scene.tree.node import Node
 from distal.scene.viewing.viewable import Viewable

@@ -100,12 +100,12 @@ class StudioWorker:
             text = printed.getvalue()
             left = printed.length - len(text)
             more = f"\n… {left:,} characters more" if left else ""
-            first = [Printed(id=request.id, revision=request.revision, text=text + more)]
+            first = [Printed(**request.numbers, text=text + more)]
         return [*first, answer]
 
     def _answer(self, request: AppRequest) -> Message:
         begin = time.perf_counter()
-        number: dict[str, Any] = {"id": request.id, "revision": request.revision}
+        number = request.numbers
         if not isinstance(request, SourceRequest) or request.kind not in self.ready().abilities:
             return _refused(number, f"this worker cannot do '{request.kind}'")
         edits: tuple[Edit, ...] = ()
@@ -191,7 +191,7 @@ def serve(worker: StudioWorker, lines: Iterable[str], send: Send) -> None:
         else:
             # What arrived meanwhile may be newer.
             for dropped in mailbox.put(waiting):
-                send(Dropped(id=dropped.id, revision=dropped.revision))
+                send(Dropped(**dropped.numbers))
         while not arriving.empty():
             if not _received(arriving.get(), mailbox, send):
                 return
@@ -227,7 +227,7 @@ def _received(line: str | None, mailbox: Mailbox, send: Send) -> bool:
         send(_refused({"id": -1, "revision": -1}, f"'{request.kind}' is not a request"))
         return True
     for dropped in mailbox.put(request):
-        send(Dropped(id=dropped.id, revision=dropped.revision))
+        send(Dropped(**dropped.numbers))
     return True
 
 

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from distal.diagnostics import CompileError, LoadError
 from distal.export.page_options import PageOptions, check_buttons
-from distal.export.payload import PagePrograms
+from distal.export.page_programs import PagePrograms
 from distal.scene.lowering.ruler import CutImage, PlaceImage, RulerImage
 from distal.scene.viewing.viewable import Viewable
 

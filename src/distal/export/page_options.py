@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from distal.images.atomic_files import SaveError
 from distal.lang.render_options import checked_size, checked_time
-from distal.lang.units import UNITS
+from distal.lang.units import meters_of
 
 # What a page shows before its first frame.
 WEBP: Final = "webp"
@@ -115,7 +115,6 @@ def check_buttons(options: PageOptions, page: str) -> None:
         SaveError: The unit is unknown.
         ValueError: There is no panel.
     """
-    if options.unit not in UNITS:
-        raise SaveError(f"a unit is one of {', '.join(UNITS)}, not {options.unit!r:.40}")
+    meters_of(options.unit, SaveError)
     if options.embed or not options.panel:
         raise ValueError(f"{page} has its buttons in the panel, which this one lacks")

@@ -13,8 +13,8 @@ from typing import Any, Final
 
 from distal.diagnostics import LoadError
 from distal.export.page_options import PageOptions, check_buttons
-from distal.export.payload import PagePrograms
-from distal.lang.units import MILLIMETER, UNITS
+from distal.export.page_programs import PagePrograms
+from distal.lang.units import MILLIMETER, meters_of
 from distal.mesh.files import stl, three_mf
 from distal.mesh.meshing import MeshRequest, extent_of
 from distal.mesh.printable import BUFFERS, packed_tables, print_passes
@@ -82,7 +82,7 @@ def printing(node: Node, name: str, programs: PagePrograms, options: PageOptions
         "buffers": {programs.name_of(buffer): name for name, buffer in BUFFERS.items()},
         "lengths": lengths,
         "tables": base64.b64encode(tables).decode("ascii"),
-        "scale": UNITS[options.unit] / MILLIMETER,
+        "scale": meters_of(options.unit) / MILLIMETER,
         "frame": {**three_mf.frame_of(name), "stl": stl.HEADER.decode("ascii")},
         "isSharp": passes.is_sharp,
     }

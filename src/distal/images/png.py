@@ -73,7 +73,11 @@ def encode(array: NDArray[np.float32], texts: Mapping[str, str], bits: int = 8) 
         texts: The metadata by key.
         bits: Bits of a channel, 8 or 16.
     """
-    levels = quantise(array, bits)
+    return encode_levels(quantise(array, bits), texts)
+
+
+def encode_levels(levels: NDArray[Any], texts: Mapping[str, str]) -> bytes:
+    """Return a PNG of levels, (height, width, 3 or 4), uint8 or uint16; see ``encode``."""
     pixels = np.ascontiguousarray(levels[..., :3] if _is_opaque(levels) else levels)
     information = PngInfo()
     information.add(b"sRGB", _SRGB_INTENT)
@@ -81,7 +85,7 @@ def encode(array: NDArray[np.float32], texts: Mapping[str, str], bits: int = 8) 
         # add_text itself uses iTXt for text outside Latin-1.
         information.add_text(key, text)
     buffer = io.BytesIO()
-    if bits == 16:
+    if pixels.dtype == np.uint16:
         _write_deep(buffer, pixels, information)
     else:
         PillowImage.fromarray(pixels).save(
@@ -91,7 +95,7 @@ def encode(array: NDArray[np.float32], texts: Mapping[str, str], bits: int = 8) 
 
 
 def _is_opaque(levels: NDArray[Any]) -> bool:
-    return bool((levels[..., 3] == np.iinfo(levels.dtype).max).all())
+    return bool((levels[..., 3:] == np.iinfo(levels.dtype).max).all())
 
 
 def _write_deep(buffer: io.BytesIO, pixels: NDArray[np.uint16], information: PngInfo) -> None:

@@ -24,3 +24,18 @@ cm: Final = UNITS["cm"] / MILLIMETER
 metre: Final = UNITS["m"] / MILLIMETER
 inch: Final = UNITS["inch"] / MILLIMETER
 foot: Final = UNITS["ft"] / MILLIMETER
+
+
+def meters_of(unit: str, error: type[Exception] = ValueError) -> float:
+    """Return the length of a unit in meters.
+
+    Args:
+        unit: Its name, a key of ``UNITS``.
+        error: The class of the exception for an unknown unit.
+
+    Raises:
+        Exception: There is no such unit; of the class ``error``.
+    """
+    if unit not in UNITS:
+        raise error(f"a unit is one of {', '.join(UNITS)}, not {unit!r:.40}")
+    return UNITS[unit]

@@ -25,10 +25,8 @@ from distal.lang import (
     vec3,
     vec4,
 )
+from distal.mesh.root_arithmetic import share_of_root
 
-# The most steps along an edge. Illinois steps have the order 1.44 for a smooth field; beside a
-# crease they are slow (12 of them left an error of 1 %): each third step halves the interval.
-ROOT_STEPS = 48
 # Gradients are taken this far off the surface, as a share of the edge: there many exact fields are
 # roots of 0, whose gradient is 0 or noise.
 OFF_SURFACE = 1e-5
@@ -82,9 +80,6 @@ def root_on_edge(
 ) -> tuple[float, vec3]:
     """Return where the field is 0 on an edge, as a share of the edge, and the gradient there.
 
-    By the Illinois variant of false position, which keeps the sign change between its two ends,
-    and by bisection.
-
     Args:
         field: The field.
         start: The first end of the edge.
@@ -93,29 +88,11 @@ def root_on_edge(
         second: The value at the second end; its sign differs.
         off: How far off the surface the gradient is taken, as a share of the edge.
     """
-    a = 0.0
-    b = 1.0
-    at_a = first
-    at_b = second
-    side = 0
-    t = 0.5
-    close = 1e-15 * (abs(first) + abs(second))
-    for step in range(ROOT_STEPS):
-        t = clamp((a * at_b - b * at_a) / (at_b - at_a), a, b)
-        t = 0.5 * (a + b) if step % 3 == 2 else t
-        value = field(start + way * t)
-        if abs(value) <= close or b - a < 1e-14:
-            break
-        if (value < 0.0) == (first < 0.0):
-            at_b = at_b * 0.5 if side == 1 else at_b
-            a = t
-            at_a = value
-            side = 1
-        else:
-            at_a = at_a * 0.5 if side == -1 else at_a
-            b = t
-            at_b = value
-            side = -1
+
+    def along(t: float) -> float:
+        return field(start + way * t)
+
+    t = share_of_root(along, first, second)
     outside = off if first < 0.0 else -off
     slope = gradient(field, start + way * (t + outside))
     return t, slope

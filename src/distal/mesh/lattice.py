@@ -16,7 +16,6 @@ from distal.mesh.solid import Bools, Floats, Integers
 
 BRICK: Final = 8  # cells along each side of a brick
 # A key has 21 bits for each coordinate, which may be negative for cells beside the lattice.
-MOST_BRICKS_A_SIDE: Final = 2**20 - 2
 _SHIFT: Final = 8
 _ONES: Final = (1 << 21) - 1
 # The lattice begins and ends this many cells beyond the box. Faces of shapes are often at round

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
-from distal.lang.units import MILLIMETER, UNITS
+from distal.lang.units import MILLIMETER, meters_of
 from distal.polygons.bricks import CELLS, BrickSamples, from_grid
 from distal.polygons.colors import ColorGrid, color_grid
 from distal.polygons.distances import (
@@ -182,7 +182,7 @@ def _imported(mesh: SourceTriangles, name: str, wanted: ImportRequest) -> Import
     if wanted.unit is not None:
         # A format without a unit is in millimeters, as programs for printers read it.
         meters = MILLIMETER if mesh.meters is None else mesh.meters
-        mesh = replace(mesh, points=mesh.points * (meters / UNITS[wanted.unit]))
+        mesh = replace(mesh, points=mesh.points * (meters / meters_of(wanted.unit, LoadError)))
     if wanted.up == "z":
         x, y, z = mesh.points.T
         mesh = replace(mesh, points=np.stack([x, z, -y], axis=1))
@@ -296,13 +296,3 @@ def notice_of(report: ImportReport) -> str:
         f"places; {lost if report.lost > 0.0 else 'no thin part is lost'}; "
         f"spacing={report.spacing / 2:.3g} is finer"
     )
-
-
-def checked_unit(unit: str | None) -> None:
-    """Check the name of a unit.
-
-    Raises:
-        LoadError: There is no such unit.
-    """
-    if unit is not None and unit not in UNITS:
-        raise LoadError(f"a unit is one of {', '.join(UNITS)}, not {unit!r:.40}")

@@ -14,7 +14,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.lang.units import MILLIMETER, UNITS
+from distal.diagnostics import LoadError
+from distal.lang.units import MILLIMETER, meters_of
 from distal.polygons.bricks import BrickSamples, from_grid
 from distal.polygons.clouds import cloud_distances
 from distal.polygons.points import SourcePoints, checked_points, read_points
@@ -137,7 +138,8 @@ def imported_points_arrays(points: Any, normals: Any, wanted: PointsRequest) -> 
 def _imported(cloud: SourcePoints, name: str, wanted: PointsRequest) -> ImportedPoints:
     points, normals = cloud.points, cloud.normals
     if wanted.unit is not None:
-        points = points * (MILLIMETER / UNITS[wanted.unit])  # as meshes of formats without a unit
+        # As meshes of formats without a unit.
+        points = points * (MILLIMETER / meters_of(wanted.unit, LoadError))
     if wanted.up == "z":
         points, normals = points[:, [0, 2, 1]], normals[:, [0, 2, 1]]
         points, normals = points * (1.0, 1.0, -1.0), normals * (1.0, 1.0, -1.0)

@@ -12,7 +12,6 @@ from collections.abc import Callable
 
 from distal.fields.guarantees import UNBOUNDED
 from distal.lang import (
-    abs,
     atan2,
     cos,
     cross,
@@ -349,9 +348,3 @@ def equirectangular(direction: vec3) -> vec2:
     across = atan2(direction.x, -direction.z) / (2.0 * PI) + 0.5
     level = length(direction.xz)
     return vec2(across, atan2(direction.y, level) / PI + 0.5)
-
-
-@func
-def pixel_angle(fov: float, height: float) -> float:
-    """Return the width of one of ``height`` pixels, at distance 1 in the middle of the picture."""
-    return 2.0 * abs(tan(0.5 * fov)) / height

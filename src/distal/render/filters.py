@@ -29,10 +29,9 @@ WINDOW_0 = 0.35875
 WINDOW_1 = 0.48829
 WINDOW_2 = 0.14128
 WINDOW_3 = 0.01168
-# Mitchell's filter (B = C = 1/3) has a zero at 8/7 and ends at 2. Integrals of its absolute value:
-# from 0 to 1, to the zero, to the end.
+# Mitchell's filter (B = C = 1/3) has a zero at 8/7 and ends at 2. Integrals of its absolute value
+# from 0 to the zero, and to the end.
 LOBE_END = 8.0 / 7.0
-TO_ONE = 37.0 / 72.0
 NEGATIVE = (2.0 * (6.0 / 7.0) ** 3 - 1.75 * (6.0 / 7.0) ** 4) / 18.0
 TO_ZERO = 0.5 + NEGATIVE
 WHOLE = 0.5 + 2.0 * NEGATIVE

@@ -10,7 +10,7 @@ import time
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
@@ -45,24 +45,16 @@ from distal.runtime.lowered import Lowered
 from distal.runtime.moving import moved_resources
 from distal.runtime.passes import Passes, over_picture
 from distal.runtime.photons import PhotonPasses, PhotonProgram
-from distal.runtime.standard_executor import StandardExecutor, ValueOf, all_values
+from distal.runtime.standard_executor import ValueOf, all_values
+from distal.runtime.tape_executor import TapeExecutor
 from distal.runtime.uniform_values import DeclaredUniforms, chosen_uniforms
 
 if TYPE_CHECKING:
     from distal.devices.cpu import CpuKernel
     from distal.devices.gpu import GpuKernel
-    from distal.images.height_map import HeightMap
-    from distal.runtime import fills, function_tapes, heights, number_slopes, sweeps
-    from distal.tape import box_tape, proofs
+    from distal.runtime import sweeps
     from distal.tape.interval_rules import Ends
-    from distal.tape.proofs import Proof, Refutation
 else:
-    fills = LazyModule("distal.runtime.fills")
-    function_tapes = LazyModule("distal.runtime.function_tapes")
-    heights = LazyModule("distal.runtime.heights")
-    box_tape = LazyModule("distal.tape.box_tape")
-    proofs = LazyModule("distal.tape.proofs")
-    number_slopes = LazyModule("distal.runtime.number_slopes")
     sweeps = LazyModule("distal.runtime.sweeps")
 
 
@@ -85,18 +77,13 @@ class DrawTarget:
     adapter: str | None = None
 
 
-class PythonExecutor(StandardExecutor):
+class PythonExecutor(TapeExecutor):
     """Runs scene code for Python; keeps compiled kernels until the process ends."""
 
     def __init__(self) -> None:
         super().__init__()
         self.kernels = KernelCache()
         self.frames = EarlierFrames(self)
-
-    @cached_property
-    def tapes(self) -> function_tapes.FunctionTapes:
-        """The tapes of shapes."""
-        return function_tapes.FunctionTapes()
 
     def render(self, image: Image | Composed, options: RenderOptions) -> Picture:
         """Render an image, a scene, or a view of a scene.
@@ -417,142 +404,6 @@ class PythonExecutor(StandardExecutor):
             columns: The values of each of its parameters, one row each; or the two ends of these.
         """
         return sweeps.sweep(self.lower(function, None), columns)
-
-    def added_slope(
-        self,
-        numbers: Composed,
-        shape: Composed,
-        changes: Sequence[float | None],
-        unknown: number_slopes.Unknown,
-        inner: Sequence[number_slopes.Inner],
-        region: tuple[Sequence[float], Sequence[float]],
-        *,
-        own: bool,
-    ) -> float:
-        """Return by how much a shape is steeper at most because its numbers differ by place.
-
-        Args:
-            numbers: The numbers, as a function of the point and of unknown values.
-            shape: The shape, as a function of the point, the numbers, the unknown values, and the
-                values of the shapes below it.
-            changes: How much the value changes for each unit of each number, where that is known.
-            unknown: The ends of the components of the unknown values.
-            inner: What is known of the shapes below it.
-            region: The corners of the region.
-            own: Whether the shape is a function of the author.
-
-        Raises:
-            TapeError: No bound is known; the message says why.
-        """
-        lowered = self.lower(numbers, None), self.lower(shape, None)
-        what = number_slopes.VaryingShape(*lowered, changes, unknown, inner, own)
-        return number_slopes.added_slope(what, *region)
-
-    def fill(
-        self,
-        shape: Composed,
-        view: Sequence[float],
-        colors: Sequence[Sequence[float]],
-        options: RenderOptions,
-        ready: function_tapes.Ready | None = None,
-    ) -> Picture:
-        """Fill a flat shape with one color, and what is around it with another.
-
-        Args:
-            shape: The shape.
-            view: The left edge of the picture, the width of a pixel, the upper edge, and the height
-                of a pixel, which is negative.
-            colors: The display values of a pixel for each number of samples inside, 0 to all.
-            options: Size, time, parameters, threads, progress and cancel.
-            ready: Returns the shape's tape, if it has one without compilation.
-        """
-        shades = np.array(colors, np.float32)
-        return fills.fill(self, shape, view, shades, options, ready)
-
-    def heights(
-        self,
-        shape: Composed,
-        gradient: Composed,
-        view: heights.RayView,
-        options: RenderOptions,
-        ready: function_tapes.Ready | None = None,
-    ) -> HeightMap:
-        """Return the first surface of a solid along parallel rays.
-
-        Args:
-            shape: The shape.
-            gradient: Its gradient.
-            view: Where the rays are.
-            options: Size, time, parameters, threads, progress and cancel.
-            ready: Returns the shape's tape, if it has one without compilation.
-        """
-        return heights.heights(self, shape, gradient, view, options, ready)
-
-    def prove(
-        self,
-        function: Composed,
-        low: Sequence[float],
-        high: Sequence[float],
-        params: Mapping[str, Any] | None = None,
-        time: float = 0.0,
-        most: int | None = None,
-    ) -> Proof:
-        """Return a bound on the slope of a function of a point, and a box, within a region.
-
-        Args:
-            function: The function; its numbers have their defaults.
-            low: The lower corner of the region.
-            high: Its upper corner.
-            params: Values of parameters by name. None: the function may depend on none, nor on the
-                time.
-            time: The time in seconds.
-            most: The largest number of operations of the function; None has no limit.
-
-        Raises:
-            TapeError: Nothing can be proved; the message says why.
-        """
-        tape = function_tapes.tape_for(self.lowered(function), params, time)
-        return proofs.prove(tape, low, high, most)
-
-    def box_tape(
-        self, function: Composed, params: Mapping[str, Any] | None = None, time: float = 0.0
-    ) -> box_tape.BoxTape:
-        """Return a function of a point as a tape that is evaluated over boxes, in 64 bits.
-
-        Args:
-            function: The function; its numbers have their defaults.
-            params: Values of parameters by name; the others have their defaults.
-            time: The time in seconds.
-
-        Raises:
-            TapeError: The function cannot be a tape; the message says why.
-        """
-        lowered = self.lowered(function)
-        tape = function_tapes.tape_for(lowered, params or {}, time, precision=64)
-        return box_tape.BoxTape.of(tape)
-
-    def refute(
-        self,
-        function: Composed,
-        slope: float,
-        region: tuple[Sequence[float], Sequence[float]],
-        params: Mapping[str, Any] | None = None,
-        time: float = 0.0,
-    ) -> Refutation | None:
-        """Return a place where a function is certainly steeper than a slope, if one is found.
-
-        Args:
-            function: The function; its numbers have their defaults.
-            slope: The slope.
-            region: The corners of the region.
-            params: Values of parameters by name, as for ``prove``.
-            time: The time in seconds.
-
-        Raises:
-            TapeError: Nothing can be said of the function's slope; the message says why.
-        """
-        tape = function_tapes.tape_for(self.lowered(function), params, time)
-        return proofs.refute(tape, slope, *region)
 
     def steepest(
         self, gradient: Composed, points: Sequence[Sequence[float]]

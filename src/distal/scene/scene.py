@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 from distal.fields.guarantees import Limit
 from distal.frontend import Assembly
 from distal.ir.collection import paused_collection
-from distal.ir.nodes import EntryKind, Param, Read, Return
+from distal.ir.nodes import EntryKind
 from distal.ir.types import FRAME, VEC4
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
@@ -32,9 +32,9 @@ from distal.scene.looks.rows import as_look
 from distal.scene.lowering.cells import check_cells
 from distal.scene.lowering.layers import Layer, PathLayer
 from distal.scene.lowering.photon_functions import casts_caustics
-from distal.scene.lowering.photons import scene_photons
-from distal.scene.lowering.picture import NORMALS, RANGED, SceneLowering
+from distal.scene.lowering.picture import NORMALS, SceneLowering
 from distal.scene.lowering.section import sectioned
+from distal.scene.lowering.view import DisplayEncoding, View
 from distal.scene.objects.field import BaseShape
 from distal.scene.scene_arguments import (
     checked_exposure,
@@ -570,19 +570,15 @@ class Scene(Composed, Presentable):
         """Return the scene with another exposure or tone map; None keeps the scene's own value."""
         if exposure is None and tone_map is None:
             return self
-        made = Scene.__new__(Scene)
-        made.__dict__.update({n: v for n, v in self.__dict__.items() if n != "_whole"})
+        made = self._copied()
         if exposure is not None:
             made.numbers = {**self.numbers, "exposure": checked_exposure(exposure, self.place)}
         if tone_map is not None:
             made.tone_map = one_of("tone map", tone_map, WORDS["tone_map"], self.place)
-        made.display = DisplayEncoding(made)
         given = {"exposure": exposure, "tone_map": tone_map}
         said = {name: value for name, value in given.items() if value is not None}
         made.asked_display = {**self.asked_display, **said}
-        made._pictures = {}
         made._whole = True
-        copy_loaded_from(self, made)
         return made
 
     @cached_property
@@ -592,13 +588,18 @@ class Scene(Composed, Presentable):
         Its programs read the uniforms of ``CutPlane.settings``; camera and light are those of the
         whole scene.
         """
-        made = Scene.__new__(Scene)
-        kept = ("_whole", "sectioned", "renderer")
-        made.__dict__.update({n: v for n, v in self.__dict__.items() if n not in kept})
+        made = self._copied()
         made.shape = BaseShape._of(sectioned(self.shape.node))
+        made._whole = True
+        return made
+
+    def _copied(self) -> Scene:
+        """Return a copy that can be changed, without what was computed of this scene."""
+        made = Scene.__new__(Scene)
+        computed = ("_whole", "sectioned", "renderer")
+        made.__dict__.update({n: v for n, v in self.__dict__.items() if n not in computed})
         made.display = DisplayEncoding(made)
         made._pictures = {}
-        made._whole = True
         copy_loaded_from(self, made)
         return made
 
@@ -617,73 +618,3 @@ class Scene(Composed, Presentable):
         parts: list[Any] = [*self.lights, self.camera, self.background, self.material]
         for part in parts:
             yield from part.functions()
-
-
-class View(Composed):
-    """A view of a scene, as an image."""
-
-    kind: ClassVar[EntryKind] = EntryKind.IMAGE
-    signature = (("frame", FRAME),)
-    result = VEC4
-
-    def __init__(
-        self,
-        scene: Scene,
-        view: str,
-        transparent: bool,
-        sampled: bool,
-        encoded: bool,
-        steered: bool,
-        adaptive: bool,
-        paths: bool,
-        filter: str,
-        photons: bool,
-    ) -> None:
-        copy_loaded_from(scene, self)
-        self.name = scene.name if view == "color" else f"{scene.name} ({view})"
-        self._scene = scene
-        self._view = view
-        self._transparent, self._sampled, self._encoded = transparent, sampled, encoded
-        self._steered = steered
-        self._passes, self._filter = adaptive, filter
-        self.adaptive, self.refined = adaptive and not paths, paths
-        if photons:
-            self.photons = scene_photons(scene, steered=steered)
-        self.display = scene.display if view == "color" and not encoded else None
-        self.glow = scene.glow
-        self.ranged = view in RANGED
-
-    def compose(self, assembly: Assembly) -> str:
-        """Add the function that maps the frame to a pixel, and return its name."""
-        return SceneLowering(assembly, self._scene, paths=self.refined).main(
-            self._view,
-            transparent=self._transparent,
-            sampled=self._sampled,
-            encoded=self._encoded and self._view == "color",
-            steered=self._steered,
-            adaptive=self._passes,
-            paths=self.refined,
-            filter=self._filter,
-            photons=self.photons is not None,
-        )
-
-    def functions(self) -> Iterable[Func]:
-        """Yield the scene functions that this object calls."""
-        return self._scene.functions()
-
-
-class DisplayEncoding(Composed):
-    """The function that encodes a scene's linear light for display."""
-
-    signature = (("color", VEC4),)
-    result = VEC4
-
-    def __init__(self, scene: Scene) -> None:
-        self.name = f"display of {scene.name}"
-        self._scene = scene
-
-    def compose(self, assembly: Assembly) -> str:
-        """Add the function that maps a linear color to a display value."""
-        made = SceneLowering(assembly, self._scene)
-        value = made.displayed(Read("color", VEC4))
-        return assembly.define("display_color", (Param("color", VEC4),), VEC4, (Return(value),))

@@ -52,7 +52,7 @@ def read(path: str | PathLike[str]) -> Samples:
     place = Path(path)
     try:
         size = place.stat().st_size
-        found = _by_wave(place) if place.suffix.lower() in _WAVE_ENDS else _by_pyav(place)
+        found = _found(place)
     except OSError as error:
         raise _unreadable(place, error.strerror or str(error)) from None
     except (wave.Error, EOFError, ValueError, IndexError) as error:
@@ -61,6 +61,17 @@ def read(path: str | PathLike[str]) -> Samples:
     if found.channels.shape[1] == 0:
         raise _unreadable(place, "it has no samples")
     return found
+
+
+def _found(place: Path) -> Samples:
+    if place.suffix.lower() not in _WAVE_ENDS:
+        return _by_pyav(place)
+    try:
+        return _by_wave(place)
+    except wave.Error as error:
+        if "unknown format" not in str(error):
+            raise
+        return _by_pyav(place)  # samples that are floats, for example
 
 
 def _unreadable(place: Path, reason: str) -> LoadError:
@@ -79,6 +90,8 @@ def _by_wave(place: Path) -> Samples:
         width, channels, count = file.getsampwidth(), file.getnchannels(), file.getnframes()
         rate = file.getframerate()
         _check(rate, count)
+        if width not in _FULL:
+            raise ValueError(f"it has {8 * width} bits a sample; 8, 16, 24 and 32 can be")
         data = file.readframes(count)
     whole = len(data) // (width * channels) * (width * channels)
     values = _numbers(data[:whole], width) / np.float32(_FULL[width])
@@ -100,7 +113,7 @@ def _by_pyav(place: Path) -> Samples:
     try:
         av: Any = imported("av")
     except PackageError as error:
-        raise LoadError(f"a sound other than .wav needs PyAV: {error}") from None
+        raise LoadError(f"a sound other than .wav with whole numbers needs PyAV: {error}") from None
     try:
         with av.open(str(place)) as container:
             if not container.streams.audio:

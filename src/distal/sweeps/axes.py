@@ -14,6 +14,7 @@ from typing import Any, Final
 from distal.lang.chosen_values import by_key
 from distal.lang.number_text import shown
 from distal.lang.parameters import Parameter, ParameterKind
+from distal.lang.render_options import checked_time
 
 # Name of the axis that is no parameter.
 TIME: Final = "time"
@@ -55,7 +56,8 @@ def axis_of(name: str, given: Any, parameters: Sequence[Parameter]) -> Axis:
     known = by_key(parameters)
     if name not in known:
         if name == TIME:
-            times = tuple(map(float, _spread(name, given) or _listed(given, ",")))
+            times = tuple(map(_time, _spread(name, given) or _listed(given, ",")))
+            _check_any(TIME, times)
             return Axis(TIME, TIME, times, tuple(map(shown, times)), is_time=True)
         names = ", ".join([*dict.fromkeys(p.name for p in known.values()), TIME])
         raise ValueError(f"there is no parameter '{name:.60}'; a sweep takes {names}")
@@ -72,9 +74,25 @@ def axis_of(name: str, given: Any, parameters: Sequence[Parameter]) -> Axis:
             parameter.parse(v) if isinstance(v, str) else parameter.check(v)
             for v in _listed(given, separator)
         )
-    if not values:
-        raise ValueError(f"'{parameter.label}' has no values")
+    _check_any(parameter.label, values)
     return Axis(parameter.name, parameter.label, values, tuple(_text(parameter, v) for v in values))
+
+
+def _time(value: Any) -> float:
+    """Return a time in seconds.
+
+    Raises:
+        ValueError: It is no number, or out of range.
+    """
+    try:
+        return checked_time(value)
+    except TypeError as error:
+        raise ValueError(str(error)) from None
+
+
+def _check_any(label: str, values: Sequence[Any]) -> None:
+    if not values:
+        raise ValueError(f"'{label}' has no values")
 
 
 def _spread(label: str, given: Any) -> list[float] | None:

@@ -13,7 +13,7 @@ import itertools
 import json
 import threading
 import time as clock
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from os import PathLike
@@ -21,13 +21,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from distal.devices.base import PartError, cancel_test
 from distal.diagnostics import DeviceError
 from distal.images.atomic_files import SaveError, check_destination, replacement
 from distal.images.picture import Picture
-from distal.images.png import encode, quantise
+from distal.images.png import encode_levels, quantise
 from distal.lang.presentable import Presentable
 from distal.lang.render_options import Cancel, RenderOptions
 from distal.loading import loaded_from
@@ -185,12 +184,12 @@ class _Sweep:
             rows[index] = row
         texts = {"Software": f"distal {__version__}", "distal:sweep": json.dumps(self._recipe())}
         with replacement(path) as file:
-            file.write(encode(_display(sheet.pixels()), texts))
+            file.write(encode_levels(sheet.pixels(), texts))
         table = path.with_suffix(".csv")
-        listed = tuple(rows[i] for i in sorted(rows))
-        _write_table(table, listed)
+        in_order = tuple(rows[i] for i in sorted(rows))
+        _write_table(table, in_order)
         self._check("their places are empty")
-        return FinishedSweep(path, table, len(rows), len(rows), listed, 0.0)
+        return FinishedSweep(path, table, len(rows), len(rows), in_order, 0.0)
 
     def folder(self, path: Path, fresh: bool) -> FinishedSweep:
         """Render the pictures that are not there yet, and write each of them."""
@@ -204,7 +203,7 @@ class _Sweep:
         moving = [self._moving(values) for values in combinations(self.axes)]
         kept = [Frames([file], [m.options.time], m) for file, m in zip(files, moving, strict=True)]
         there = [] if fresh else [i for i, frame in enumerate(kept) if frame.is_there(0)]
-        rows = {i: known.get(files[i].name) or self._row(i, None, 0.0) for i in there}
+        rows = {i: self._row(i, None, 0.0) | known.get(files[i].name, {}) for i in there}
         rows = {i: self._with_measures(i, row) for i, row in rows.items()}
         rendered = [i for i in range(count) if i not in rows]
         try:
@@ -213,10 +212,10 @@ class _Sweep:
                     kept[index].write(0, picture)
                     rows[index] = row
         finally:
-            listed = tuple({"file": files[i].name, **rows[i]} for i in sorted(rows))
-            _write_table(path / _TABLE, listed)
+            in_order = tuple({"file": files[i].name, **rows[i]} for i in sorted(rows))
+            _write_table(path / _TABLE, in_order)
         self._check("the other pictures are kept: the same command renders only what failed")
-        return FinishedSweep(path, path / _TABLE, count, len(rendered), listed, 0.0)
+        return FinishedSweep(path, path / _TABLE, count, len(rendered), in_order, 0.0)
 
     def _moving(self, values: Mapping[str, Any]) -> MovingPicture:
         """Return the picture of some values."""
@@ -336,24 +335,17 @@ def _source(obj: Any, name: str) -> str:
     return name if known is None else known.source
 
 
-def _display(levels: NDArray[np.uint8]) -> NDArray[np.float32]:
-    """Return levels as opaque display values."""
-    opaque = np.ones((*levels.shape[:2], 4), np.float32)
-    opaque[..., :3] = levels.astype(np.float32) / np.float32(255.0)
-    return opaque
-
-
-def _write_table(path: Path, rows: Any) -> None:
-    """Write the rows as CSV.
+def _write_table(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Write the rows as CSV; what some of them do not have is empty there.
 
     Raises:
         SaveError: It cannot be written.
     """
-    rows = list(rows)
     if not rows:
         return
     text = io.StringIO()
-    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+    columns = list(dict.fromkeys(name for row in rows for name in row))
+    writer = csv.DictWriter(text, columns, lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
     with replacement(path) as file:
@@ -361,9 +353,13 @@ def _write_table(path: Path, rows: Any) -> None:
 
 
 def _known_rows(path: Path) -> dict[str, dict[str, Any]]:
-    """Return the rows of an earlier table by file; none if it cannot be read."""
+    """Return the figures of an earlier table by file; none if it cannot be read."""
+    known = {*_FIGURES, *COLUMNS}
     try:
         with open(path, encoding="utf-8", newline="") as file:
-            return {row.pop("file"): dict(row) for row in csv.DictReader(file)}
+            return {
+                row["file"]: {name: text for name, text in row.items() if name in known}
+                for row in csv.DictReader(file)
+            }
     except (OSError, KeyError, csv.Error, UnicodeDecodeError):
         return {}

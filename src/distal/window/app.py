@@ -9,7 +9,6 @@ from __future__ import annotations
 import sys
 import time
 import traceback
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -29,19 +28,12 @@ from distal.load_watch import LoadWatch
 from distal.loading import EXAMPLE_PREFIX, file_of
 from distal.saved_files import PERIOD_S, FileWatcher
 from distal.scene.steering import STILL
-from distal.scene.viewing import interaction
 from distal.scene.viewing.guide import point_text
 from distal.scene.viewing.viewable import view_label
+from distal.window.canvas_input import CanvasInput
 from distal.window.frame_renderers import FrameRenderer, RenderedFrame, picture, render_options
 from distal.window.frame_scheduler import FrameRequest, FrameScheduler
-from distal.window.keys import (
-    BUTTON_BITS,
-    REPEATED,
-    Action,
-    action_of_character,
-    action_of_key,
-    code_of_key,
-)
+from distal.window.keys import Action
 from distal.window.log import Log
 from distal.window.overlay import Overlay
 from distal.window.overlay_content import OverlayContent, overlay_content
@@ -59,8 +51,6 @@ if TYPE_CHECKING:
 _NOTE_S: Final = 4.0
 _FIGURES_S: Final = 0.25  # digits that change faster are not readable
 _SLOW_S: Final = 0.4  # after this time a note says what the window waits for
-_REPEAT_AFTER_S: Final = 0.35
-_REPEAT_S: Final = 1 / 15
 _EXPECTED: Final = (CompileError, LoadError, DeviceError, SaveError, ValueError, TypeError)
 
 
@@ -119,10 +109,9 @@ class Application:
         self._status, self._status_at = "", float("-inf")
         self._shown_content: OverlayContent | None = None
         self._wake_at: float | None = None
-        self._held: Action | None = None
         self._full_screen_from: tuple[int, ...] | None = None
         session.ruler.compile_aside(lambda: loop.call_soon_threadsafe(self.wake))
-        self._listen()
+        CanvasInput(session, canvas, loop, self)
 
     # The loop
 
@@ -130,7 +119,7 @@ class Application:
         """Start the window; called when the event loop runs."""
         self._canvas.request_draw(self._draw)
         self._loop.call_later(PERIOD_S, self._look_at_files)
-        self._resize()
+        self.resize()
 
     def stop(self, patience_s: float) -> bool:
         """Stop the worker; return whether it ended within ``patience_s`` seconds."""
@@ -376,71 +365,14 @@ class Application:
 
     # Input
 
-    def _listen(self) -> None:
-        handlers: Mapping[str, Callable[[dict[str, Any]], None]] = {
-            "key_down": self._key_down,
-            "key_up": self._key_up,
-            "char": self._typed,
-            "pointer_down": self._pressed,
-            "pointer_move": self._moved,
-            "pointer_up": self._released,
-            "double_click": self._double_clicked,
-            "wheel": self._wheeled,
-            "resize": lambda _: self._resize(),
-        }
-        for event, handler in handlers.items():
-            self._canvas.add_event_handler(handler, event)
-
-    def _resize(self) -> None:
+    def resize(self) -> None:
+        """Take the new size of the canvas."""
         self._session.size = self._canvas.get_logical_size()
         self._canvas.request_draw()
         self.wake()
 
-    def _key_down(self, event: dict[str, Any]) -> None:
-        shift = "Shift" in event["modifiers"]
-        modified = shift or "Control" in event["modifiers"]
-        if self._takes_key(event, down=True):
-            return
-        action = action_of_key(event["key"], modified=modified)
-        if action is None:
-            return
-        if action is Action.QUIT and self._session.ruler.is_on:
-            action = Action.RULER  # Esc removes the ruler first
-        self._act(action, shift=shift)
-        if action in REPEATED:
-            self._held = action
-            self._loop.call_later(_REPEAT_AFTER_S, self._repeat, action, shift)
-
-    def _takes_key(self, event: dict[str, Any], *, down: bool) -> bool:
-        """Give a key to a picture that reads the keyboard; return whether it is taken."""
-        if not self._session.viewable.reads_keyboard:
-            return False
-        modified = not {"Control", "Alt", "Meta"}.isdisjoint(event["modifiers"])
-        code = code_of_key(event["key"], modified=modified)
-        if code is not None:
-            self._session.key_changed(code, down=down)
-            self.wake()
-        return code is not None
-
-    def _key_up(self, event: dict[str, Any]) -> None:
-        if self._takes_key(event, down=False):
-            return
-        if action_of_key(event["key"]) is self._held:
-            self._held = None
-
-    def _repeat(self, action: Action, shift: bool) -> None:
-        if self._held is action and not self._canvas.get_closed():
-            self._act(action, shift=shift)
-            self._loop.call_later(_REPEAT_S, self._repeat, action, shift)
-
-    def _typed(self, event: dict[str, Any]) -> None:
-        if self._session.viewable.reads_keyboard:
-            return
-        action = action_of_character(event["data"])
-        if action is not None:
-            self._act(action)
-
-    def _act(self, action: Action, *, shift: bool = False) -> None:
+    def act(self, action: Action, *, shift: bool = False) -> None:
+        """Perform the action of a key."""
         if action is Action.QUIT:
             self._canvas.close()
             return
@@ -456,32 +388,6 @@ class Application:
                 self._notify(refusal)
                 self._log("refused", text=refusal)
             self._session.act(action, time.monotonic(), shift=shift)
-        self.wake()
-
-    def _pressed(self, event: dict[str, Any]) -> None:
-        shift = "Shift" in event["modifiers"]
-        x, y, button = event["x"], event["y"], event["button"]
-        self._session.buttons |= BUTTON_BITS.get(button, 0)
-        self._session.press(x, y, button, time.monotonic(), shift=shift)
-        self.wake()
-
-    def _moved(self, event: dict[str, Any]) -> None:
-        self._session.drag(event["x"], event["y"], time.monotonic())
-        self.wake()
-
-    def _released(self, event: dict[str, Any]) -> None:
-        self._session.buttons &= ~BUTTON_BITS.get(event.get("button", 1), 0)
-        self._session.release(time.monotonic())
-        self.wake()
-
-    def _double_clicked(self, event: dict[str, Any]) -> None:
-        self._session.double_click(event["x"], event["y"], time.monotonic())
-        self.wake()
-
-    def _wheeled(self, event: dict[str, Any]) -> None:
-        is_pinch = "Control" in event["modifiers"]
-        notches = interaction.notches_of(event["dy"], 0, is_pinch)  # dy is in pixels
-        self._session.wheel(notches, time.monotonic())
         self.wake()
 
     def _save(self) -> None:

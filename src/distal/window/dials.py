@@ -6,7 +6,7 @@ parameter's value after a move. Does not depend on windows.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, TypeAlias, assert_never
 
@@ -201,3 +201,21 @@ def lines_of(rows: Sequence[Dial]) -> list[Line]:
             lines.append(group)
         lines.append(dial)
     return lines
+
+
+def valid_values(parameters: Sequence[Parameter], values: Mapping[str, Value]) -> dict[str, Value]:
+    """Return the values that are still valid for parameters with these names."""
+    known = {parameter.name: parameter for parameter in parameters}
+    return {
+        name: value
+        for name, value in values.items()
+        if name in known and _is_valid(known[name], value)
+    }
+
+
+def _is_valid(parameter: Parameter, value: Value) -> bool:
+    try:
+        parameter.check(value)
+    except (TypeError, ValueError):
+        return False
+    return True

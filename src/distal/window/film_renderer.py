@@ -19,7 +19,7 @@ from distal.runtime.accumulation import Film
 from distal.runtime.allocation import MOST_OF_A_PASS, Pass
 from distal.scene.steering import STILL
 from distal.window.frame_renderers import RenderedFrame, picture, render_options
-from distal.window.session import Shot
+from distal.window.shot import Shot
 
 if TYPE_CHECKING:
     from distal.images.picture import Picture

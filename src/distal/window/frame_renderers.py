@@ -23,7 +23,7 @@ from distal.render.film import SAMPLES
 from distal.runtime.executor import DrawTarget
 from distal.runtime.frame_history import LiveFrames
 from distal.scene.view_ranges import with_range
-from distal.window.session import Shot
+from distal.window.shot import Shot
 
 if TYPE_CHECKING:
     from distal.images.picture import Picture

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 from distal.window.film_renderer import MOST_SAMPLES, FilmRenderer
 from distal.window.frame_renderers import FrameRenderer, RenderedFrame
 from distal.window.resolution import ResolutionChooser
-from distal.window.session import Shot
+from distal.window.shot import Shot
 from distal.window.worker import Worker
 
 if TYPE_CHECKING:

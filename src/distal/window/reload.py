@@ -16,7 +16,8 @@ from distal.loading import load, loaded_from
 from distal.scene.steering import STILL
 from distal.scene.viewing.guide import Moment
 from distal.scene.viewing.viewable import Viewable, checked_picture, viewable
-from distal.window.session import Shot, valid_values
+from distal.window.dials import valid_values
+from distal.window.shot import Shot
 
 if TYPE_CHECKING:
     from distal.window.frame_renderers import FrameRenderer

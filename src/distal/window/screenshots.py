@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from distal.window.session import Shot
+from distal.window.shot import Shot
 
 
 def free_name(folder: Path, title: str, shot: Shot) -> Path:

@@ -1,34 +1,33 @@
 """The state of a window: time, camera, parameters, view and the current drag.
 
 Input: a ``Viewable``, actions of keys, pointer events, readings of a monotonic clock. Output: a
-``Shot``. Equal shots look the same, so no frame is drawn twice. Does not depend on displays,
-devices or threads.
+``Shot``. Does not depend on displays, devices or threads.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 from enum import Enum, auto
 from typing import TYPE_CHECKING, Final
 
-from distal.lang.live_textures import NO_KEYS, Keys
+from distal.lang.live_textures import Keys
 from distal.lang.parameter_values import Value
-from distal.lang.parameters import Parameter
 from distal.scene.section import CutPlane
 from distal.scene.steering import Steering
 from distal.scene.viewing import interaction
 from distal.scene.viewing.guide import Moment
 from distal.scene.viewing.viewable import COLOR
 from distal.window.clock import Clock
-from distal.window.dials import Dial, Line, dials, lines_of
+from distal.window.dials import Dial, Line, dials, lines_of, valid_values
 from distal.window.gestures import Mouse, on_picture, orbited, panned, zoomed
 from distal.window.guided_camera import SHOWN, GuidedCamera
 from distal.window.keys import Action
 from distal.window.layout import Table, time_bar, time_track
 from distal.window.ruler_tool import NEEDS_SOLID, RulerTool, Sight
 from distal.window.section_plane import SectionPlane
+from distal.window.shot import Shot
 
 if TYPE_CHECKING:
     from distal.scene.viewing.viewable import Viewable
@@ -49,38 +48,6 @@ _ARROWS: Final = {
     Action.UP: (0, 1),
     Action.DOWN: (0, -1),
 }
-
-
-@dataclass(frozen=True, slots=True)
-class Shot:
-    """Everything that a frame depends on, except its size.
-
-    Attributes:
-        time: Seconds.
-        parameters: Name and value of each parameter that is not at its default.
-        view: The name of the view.
-        steering: The movement of the camera; None if there is no movable camera.
-        mouse: The pointer for an ``@image``.
-        mode: How light is computed: "direct" or "path".
-        section: The plane that cuts the scene open; None if it is whole.
-        keys: The keyboard, for an ``@image`` that reads it.
-        buttons: The buttons of the mouse that are down, for an ``@image``.
-    """
-
-    time: float
-    parameters: tuple[tuple[str, Value], ...]
-    view: str
-    steering: Steering | None
-    mouse: Mouse
-    mode: str = "direct"
-    section: CutPlane | None = None
-    keys: Keys = NO_KEYS
-    buttons: int = 0
-
-    @property
-    def index(self) -> int:
-        """The number of the frame, computed from the time, so that it can be rendered again."""
-        return int(interaction.index_at(self.time))
 
 
 class Grab(Enum):
@@ -516,21 +483,3 @@ class Session:
     def _place(self, x: float, y: float) -> tuple[float, float]:
         width, height = self.size
         return on_picture(x / max(width, 1.0), 1 - y / max(height, 1.0))
-
-
-def valid_values(parameters: Sequence[Parameter], values: Mapping[str, Value]) -> dict[str, Value]:
-    """Return the values that are still valid for parameters with these names."""
-    known = {parameter.name: parameter for parameter in parameters}
-    return {
-        name: value
-        for name, value in values.items()
-        if name in known and _is_valid(known[name], value)
-    }
-
-
-def _is_valid(parameter: Parameter, value: Value) -> bool:
-    try:
-        parameter.check(value)
-    except (TypeError, ValueError):
-        return False
-    return True

@@ -156,7 +156,7 @@ def test_probe_of_an_image_lists_its_locals(run):
         (
             ("check", "picture.py"),
             1,
-            "error: 'picture' is no scene and no shape; claims are checked of these\n",
+            "error: 'picture' is no scene and no shape; guarantees are checked of these\n",
         ),
         (
             ("probe", "twisted.py", "--at", "640,0"),

@@ -118,11 +118,11 @@ class RenderJob:
 
     def drop(self) -> None:
         """Tell that it is not made."""
-        self._tell(Dropped(id=self.request.id, revision=self.request.revision))
+        self._tell(Dropped(**self.request.numbers))
 
     def run(self) -> ScratchFolder | None:
         """Render; return the folder of a picture that the browser has to fetch, or None."""
-        number: dict[str, Any] = {"id": self.request.id, "revision": self.request.revision}
+        number = self.request.numbers
         place: ScratchFolder | None = None
         result: Rendered | None = None
         try:
@@ -231,8 +231,7 @@ class RenderJob:
         remaining = (now - self._begin) * (1.0 - done) / done if done > _SURE else None
         self._tell(
             Progress(
-                id=self.request.id,
-                revision=self.request.revision,
+                **self.request.numbers,
                 done=done,
                 label=stage,
                 text=text,

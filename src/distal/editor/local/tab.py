@@ -11,7 +11,7 @@ import json
 import threading
 import time
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Final
 
 from distal.diagnostics import LoadError
 from distal.editor.local.early import EARLY_ID, EarlyWorker
@@ -116,7 +116,7 @@ class StudioTab:
         self, request: RenderRequest | CommandRequest | ChoicesRequest | CancelRequest
     ) -> None:
         """Begin or end a render, or answer a question about one."""
-        number: dict[str, Any] = {"id": request.id, "revision": request.revision}
+        number = request.numbers
         if self._renders is None:
             self._tell(_refusal(**number, text="nothing is rendered here"))
         elif isinstance(request, CancelRequest):
@@ -143,7 +143,7 @@ class StudioTab:
         if saved.conflict is None:
             name = request.file
             self._on_saved(Changed(files={name: request.text}, digests={name: saved.digest}))
-        return Answer(id=request.id, revision=request.revision, request="save", result=saved)
+        return Answer(**request.numbers, request="save", result=saved)
 
     def _started(self, early: EarlyWorker | None = None) -> WorkerProcess:
         worker: WorkerProcess

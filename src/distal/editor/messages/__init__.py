@@ -18,12 +18,12 @@ file's text, columns from 0, lines from 1. Texts of files end lines by a newline
 from __future__ import annotations
 
 from distal.editor.messages.checking import MessageError, field_types
+from distal.editor.messages.kinds import Message
 from distal.editor.messages.protocol import (
     LONGEST_MESSAGE,
     LONGEST_PRINTED,
     REQUESTS,
     RESPONSES,
-    Message,
     encoded,
     parsed,
     records,

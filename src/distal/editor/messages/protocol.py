@@ -6,96 +6,20 @@ Input: a message, or a JSON text. Output: the text, or the message after its che
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
-from typing import Final, TypeAlias
+from collections.abc import Iterator
+from typing import Final
 
 from distal.editor.messages.checking import MessageError, plain, record_of
+from distal.editor.messages.kinds import KINDS, Message
 from distal.editor.messages.records import Change, Edit, Mistake, ShapePlace, SourceLiteral
-from distal.editor.messages.requests import (
-    CancelRequest,
-    CheckRequest,
-    ChoicesRequest,
-    CommandRequest,
-    CountRequest,
-    ExportRequest,
-    HoldRequest,
-    LookRequest,
-    MapRequest,
-    ProbeRequest,
-    RenderRequest,
-    SaveRequest,
-    StopRequest,
-    TextRequest,
-    TimeRequest,
-    WriteRequest,
-)
-from distal.editor.messages.responses import (
-    Answer,
-    Changed,
-    Dropped,
-    Mistakes,
-    NumbersFound,
-    Printed,
-    Progress,
-    Ready,
-    Restarted,
-    SceneFound,
-)
+from distal.editor.messages.requests import AppRequest
+from distal.editor.messages.responses import Answer
 from distal.editor.messages.results import RenderFormat
 
 LONGEST_MESSAGE: Final = 64_000_000  # characters of a message
 LONGEST_PRINTED: Final = 20_000  # characters that are kept of what the author's code prints
-REQUESTS: Final = (
-    LookRequest,
-    HoldRequest,
-    WriteRequest,
-    CountRequest,
-    TimeRequest,
-    MapRequest,
-    ProbeRequest,
-    CheckRequest,
-    TextRequest,
-    ExportRequest,
-    RenderRequest,
-    CommandRequest,
-    ChoicesRequest,
-    CancelRequest,
-    SaveRequest,
-    StopRequest,
-)
-RESPONSES: Final = (
-    *(Ready, SceneFound, NumbersFound, Mistakes, Answer, Dropped),
-    *(Printed, Progress, Changed, Restarted),
-)
-Message: TypeAlias = (
-    LookRequest
-    | HoldRequest
-    | WriteRequest
-    | CountRequest
-    | TimeRequest
-    | MapRequest
-    | ProbeRequest
-    | CheckRequest
-    | TextRequest
-    | ExportRequest
-    | RenderRequest
-    | CommandRequest
-    | ChoicesRequest
-    | CancelRequest
-    | SaveRequest
-    | StopRequest
-    | Ready
-    | SceneFound
-    | NumbersFound
-    | Mistakes
-    | Answer
-    | Dropped
-    | Printed
-    | Progress
-    | Changed
-    | Restarted
-)
-_BY_KIND: Final[Mapping[str, type]] = {made.kind: made for made in (*REQUESTS, *RESPONSES)}
+REQUESTS: Final = tuple(made for made in KINDS.values() if issubclass(made, AppRequest))
+RESPONSES: Final = tuple(made for made in KINDS.values() if not issubclass(made, AppRequest))
 
 
 def encoded(message: Message) -> str:
@@ -118,9 +42,9 @@ def parsed(text: str | bytes) -> Message:
     if not isinstance(found, dict) or not isinstance(found.get("kind"), str):
         raise MessageError("a message is a JSON object with a text 'kind'")
     kind = found.pop("kind")
-    if kind not in _BY_KIND:
-        raise MessageError(f"there is no message '{kind[:40]}'; kinds: {', '.join(_BY_KIND)}")
-    made: Message = record_of(_BY_KIND[kind], found, kind)
+    if kind not in KINDS:
+        raise MessageError(f"there is no message '{kind[:40]}'; kinds: {', '.join(KINDS)}")
+    made: Message = record_of(KINDS[kind], found, kind)
     if isinstance(made, Answer):
         _check_result(made)
     return made

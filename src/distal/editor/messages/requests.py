@@ -6,8 +6,9 @@ Input: nothing. Output: frozen records, each with its kind and the type of its r
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
+from distal.editor.messages.kinds import Message, message
 from distal.editor.messages.records import Change, Value
 from distal.editor.messages.results import (
     Checked,
@@ -26,18 +27,23 @@ from distal.editor.messages.results import (
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AppRequest:
+class AppRequest(Message):
     """What all requests have.
 
     Attributes:
+        result: Of a kind that is answered by ``answer``: the type of the result.
         id: The app's number of the request, never used twice.
         revision: The app's number of the text, greater after each change.
     """
 
-    kind: ClassVar[str]
     result: ClassVar[type | None] = None
     id: int
     revision: int
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """The two numbers, which each answer has."""
+        return {"id": self.id, "revision": self.revision}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,7 +73,7 @@ class SourceRequest(AppRequest):
     size: tuple[int, int] = (640, 480)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("look")
 class LookRequest(SourceRequest):
     """Compile a scene's view. Answered by ``scene``, ``numbers`` or ``mistakes``.
 
@@ -80,14 +86,13 @@ class LookRequest(SourceRequest):
             freely; while one types, the picture comes sooner.
     """
 
-    kind: ClassVar[str] = "look"
     known: str | None = None
     changes: tuple[Change, ...] = ()
     lean: bool = False
     guided: bool = True
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("hold")
 class HoldRequest(SourceRequest):
     """Make the number of a ``@func`` an input of the program. Answered as a ``look``.
 
@@ -96,22 +101,19 @@ class HoldRequest(SourceRequest):
     None and the program is the usual one.
     """
 
-    kind: ClassVar[str] = "hold"
     file: str
     start: int
     end: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("write", Written)
 class WriteRequest(SourceRequest):
     """Write changes into the source: Keep of a slider, a literal or the camera."""
 
-    kind: ClassVar[str] = "write"
-    result: ClassVar[type | None] = Written
     changes: tuple[Change, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("count", Counting)
 class CountRequest(SourceRequest):
     """Give the program that counts how often each line runs.
 
@@ -119,28 +121,20 @@ class CountRequest(SourceRequest):
         work: Whether its estimated operations are counted instead.
     """
 
-    kind: ClassVar[str] = "count"
-    result: ClassVar[type | None] = Counting
     work: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("time", LineTiming)
 class TimeRequest(SourceRequest):
     """Give the program that repeats what a line computes, to measure its time."""
 
-    kind: ClassVar[str] = "time"
-    result: ClassVar[type | None] = LineTiming
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("map", ShapeMap)
 class MapRequest(SourceRequest):
     """Give the program that draws which shape each pixel shows."""
 
-    kind: ClassVar[str] = "map"
-    result: ClassVar[type | None] = ShapeMap
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("probe", ProbeResult)
 class ProbeRequest(SourceRequest):
     """Tell what the pixel at ``x``, ``y`` shows (from the top left), with the camera as moved.
 
@@ -148,31 +142,24 @@ class ProbeRequest(SourceRequest):
         steering: "yaw", "pitch", "zoom", "pan_x", "pan_y"; empty where it was not moved.
     """
 
-    kind: ClassVar[str] = "probe"
-    result: ClassVar[type | None] = ProbeResult
     x: float
     y: float
     steering: dict[str, float] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("check", Checked)
 class CheckRequest(SourceRequest):
     """Validate the scene as ``distal check`` does."""
 
-    kind: ClassVar[str] = "check"
-    result: ClassVar[type | None] = Checked
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("text", EmittedText)
 class TextRequest(SourceRequest):
     """Give the emitted text of a target, as ``distal compile`` prints it."""
 
-    kind: ClassVar[str] = "text"
-    result: ClassVar[type | None] = EmittedText
     target: str = "glsl-es300"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("export", ExportedFile)
 class ExportRequest(SourceRequest):
     """Make a file of the scene; ``ready`` has the formats.
 
@@ -183,8 +170,6 @@ class ExportRequest(SourceRequest):
         poster: A PNG in base64 that a page shows first; None for none.
     """
 
-    kind: ClassVar[str] = "export"
-    result: ClassVar[type | None] = ExportedFile
     format: str
     title: str | None = None
     embed: bool = False
@@ -222,31 +207,22 @@ class PictureRequest(SourceRequest):
     loop: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("render", Rendered)
 class RenderRequest(PictureRequest):
     """Render a picture or film, with ``progress``."""
 
-    kind: ClassVar[str] = "render"
-    result: ClassVar[type | None] = Rendered
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("command", Planned)
 class CommandRequest(PictureRequest):
     """Give the command that renders it."""
 
-    kind: ClassVar[str] = "command"
-    result: ClassVar[type | None] = Planned
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("choices", RenderChoices)
 class ChoicesRequest(AppRequest):
     """Tell what ``render`` can be asked for (local only; the server answers)."""
 
-    kind: ClassVar[str] = "choices"
-    result: ClassVar[type | None] = RenderChoices
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("cancel")
 class CancelRequest(AppRequest):
     """End a ``render`` (local only), which is then ``dropped``; it has no answer of its own.
 
@@ -254,23 +230,18 @@ class CancelRequest(AppRequest):
         job: The ``id`` of the render.
     """
 
-    kind: ClassVar[str] = "cancel"
     job: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("save", Saved)
 class SaveRequest(AppRequest):
     """Write a file (local only; the server answers). ``digest`` is that of the text it replaces."""
 
-    kind: ClassVar[str] = "save"
-    result: ClassVar[type | None] = Saved
     file: str
     text: str
     digest: str | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("stop")
 class StopRequest(AppRequest):
     """End the worker; it answers nothing."""
-
-    kind: ClassVar[str] = "stop"

@@ -6,8 +6,8 @@ Input: nothing. Output: frozen records, each with its kind.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar
 
+from distal.editor.messages.kinds import Message, message
 from distal.editor.messages.records import (
     Edit,
     Mistake,
@@ -20,8 +20,8 @@ from distal.editor.messages.records import (
 from distal.editor.messages.results import Result
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Ready:
+@message("ready")
+class Ready(Message):
     """The first message of a worker.
 
     Attributes:
@@ -31,7 +31,6 @@ class Ready:
         formats: The formats of ``export``.
     """
 
-    kind: ClassVar[str] = "ready"
     abilities: tuple[str, ...]
     versions: dict[str, str]
     targets: tuple[str, ...] = ()
@@ -39,10 +38,9 @@ class Ready:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Reply:
+class Reply(Message):
     """What all answers have: the numbers of the request."""
 
-    kind: ClassVar[str]
     id: int
     revision: int
 
@@ -66,7 +64,7 @@ class Found(Reply):
     ms: dict[str, float] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("scene")
 class SceneFound(Found):
     """A compiled view: the payload of a player, with its program.
 
@@ -77,13 +75,12 @@ class SceneFound(Found):
         held: For ``hold``: the name of the input; else None.
     """
 
-    kind: ClassVar[str] = "scene"
     payload: Payload
     objects: tuple[str, ...] = ()
     held: str | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("numbers")
 class NumbersFound(Found):
     """The program is the one the app has; these are its new numbers.
 
@@ -93,38 +90,33 @@ class NumbersFound(Found):
         parameters: The declarations of all parameters, as in the payload.
     """
 
-    kind: ClassVar[str] = "numbers"
     numbers: dict[str, UniformValue]
     parameters: tuple[Parameter, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("mistakes")
 class Mistakes(Reply):
     """The author's code has mistakes, or the request cannot be done; at least one."""
 
-    kind: ClassVar[str] = "mistakes"
     mistakes: tuple[Mistake, ...]
     literals: tuple[SourceLiteral, ...] | None = None
     edits: tuple[Edit, ...] = ()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("answer")
 class Answer(Reply):
     """The result of a request; ``request`` is its kind."""
 
-    kind: ClassVar[str] = "answer"
     request: str
     result: Result
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("dropped")
 class Dropped(Reply):
     """A newer request made this one useless; it was not done."""
 
-    kind: ClassVar[str] = "dropped"
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("printed")
 class Printed(Reply):
     """What the author's code printed, or where it is after some seconds.
 
@@ -133,12 +125,11 @@ class Printed(Reply):
         hangs: The line that it is at after some seconds, else nothing.
     """
 
-    kind: ClassVar[str] = "printed"
     text: str
     hangs: str = ""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@message("progress")
 class Progress(Reply):
     """How much of a long request is done.
 
@@ -149,26 +140,23 @@ class Progress(Reply):
         remaining_s: Seconds that are left of it, if that is known.
     """
 
-    kind: ClassVar[str] = "progress"
     done: float
     label: str = ""
     text: str = ""
     remaining_s: float | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Changed:
+@message("changed")
+class Changed(Message):
     """Files were changed by another program (local only; from the server): their new texts."""
 
-    kind: ClassVar[str] = "changed"
     files: dict[str, str]
     digests: dict[str, str]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Restarted:
+@message("restarted")
+class Restarted(Message):
     """The worker did not answer and was replaced (from the carrier); ``id`` is not answered."""
 
-    kind: ClassVar[str] = "restarted"
     id: int | None
     reason: str

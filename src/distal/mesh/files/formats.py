@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.images.atomic_files import SaveError, check_destination, replacement
-from distal.lang.units import MILLIMETER, UNITS
+from distal.lang.units import MILLIMETER, meters_of
 from distal.mesh.files.glb import write_glb
 from distal.mesh.files.obj import write_obj
 from distal.mesh.files.outlines import (
@@ -107,7 +107,7 @@ def write(
     """
     target = Path(path)
     chosen = _chosen(target, MESH_FORMATS, "a mesh")
-    scale = _meters(unit) / chosen.meters
+    scale = meters_of(unit, SaveError) / chosen.meters
     check_destination(target)
     solids = list(solid) if isinstance(solid, Sequence) else [solid]
     if not solids:
@@ -135,7 +135,7 @@ def check_output(path: str | PathLike[str], unit: str) -> None:
         SaveError: The suffix or the unit is unknown, or the folder is not writable.
     """
     _chosen(Path(path), MESH_FORMATS, "a mesh")
-    _meters(unit)
+    meters_of(unit, SaveError)
     check_destination(Path(path))
 
 
@@ -161,7 +161,7 @@ def write_outlines(
     """
     target = Path(path)
     chosen = _chosen(target, OUTLINE_FORMATS, "an outline")
-    scale = _meters(unit) / MILLIMETER
+    scale = meters_of(unit, SaveError) / MILLIMETER
     check_destination(target)
     if not len(polylines):
         raise SaveError("there is no outline to save: the shape has no edge here")
@@ -188,7 +188,7 @@ def write_layers(
     """
     target = Path(path)
     check_outline_file(target, unit)
-    scale = _meters(unit) / MILLIMETER
+    scale = meters_of(unit, SaveError) / MILLIMETER
     if not any(len(polylines) for _, polylines in layers):
         raise SaveError("there is no layer to save: the solid has no inside at their heights")
     scaled = [
@@ -211,7 +211,7 @@ def check_outline_file(path: str | PathLike[str], unit: str) -> None:
         SaveError: The suffix or the unit is unknown, or the folder is not writable.
     """
     _chosen(Path(path), OUTLINE_FORMATS, "an outline")
-    _meters(unit)
+    meters_of(unit, SaveError)
     check_destination(Path(path))
 
 
@@ -232,12 +232,6 @@ def _chosen(path: Path, formats: dict[str, Any], what: str) -> Any:
         named = f"'{path.suffix}'" if path.suffix else f"the name '{path.name}' without a suffix"
         raise SaveError(f"{what} is not saved as {named}: use one of {known}")
     return chosen
-
-
-def _meters(unit: str) -> float:
-    if unit not in UNITS:
-        raise SaveError(f"a unit is one of {', '.join(UNITS)}, not {unit!r:.40}")
-    return UNITS[unit]
 
 
 def _polyline(line: Any, index: int) -> NDArray[np.float64]:

@@ -21,10 +21,8 @@ from distal.lang import (
     value_and_gradient,
     vec2,
 )
+from distal.mesh.root_arithmetic import share_of_root
 
-# The most steps along an edge; each third one halves the interval, since Illinois steps are slow
-# beside a corner.
-ROOT_STEPS = 48
 # Roots and points keep these shares of a cell's side away from corners and sides of their cells, so
 # that lines of different cells never touch.
 ROOT_MARGIN = 6.103515625e-05  # 2^-14
@@ -57,9 +55,6 @@ def root_on_edge(
 ) -> tuple[vec2, vec2]:
     """Return where the field is 0 on an edge of a cell, and the gradient there.
 
-    By the Illinois variant of false position, which keeps the sign change between its two ends,
-    and by bisection.
-
     Args:
         field: The field.
         start: The first end of the edge.
@@ -67,29 +62,11 @@ def root_on_edge(
         first: The value at the first end.
         second: The value at the second end; its sign differs.
     """
-    a = 0.0
-    b = 1.0
-    at_a = first
-    at_b = second
-    side = 0
-    t = 0.5
-    close = 1e-15 * (abs(first) + abs(second))
-    for step in range(ROOT_STEPS):
-        t = clamp((a * at_b - b * at_a) / (at_b - at_a), a, b)
-        t = 0.5 * (a + b) if step % 3 == 2 else t
-        value = field(start + way * t)
-        if abs(value) <= close or b - a < 1e-14:
-            break
-        if (value < 0.0) == (first < 0.0):
-            at_b = at_b * 0.5 if side == 1 else at_b
-            a = t
-            at_a = value
-            side = 1
-        else:
-            at_a = at_a * 0.5 if side == -1 else at_a
-            b = t
-            at_b = value
-            side = -1
+
+    def along(t: float) -> float:
+        return field(start + way * t)
+
+    t = share_of_root(along, first, second)
     found = start + way * clamp(t, ROOT_MARGIN, 1.0 - ROOT_MARGIN)
     slope = gradient(field, found)
     # Distances made of a sign and a length have no gradient where they are 0.

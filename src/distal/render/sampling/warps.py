@@ -134,16 +134,6 @@ def narrowness(sine_squared: float) -> float:
 
 
 @func
-def in_triangle(u: vec2) -> vec2:
-    """Return the weights of the first two corners of a triangle, uniform by area.
-
-    Source: Eric Heitz, "A Low-Distortion Map Between Triangle and Square" (2019).
-    """
-    low = min(u.x, u.y)
-    return vec2(u.x - 0.5 * low, u.y - 0.5 * low)
-
-
-@func
 def visible_facet(view: vec3, alpha: float, u: vec2) -> vec3:
     """Return the normal of a facet that is seen from ``view``, about z: ``facet_density``.
 

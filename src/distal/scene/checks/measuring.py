@@ -95,7 +95,7 @@ class _EvaluatedShape:
 
 def measure(
     shape: BaseShape,
-    promised: NodeBounds,
+    declared: NodeBounds,
     params: Mapping[str, Any],
     time: float,
     seed: int = 0,
@@ -105,7 +105,7 @@ def measure(
 
     Args:
         shape: The shape.
-        promised: The bounds that the shape declares.
+        declared: The bounds that the shape declares.
         params: Values of parameters by name; the others have their defaults.
         time: Time in seconds.
         seed: Seed of the random points.
@@ -114,7 +114,7 @@ def measure(
     asked = _EvaluatedShape(shape, params, time)
     n = asked.dimensions
     random = np.random.default_rng(seed)
-    low, high = _looked_at(promised, n, region)
+    low, high = _looked_at(declared, n, region)
     size = float(np.max(high - low))
     grown = MARGIN * np.maximum(high - low, 0.1 * size)
     within = random.uniform(low, high, (POINTS // 2, n))
@@ -135,7 +135,7 @@ def measure(
     near = near[(np.abs(near) < 10.0 * REACH + 10.0 * np.abs(high).max() + size).all(axis=1)]
     asked_at = np.concatenate([p, near])
     steepness = np.concatenate([steep, _finite(asked.steepness(near))])
-    box = (low, high) if promised.finite else (low - np.inf, high + np.inf)
+    box = (low, high) if declared.finite else (low - np.inf, high + np.inf)
     inside = _is_in(asked_at, box)
     at, steepest = _steepest(asked, asked_at[inside], steepness[inside], size, random, box)
     steepest_around, around_at = 0.0, None
@@ -157,13 +157,13 @@ def measure(
         change,
         pair,
         _on_foot(asked, p, values, slopes, size),
-        _point(asked_at[outside][0]) if promised.finite and outside.any() else None,
+        _point(asked_at[outside][0]) if declared.finite and outside.any() else None,
         undefined,
     )
 
 
-def _looked_at(promised: NodeBounds, n: int, region: Region | None) -> tuple[Points, Points]:
-    low, high = np.array(promised.low[:n]), np.array(promised.high[:n])
+def _looked_at(declared: NodeBounds, n: int, region: Region | None) -> tuple[Points, Points]:
+    low, high = np.array(declared.low[:n]), np.array(declared.high[:n])
     if region is not None:
         # Where the region lies beyond a finite side, this side decides.
         least, most = np.array(region[0][:n]), np.array(region[1][:n])

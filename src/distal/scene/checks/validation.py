@@ -73,7 +73,7 @@ class ShapeReport:
 
     node: Node
     children: tuple[int, ...]
-    promised: NodeBounds
+    declared: NodeBounds
     raised: float | None
     measured: Measured | None
 
@@ -140,17 +140,17 @@ def check(
     table, root = table_of(root)
     nodes = list(root.walk())
     numbers = {id(node): i for i, node in enumerate(nodes)}
-    promised = bounds_of_nodes(root, given, time)
-    chosen = {id(n) for n in _worth_measuring(nodes, promised)}
-    regions = _regions(nodes, promised)
+    declared = bounds_of_nodes(root, given, time)
+    chosen = {id(n) for n in _worth_measuring(nodes, declared)}
+    regions = _regions(nodes, declared)
     rows = []
     for node in nodes:
-        own = promised[id(node)]
+        own = declared[id(node)]
         measured = None
         if id(node) in chosen:
             measured = measure(BaseShape._of(node), own, given, time, seed, regions[id(node)])
         children = tuple(numbers[id(c)] for c in node.children)
-        rows.append(ShapeReport(node, children, own, _raised(node, promised), measured))
+        rows.append(ShapeReport(node, children, own, _raised(node, declared), measured))
     found = [f for i, row in enumerate(rows) for f in _findings(i, row, rows)]
     found += _proofs(rows, {f.shape for f in found if f.code in _MEASURED_WRONG}, given, time)
     order = {severity: i for i, severity in enumerate(Severity)}
@@ -158,7 +158,7 @@ def check(
     return ValidationReport(tuple(rows), _slope_from(rows), tuple(found), table, smooth)
 
 
-def _regions(nodes: Sequence[Node], promised: Mapping[int, NodeBounds]) -> dict[int, Region | None]:
+def _regions(nodes: Sequence[Node], declared: Mapping[int, NodeBounds]) -> dict[int, Region | None]:
     """Return where to measure each shape that has no box, by the id of its node.
 
     That is the box of the smallest whole that it is a part of and that has one, otherwise the box
@@ -166,14 +166,14 @@ def _regions(nodes: Sequence[Node], promised: Mapping[int, NodeBounds]) -> dict[
     probably matter.
     """
     found: dict[int, Region | None] = {}
-    boxes = [promised[id(n)] for n in nodes if promised[id(n)].finite and not n.flat]
+    boxes = [declared[id(n)] for n in nodes if declared[id(n)].finite and not n.flat]
     found[id(nodes[0])] = None
     if boxes:
         low = tuple(min(box.low[i] for box in boxes) for i in range(3))
         high = tuple(max(box.high[i] for box in boxes) for i in range(3))
         found[id(nodes[0])] = (low, high)
     for node in nodes:  # parents before at least one path to each child
-        own = promised[id(node)]
+        own = declared[id(node)]
         held = (own.low, own.high) if own.finite else found[id(node)]
         for child in node.children:
             if child.flat == node.flat:
@@ -196,7 +196,7 @@ def _at_their_roots(
     return [f for f in found if not is_passed_on(f)]
 
 
-def _worth_measuring(nodes: Sequence[Node], promised: Mapping[int, NodeBounds]) -> list[Node]:
+def _worth_measuring(nodes: Sequence[Node], declared: Mapping[int, NodeBounds]) -> list[Node]:
     """Return the shapes to measure.
 
     Of a small tree all shapes; of a large tree the whole, the author's functions, and steep shapes.
@@ -209,7 +209,7 @@ def _worth_measuring(nodes: Sequence[Node], promised: Mapping[int, NodeBounds]) 
             return 0
         if is_own(node):
             return 1
-        raises = _raised(node, promised) is not None
+        raises = _raised(node, declared) is not None
         return 2 if raises else 3 if node.label else 4
 
     worth = [n for n in sorted(nodes, key=rank) if rank(n) < 4]
@@ -221,9 +221,9 @@ def is_own(node: Node) -> bool:
     return isinstance(node.rule, Primitive) and node.rule.slope is given_slope
 
 
-def _raised(node: Node, promised: Mapping[int, NodeBounds]) -> float | None:
-    before = max((promised[id(c)].slope for c in node.children), default=1.0)
-    return before if promised[id(node)].slope > before * (1.0 + ROUNDING) else None
+def _raised(node: Node, declared: Mapping[int, NodeBounds]) -> float | None:
+    before = max((declared[id(c)].slope for c in node.children), default=1.0)
+    return before if declared[id(node)].slope > before * (1.0 + ROUNDING) else None
 
 
 def _slope_from(rows: Sequence[ShapeReport]) -> tuple[int, ...]:
@@ -235,7 +235,7 @@ def _slope_from(rows: Sequence[ShapeReport]) -> tuple[int, ...]:
             found.append(at)
         if not row.children:
             return tuple(found)
-        at = max(row.children, key=lambda c: rows[c].promised.slope)
+        at = max(row.children, key=lambda c: rows[c].declared.slope)
 
 
 # Findings
@@ -252,13 +252,13 @@ def _findings(i: int, row: ShapeReport, rows: Sequence[ShapeReport]) -> Iterator
     if row.raised is not None:
         message = (
             f"{described(row.node)} raises the slope from {row.raised:.3g} "
-            f"to {row.promised.slope:.3g}"
+            f"to {row.declared.slope:.3g}"
         )
         if is_own(row.node) or isinstance(row.node.rule, Primitive):
-            message = f"{described(row.node)} has the slope {row.promised.slope:.3g}"
+            message = f"{described(row.node)} has the slope {row.declared.slope:.3g}"
         yield finding(Severity.NOTE, "slope-raised", message)
     inner = [rows[c] for c in row.children]
-    if not row.promised.finite and all(r.promised.finite for r in inner):
+    if not row.declared.finite and all(r.declared.finite for r in inner):
         yield _endless(row, finding)
     if isinstance(row.node.rule, Operator):
         yield from _of_operator(row, [r.node for r in inner], finding)
@@ -278,7 +278,7 @@ def _proofs(
     for i, row in enumerate(rows):
         if row.measured is None or i in wrong or not is_own(row.node):
             continue
-        note = proof_note(row.node, row.promised, params, time)
+        note = proof_note(row.node, row.declared, params, time)
         if note is not None:
             severity = Severity.ERROR if note.code == "slope-refuted" else Severity.NOTE
             place = Diagnostic(note.message, row.node.place, note.hint)
@@ -293,8 +293,8 @@ def _violations(row: ShapeReport, measured: Measured, finding: Any) -> Iterator[
         yield finding(
             Severity.ERROR, "undefined", message, "look for a division by 0, a root below 0"
         )
-    if _exceeds(measured.slope, row.promised.slope):
-        message = f"'{name}' declares the slope {row.promised.slope:.4g}, but its value changes by "
+    if _exceeds(measured.slope, row.declared.slope):
+        message = f"'{name}' declares the slope {row.declared.slope:.4g}, but its value changes by "
         if measured.steepest >= measured.largest_change:
             message += f"{measured.steepest:.4g} per unit at {shown_point(measured.steepest_at)}"
         else:
@@ -303,12 +303,12 @@ def _violations(row: ShapeReport, measured: Measured, finding: Any) -> Iterator[
         hint = f"slope={_rounded_up(measured.slope)}" if own else None
         yield finding(severity, "slope-exceeded", message, hint)
     elif measured.steepest_around_at is not None and _exceeds(
-        measured.steepest_around, row.promised.slope
+        measured.steepest_around, row.declared.slope
     ):
         at = shown_point(measured.steepest_around_at)
         message = (
             f"'{name}' changes by {measured.steepest_around:.4g} per unit at {at}, outside its "
-            f"bounds, more than its declared slope {row.promised.slope:.4g}"
+            f"bounds, more than its declared slope {row.declared.slope:.4g}"
         )
         hint = f"slope={_rounded_up(measured.steepest_around)} if rays come through there"
         # The author's slope may be about the declared bounds only; the library's is everywhere.
@@ -372,7 +372,7 @@ def _of_operator(row: ShapeReport, inner: Sequence[Node], finding: Any) -> Itera
     lost = [c for c in Guarantee if c not in row.node.claims and all(c in n.claims for n in inner)]
     # If the slope is at most 1, the value never exceeds the distance.
     lost = [
-        c for c in lost if c is not Guarantee.LOWER_BOUND or row.promised.slope > 1.0 + ROUNDING
+        c for c in lost if c is not Guarantee.LOWER_BOUND or row.declared.slope > 1.0 + ROUNDING
     ]
     if lost:
         words = {Guarantee.LOWER_BOUND: "a lower bound"}
@@ -387,10 +387,10 @@ def _of_operator(row: ShapeReport, inner: Sequence[Node], finding: Any) -> Itera
 def described(node: Node) -> str:
     """Return a shape as the author wrote it: "twist(rate=3)"."""
     arguments = []
-    promises = ("slope", "low", "high") if is_own(node) else ()
+    of_bounds = ("slope", "low", "high") if is_own(node) else ()
     for name, value in node.numbers.items():
         plain = value.plain
-        if name not in promises and plain is not None:
+        if name not in of_bounds and plain is not None:
             arguments.append(f"{name}={_shown(plain)}")
     arguments += [f"{n}={v}" for n, v in node.constants.items() if isinstance(v, bool | int)]
     own = f"{node.rule.name}({', '.join(arguments)})" if arguments else node.rule.name
@@ -416,7 +416,7 @@ def _rounded_up(slope: float) -> str:
 
 
 def _shape_json(i: int, row: ShapeReport) -> dict[str, Any]:
-    node, promised = row.node, row.promised
+    node, declared = row.node, row.declared
     n = 2 if node.flat else 3
     return {
         "id": i,
@@ -427,12 +427,12 @@ def _shape_json(i: int, row: ShapeReport) -> dict[str, Any]:
         "children": list(row.children),
         "place": place_json(node.place),
         "claims": guarantee_names(node),
-        "slope": _plain(promised.slope),
+        "slope": _plain(declared.slope),
         "slope_before": None if row.raised is None else _plain(row.raised),
         "estimate": node.estimate,
         "bounds": {
-            "low": [_plain(c) for c in promised.low[:n]],
-            "high": [_plain(c) for c in promised.high[:n]],
+            "low": [_plain(c) for c in declared.low[:n]],
+            "high": [_plain(c) for c in declared.high[:n]],
         },
         "measured": None if row.measured is None else _measured_json(row.measured),
     }

@@ -113,10 +113,10 @@ def check_slopes(shape: BaseShape, params: Mapping[str, Any], time: float) -> No
     risky = _suspects_of(shape.node).endless
     if not risky:
         return
-    promised = bounds_of_nodes(shape.node, _read(shape, params), time)
+    declared = bounds_of_nodes(shape.node, _read(shape, params), time)
     for node in risky:
-        own = promised[id(node)].slope
-        inner = [promised[id(child)] for child in node.children]
+        own = declared[id(node)].slope
+        inner = [declared[id(child)] for child in node.children]
         if loses_slope(own, [box.slope for box in inner]):
             refuse_steepness(node, [(box.low, box.high) for box in inner])
 
@@ -175,9 +175,9 @@ def _box(node: Node, params: Mapping[str, Any], time: float) -> tuple[Points, Po
     if "low" not in node.numbers:
         n = 2 if node.flat else 3
         return np.full(n, -REACH), np.full(n, REACH)
-    promised = bounds_of_nodes(node, params, time)[id(node)]
+    declared = bounds_of_nodes(node, params, time)[id(node)]
     n = 2 if node.flat else 3
-    low, high = np.array(promised.low[:n]), np.array(promised.high[:n])
+    low, high = np.array(declared.low[:n]), np.array(declared.high[:n])
     # An infinite side is cut near the origin, or near the opposite side.
     cut_low = np.where(np.isfinite(low), low, np.minimum(-REACH, high - 2.0 * REACH))
     cut_high = np.where(np.isfinite(high), high, np.maximum(REACH, low + 2.0 * REACH))

@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, ClassVar, Final
 
-from distal.diagnostics import Span
 from distal.lang.functions import Func
 from distal.render import ambient as _ambient  # noqa: F401 (declares lights)
 from distal.render import lights as _lights  # noqa: F401 (declares lights)
@@ -21,7 +20,6 @@ from distal.scene.objects.declared import declared_call, declared_class, given_a
 from distal.scene.objects.scene_object import SceneObject
 from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.calls import FunctionCall
-from distal.scene.tree.errors import refuse_kind
 from distal.scene.tree.source_places import author_place
 
 
@@ -88,16 +86,3 @@ def call_of_part(whole: FunctionCall, function: Func | None) -> FunctionCall | N
 
 CLASSES: Final = {name: declared_class(found, Light) for name, found in LIGHTS.members.items()}
 globals().update(CLASSES)
-
-
-def as_light(value: Any, place: Span | None = None) -> Light:
-    """Return the value if it is a light.
-
-    Raises:
-        TypeError: The value is not a light.
-    """
-    if isinstance(value, Light):
-        return value
-    given = f"the class {value.__name__}" if isinstance(value, type) else f"{value!r:.40}"
-    hint = "write PointLight((2, 4, 3)), DistantLight((1, 2, 1)) or AmbientLight(0.1)"
-    refuse_kind(f"a light is wanted, not {given}", hint, place)

@@ -17,6 +17,7 @@ from distal.lang.notices import notice
 from distal.lang.parameter_values import as_float
 from distal.lang.resources import Buffer, Texture3D
 from distal.lang.runtime_access import executor
+from distal.lang.units import meters_of
 from distal.scene.lowering.derived import DistanceOf
 from distal.scene.objects.materials import as_material
 from distal.scene.objects.patterns import volume_colors
@@ -95,7 +96,8 @@ def mesh_node(
     if step is not None and step <= 0.0:
         refuse(f"a spacing is above 0, not {step:g}", "leave it out for a 64th of the size", place)
     try:
-        importing.checked_unit(unit)
+        if unit is not None:
+            meters_of(unit, LoadError)
         shades = None if isinstance(colors, bool) or colors is None else colors
         is_colored = colors is True or shades is not None
         wanted = importing.ImportRequest(step, sign, unit, up, is_colored)

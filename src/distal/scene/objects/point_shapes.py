@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from distal.diagnostics import LoadError, Span
 from distal.lang.lazy_module import LazyModule
 from distal.lang.parameter_values import as_float
+from distal.lang.units import meters_of
 from distal.scene.objects.mesh_shapes import beside_author, sampled_node, tell, values_at
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
@@ -53,7 +54,8 @@ def points_node(
         refuse(f"up is 'y' or 'z', not {up!r:.40}", "up='z'", place)
     lengths = [_length(n, value, place) for n, value in (("spacing", spacing), ("radius", radius))]
     try:
-        importing.checked_unit(unit)
+        if unit is not None:
+            meters_of(unit, LoadError)
         wanted = importing_points.PointsRequest(lengths[0], lengths[1], unit, up)
         if normals is not None:
             found = importing_points.imported_points_arrays(source, normals, wanted)
