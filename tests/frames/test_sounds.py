@@ -56,6 +56,15 @@ def song(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return written(file, [np.concatenate([tone(0.5), 0.0 * tone(0.5)])])
 
 
+def test_a_sound_of_the_examples_is_found_from_every_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert read(SoundFile("example:arpeggio.wav").path).seconds > 1.0
+    with pytest.raises(LoadError, match=r"cannot read the sound example:none\.wav"):
+        read(SoundFile("example:none.wav").path)
+
+
 def bars_of(sound: SoundFile) -> Any:
     @image
     def bars(frame: Frame) -> vec3:
