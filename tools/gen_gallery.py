@@ -34,7 +34,7 @@ MOST_BYTES: Final = 150_000
 # The time at which a moving example is drawn, in seconds; 0 for the others.
 SECONDS: Final = {
     **{"melting": 1.0, "sdfray_glass": 0.6, "course_5_animation": 0.7},
-    **{"coral": 8.0, "ink": 9.5, "lamps": 4.0, "pilot": 6.0, "spectrum": 2.0},
+    **{"coral": 8.0, "ink": 9.5, "lamps": 2.0, "pilot": 6.0, "spectrum": 2.0},
 }
 # Groups of the page: the examples in them by how their names begin, in this order.
 GROUPS: Final = {
@@ -137,7 +137,9 @@ def _save(picture: Image.Image, path: Path) -> None:
         if path.stat().st_size <= MOST_BYTES:
             return
         dither = Image.Dither.FLOYDSTEINBERG if colors == 256 else Image.Dither.NONE
-        picture.quantize(colors, dither=dither).save(path, optimize=True)
+        # Small bright lamps keep their colors.
+        few = picture.quantize(colors, Image.Quantize.MAXCOVERAGE, dither=dither)
+        few.save(path, optimize=True)
 
 
 def faults(names: Iterable[str]) -> list[str]:
