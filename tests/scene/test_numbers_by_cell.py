@@ -238,6 +238,8 @@ def test_texts_of_all_languages(target):
     assert "cell" in text
 
 
+BESIDE = Sphere(0.2).translate(1.0, 0.0, 0.0)
+
 WRONG = [
     (
         lambda: Sphere(0.1 + 0.1 * cell.x).array([(0, 0, 0), (1, 0, 0)], scale=[1, 2]),
@@ -259,6 +261,11 @@ WRONG = [
         lambda: Sphere(0.2 + 0.01 * cell.x).repeat(1.0, mirrored=True),
         "mirrored copies match only if all are alike; 'radius of Sphere' depends on the cell",
         "leave out mirrored=True; neighbours=1 for a shape that is larger than its cell",
+    ),
+    (
+        lambda: BESIDE.repeat_polar(3 + cell.x, neighbours="all").repeat(9.0, count=(3, 1, 1)),
+        "'count of repeat polar all' is the same in all cells",
+        "choose between shapes: select(cell.x < 1.5, a, b)",
     ),
     (
         lambda: Camera(fov=cell.x),
