@@ -238,6 +238,20 @@ def test_texts_of_all_languages(target):
     assert "cell" in text
 
 
+def test_a_target_without_whole_numbers_of_that_kind_says_so():
+    random = Sphere(0.1 + 0.1 * random_by_cell(seed=3)).repeat(1.0, 0.0, 1.0, count=(3, 1, 3))
+    with pytest.raises(distal.CompileError) as found:
+        distal.compile(Scene(random), target="glsl-es100")
+    (diagnostic,) = found.value.diagnostics
+    assert diagnostic.message == (
+        "glsl-es100 has no unsigned integers, which noise and random numbers of the library need"
+    )
+    assert diagnostic.hint == "compile for another target, such as glsl-es300"
+    assert diagnostic.span is None
+    by_cell = Sphere(0.1 + 0.05 * cell.x).repeat(1.0, 0.0, 1.0, count=(3, 1, 3))
+    assert "cell" in distal.compile(Scene(by_cell), target="glsl-es100").text
+
+
 BESIDE = Sphere(0.2).translate(1.0, 0.0, 0.0)
 
 WRONG = [
