@@ -20,7 +20,7 @@ from typing import Any
 
 from distal.editor.messages import Change, LookRequest, encoded
 from distal.editor.worker import StudioWorker
-from distal.loading import gallery
+from distal.example_files import gallery
 
 NAMES = ("raymarcher", "raymarcher_objects", "sdfray_row", "bunny")
 NUMBER = re.compile(r"(?<![\w.#\"])\d+\.\d+(?![\w.])")

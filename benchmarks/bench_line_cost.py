@@ -21,7 +21,8 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
-from distal.loading import gallery, load  # noqa: E402
+from distal.example_files import gallery  # noqa: E402
+from distal.loading import load  # noqa: E402
 from distal.scene.viewing.viewable import viewable  # noqa: E402
 from tests.editor.line_costs import LineCost, line_costs, spearman  # noqa: E402
 from tests.editor.studio_page import SETTLED, studio  # noqa: E402

@@ -32,7 +32,7 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
 from distal.editor.local.server import APP  # noqa: E402
-from distal.loading import gallery  # noqa: E402
+from distal.example_files import gallery  # noqa: E402
 from tests.browser import SWIFTSHADER, browser  # noqa: E402
 
 # An installed package has bytecode, wherever the checkout has none.

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from functools import cache
 
-from distal.loading import gallery
+from distal.example_files import gallery
 
 _IMAGE = re.compile(r"^@image\b", re.MULTILINE)
 

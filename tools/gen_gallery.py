@@ -21,6 +21,7 @@ from PIL import Image
 
 import distal
 from distal import Scene
+from distal.example_files import all_examples, frame_examples
 
 ROOT: Final = Path(__file__).parents[1]
 PAGE: Final = ROOT / "docs/gallery.md"
@@ -31,7 +32,10 @@ SAMPLES: Final = 4
 SPP: Final = 256
 MOST_BYTES: Final = 150_000
 # The time at which a moving example is drawn, in seconds; 0 for the others.
-SECONDS: Final = {"melting": 1.0, "sdfray_glass": 0.6, "course_5_animation": 0.7}
+SECONDS: Final = {
+    **{"melting": 1.0, "sdfray_glass": 0.6, "course_5_animation": 0.7},
+    **{"coral": 8.0, "ink": 9.5, "lamps": 2.0, "pilot": 6.0, "spectrum": 2.0},
+}
 # Groups of the page: the examples in them by how their names begin, in this order.
 GROUPS: Final = {
     "Showpieces": (
@@ -49,6 +53,7 @@ GROUPS: Final = {
         "molecule",
     ),
     "True optics": ("wine", "caustics", "prism", "cornell_box", "depth_of_field"),
+    "Pictures that keep frames": tuple(frame_examples()),
     "The first pictures": ("raymarcher", "melting"),
     "After sdfray": ("sdfray_",),
     "A course in ray marching": ("course_",),
@@ -75,7 +80,7 @@ be set: `--set softness=0.2`.
 def make_page() -> str:
     """Make the text of the page."""
     parts = [HEAD]
-    left = list(distal.gallery())
+    left = list(all_examples())
     for title, starts in GROUPS.items():
         names = [n for start in starts for n in left if n.startswith(start)]
         left = [n for n in left if n not in names]
@@ -89,7 +94,8 @@ def make_page() -> str:
 
 
 def _entry(name: str) -> str:
-    path = distal.gallery()[name]
+    path = all_examples()[name]
+    link = path.relative_to(ROOT / "examples").as_posix()
     told = ast.get_docstring(ast.parse(path.read_text())) or ""
     what = told.split("\n\n")[0].replace("\n", " ").replace("``", "`")
     at = f" --time {SECONDS[name]:g}" if name in SECONDS else ""
@@ -99,7 +105,7 @@ def _entry(name: str) -> str:
     command = f"distal render example:{name} -o {name}.png{at}{samples}"
     size = f"{SIZE[0]}x{SIZE[1]}"
     return (
-        f"\n### [{name}](../examples/{name}.py)\n\n{what}\n\n![{name}](pictures/{name}.png)\n\n"
+        f"\n### [{name}](../examples/{link})\n\n{what}\n\n![{name}](pictures/{name}.png)\n\n"
         f"    {command} --size {size}\n"
     )
 
@@ -113,7 +119,7 @@ def draw(name: str) -> None:
     begin = time.perf_counter()
     image: Any = distal.load(f"example:{name}")
     seconds = SECONDS.get(name, 0.0)
-    if isinstance(image, Scene):
+    if isinstance(image, Scene) or name in frame_examples():
         samples = SPP if _is_traced(image) else SAMPLES
         pixels = image.render(size=SIZE, time=seconds, samples=samples).array
     else:  # a shader has no samples of its own: four pixels for one
@@ -131,7 +137,9 @@ def _save(picture: Image.Image, path: Path) -> None:
         if path.stat().st_size <= MOST_BYTES:
             return
         dither = Image.Dither.FLOYDSTEINBERG if colors == 256 else Image.Dither.NONE
-        picture.quantize(colors, dither=dither).save(path, optimize=True)
+        # Small bright lamps keep their colors.
+        few = picture.quantize(colors, Image.Quantize.MAXCOVERAGE, dither=dither)
+        few.save(path, optimize=True)
 
 
 def faults(names: Iterable[str]) -> list[str]:
@@ -154,11 +162,11 @@ def main() -> int:
     told.add_argument("--page", action="store_true", help="write the page only")
     given = told.parse_args()
     if given.check:
-        found = faults(distal.gallery())
+        found = faults(all_examples())
         print("\n".join(found), file=sys.stderr, end="\n" if found else "")
         return 1 if found else 0
     PICTURES.mkdir(parents=True, exist_ok=True)
-    for name in [] if given.page else given.names or distal.gallery():
+    for name in [] if given.page else given.names or all_examples():
         draw(name)
     PAGE.write_text(make_page())
     return 0

@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 from PIL import Image
 
-import distal
+from distal.example_files import all_examples
 
 ROOT: Final = Path(__file__).parents[1]
 PICTURES: Final = ROOT / "docs/pictures"
@@ -71,12 +71,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Write the posters of the examples.")
     parser.add_argument("--check", action="store_true")
     if parser.parse_args().check:
-        faults = [fault for name in distal.gallery() if (fault := fault_of(name))]
+        faults = [fault for name in all_examples() if (fault := fault_of(name))]
         sys.exit("; ".join([*faults, "run python tools/gen_posters.py"]) if faults else 0)
     POSTERS.mkdir(exist_ok=True)
     for old in POSTERS.glob("*.webp"):
         old.unlink()
-    for name in distal.gallery():
+    for name in all_examples():
         (POSTERS / f"{name}.webp").write_bytes(encoded(small(name)))
 
 

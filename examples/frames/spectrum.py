@@ -1,7 +1,7 @@
 """A sound as a flower: petals are its spectrum, the ring is its wave, and both leave trails.
 
-The sound is a file beside this one. Videos and pages of the picture play it:
-``distal video spectrum.py --duration 4 -o spectrum.mp4``.
+The sound is a file of the examples; a name without ``example:`` is one beside this file. Videos and
+pages play it: ``distal video spectrum.py --duration 4 -o spectrum.mp4``.
 """
 
 import math
@@ -28,7 +28,7 @@ from distal.lang import (
 
 trails = slider("Trails", 0.93, 0.0, 0.99, help="What is left of a frame after the next one.")
 
-song = SoundFile("arpeggio.wav")
+song = SoundFile("example:arpeggio.wav")
 PETALS = 72.0
 
 

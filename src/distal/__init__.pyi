@@ -18,7 +18,7 @@ from distal.lang.units import foot as foot
 from distal.lang.units import inch as inch
 from distal.lang.units import metre as metre
 from distal.lang.units import mm as mm
-from distal.loading import gallery as gallery
+from distal.example_files import gallery as gallery
 from distal.loading import load as load
 from distal.scene.looks.look import Look as Look
 from distal.scene.objects.alternatives import choose as choose

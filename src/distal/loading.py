@@ -15,11 +15,12 @@ import types
 from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, TypeAlias
+from typing import Any, TypeAlias
 from weakref import WeakKeyDictionary
 
 from distal.author_errors import failure
 from distal.diagnostics import CompileError, Diagnostic, LoadError, Span
+from distal.example_files import EXAMPLE_PREFIX, all_examples
 from distal.ir.nodes import EntryKind
 from distal.lang.composed import Composed
 from distal.lang.functions import FrameBuffer, Func, Image
@@ -27,7 +28,6 @@ from distal.lang.functions import FrameBuffer, Func, Image
 # The objects that a scene file may define.
 SceneCode: TypeAlias = Func | Composed
 
-EXAMPLE_PREFIX: Final = "example:"
 _DEFAULT_NAMES = ("scene", "picture", "shape")
 
 
@@ -61,27 +61,6 @@ def copy_loaded_from(origin: object, made: object) -> None:
     known = loaded_from(origin)
     if known is not None:
         _loaded[made] = known
-
-
-def gallery() -> dict[str, Path]:
-    """Return the paths of the examples in the package by name, sorted by name."""
-    return {path.stem: path for path in sorted(_gallery_folder().glob("*.py"))}
-
-
-def frame_examples() -> dict[str, Path]:
-    """Return the paths of the examples that keep frames, by name, sorted by name."""
-    return {path.stem: path for path in sorted((_gallery_folder() / "frames").glob("*.py"))}
-
-
-def posters() -> dict[str, Path]:
-    """Return the paths of small pictures of the examples by name: WebP, 320 pixels wide."""
-    return {path.stem: path for path in sorted((_gallery_folder() / "posters").glob("*.webp"))}
-
-
-def _gallery_folder() -> Path:
-    installed = Path(__file__).parent / "gallery"
-    checkout = Path(__file__).parents[2] / "examples"
-    return installed if installed.is_dir() else checkout
 
 
 def load(path: str | Path, name: str | None = None) -> SceneCode:
@@ -192,7 +171,7 @@ def file_of(path: str) -> Path:
     """
     if path.startswith(EXAMPLE_PREFIX):
         wanted = path.removeprefix(EXAMPLE_PREFIX)
-        examples = gallery() | frame_examples()
+        examples = all_examples()
         if wanted not in examples:
             raise LoadError(f"there is no example '{wanted}'; examples: {', '.join(examples)}")
         return examples[wanted]

@@ -34,6 +34,16 @@ def picture(frame: Frame) -> vec3:
 
 _VALUES = "() => document.querySelector('.picture .host').distal.parameters()"
 
+COLORS = """async () => {
+  const blob = await studio.picture.player.screenshot(1);
+  const image = await createImageBitmap(blob);
+  const canvas = new OffscreenCanvas(image.width, image.height);
+  const context = canvas.getContext("2d");
+  context.drawImage(image, 0, 0);
+  const { data } = context.getImageData(0, 0, image.width, image.height);
+  return new Set(new Uint32Array(data.buffer)).size;
+}"""
+
 
 def test_a_mistake_is_shown_at_its_line_and_the_picture_stays(tmp_path):
     with studio(tmp_path) as app:
@@ -55,6 +65,28 @@ def test_a_mistake_is_shown_at_its_line_and_the_picture_stays(tmp_path):
         app.idle()
         assert "old" not in app.page.locator(".picture").get_attribute("class")
         assert app.text == SCENE
+
+
+# Those that keep frames, and a parameter of each.
+KEEP_FRAMES = [
+    *(("coral", "feed"), ("ink", "swirl"), ("lamps", "glow")),
+    *(("pilot", "fading"), ("spectrum", "trails")),
+]
+
+
+@pytest.mark.sample(3)
+@pytest.mark.parametrize(("name", "parameter"), KEEP_FRAMES)
+def test_an_example_that_keeps_frames_is_drawn(name, parameter, tmp_path):
+    with studio(tmp_path) as app:
+        app.page.evaluate("(name) => studio.opening.open(name)", name)
+        app.wait(f"() => studio.picture.player.payload.parameters[0]?.name === '{parameter}'")
+        app.idle()
+        player = "studio.picture.player"
+        app.page.evaluate(f"async () => {{ {player}.pause(); {player}.setTime(0); }}")
+        app.page.evaluate(f"async () => {{ {player}.setTime(0.1); await {player}.settled(); }}")
+        colors = app.page.evaluate(COLORS)
+        assert app.mistakes == ""
+        assert colors > 20
 
 
 def test_a_dragged_number_changes_its_bytes_and_the_picture_and_is_one_undo(tmp_path):

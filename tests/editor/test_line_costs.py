@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from distal.editor.counting import counting, timing
+from distal.example_files import gallery
 from distal.ir.intrinsics import INTRINSICS
-from distal.loading import gallery, load
+from distal.loading import load
 from distal.scene.viewing.viewable import viewable
 from tests.editor.line_costs import LineCost, Native, Repeated, counted, line_costs, spearman
 from tests.egl import EglUnavailableError, context

@@ -13,7 +13,7 @@ from distal.editor.local.files import SceneFiles
 from distal.editor.local.guard import Guard
 from distal.editor.local.server import StudioServer
 from distal.editor.messages import parsed
-from distal.loading import gallery, posters
+from distal.example_files import all_examples, posters
 
 websockets = pytest.importorskip("websockets.sync.client")
 
@@ -124,14 +124,15 @@ def test_there_are_no_other_files(server, path):
     assert asked(server, path, Cookie=cookie_of(server))[0] == 404
 
 
-def test_examples_have_texts_and_posters(server):
+@pytest.mark.parametrize("name", ["melting", "coral"])
+def test_examples_have_texts_and_posters(server, name):
     cookie = cookie_of(server)
-    status, headers, body = asked(server, "/gallery/melting.webp", Cookie=cookie)
+    status, headers, body = asked(server, f"/gallery/{name}.webp", Cookie=cookie)
     assert (status, headers["Content-Type"]) == (200, "image/webp")
-    assert body == posters()["melting"].read_bytes()
-    status, headers, body = asked(server, "/gallery/melting.json", Cookie=cookie)
+    assert body == posters()[name].read_bytes()
+    status, headers, body = asked(server, f"/gallery/{name}.json", Cookie=cookie)
     assert (status, headers["Content-Type"]) == (200, "application/json; charset=utf-8")
-    assert json.loads(body)["files"]["melting.py"] == gallery()["melting"].read_text("utf-8")
+    assert json.loads(body)["files"][f"{name}.py"] == all_examples()[name].read_text("utf-8")
 
 
 def test_the_page_allows_only_its_own(server):

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import distal
+from distal.example_files import frame_examples
 from distal.lang import Key, Keys
-from distal.loading import frame_examples
 from tests import egl, gpu
 from tests.frames.hosts import COUNT, SIZE, shown
 from tests.frames.test_frames import HOSTS, buffers_of, ours

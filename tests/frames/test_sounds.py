@@ -22,7 +22,7 @@ from distal.lang.render_options import RenderOptions
 from distal.scene.viewing.viewable import viewable
 from distal.sounds.analysis import RATE, row_at, table, table_of
 from distal.sounds.reading import Samples, read
-from distal.video.soundtrack import cut
+from distal.video.soundtrack import cut, mixed
 
 SAMPLES_A_SECOND = 44_100
 TONE_HZ = 1000.0
@@ -55,6 +55,15 @@ def song(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Half a second of a tone, then half a second of silence."""
     file = tmp_path_factory.mktemp("sounds") / "song.wav"
     return written(file, [np.concatenate([tone(0.5), 0.0 * tone(0.5)])])
+
+
+def test_a_sound_of_the_examples_is_found_from_every_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert read(SoundFile("example:arpeggio.wav").path).seconds > 1.0
+    with pytest.raises(LoadError, match=r"cannot read the sound example:none\.wav"):
+        read(SoundFile("example:none.wav").path)
 
 
 def bars_of(sound: SoundFile) -> Any:
@@ -165,6 +174,43 @@ def test_a_video_plays_what_its_picture_hears(song: Path, suffix: str, tmp_path:
     again = tmp_path / f"again.{suffix}"
     made.video(again, duration=3.0, fps=10, size=(64, 16), start=0.25)
     assert file.read_bytes() == again.read_bytes()
+
+
+def test_sounds_are_mixed() -> None:
+    low, high = (Samples(48_000, tone(0.1, f, 0.4)[None]) for f in (300.0, 2000.0))
+    both = mixed([low, high])
+    assert np.abs(both.channels - (low.channels + high.channels)).max() < 1e-6
+    loud = mixed([low, high, low])
+    assert float(loud.channels.max()) == 1.0
+    # Two channels and one: the one is on both sides; the longer one goes on alone.
+    sides = Samples(48_000, np.stack([0.0 * tone(0.05), tone(0.05, 500.0)]))
+    found = mixed([low, sides]).channels
+    short = sides.channels.shape[1]
+    assert np.array_equal(found[0, :short], low.channels[0, :short])
+    assert np.abs(found[1, :short] - low.channels[0, :short] - sides.channels[1]).max() < 1e-6
+    assert np.array_equal(found[:, short:], np.repeat(low.channels[:, short:], 2, axis=0))
+    assert mixed([low]) is low
+
+
+def test_a_video_plays_all_sounds_of_its_picture(song: Path, tmp_path: Path) -> None:
+    av: Any = pytest.importorskip("av", reason="PyAV is not installed")
+    late = written(tmp_path / "late.wav", [np.concatenate([0.0 * tone(0.5), tone(0.5, 300.0)])])
+    first, second = SoundFile(song), SoundFile(late)
+
+    @image
+    def both(frame: Frame) -> vec3:
+        at = ivec2(int(frame.coord.x), 1)
+        return vec3(texel(first, at).x, texel(second, at).x, 0.0)
+
+    file = tmp_path / "both.mp4"
+    both.video(file, duration=2.0, fps=10, size=(64, 16))
+    with av.open(str(file)) as film:
+        audio = film.streams.audio[0]
+        heard = np.concatenate([frame.to_ndarray()[0] for frame in film.decode(audio)])
+        rate = audio.rate
+    for t in (0.25, 0.75, 1.25, 1.75):
+        part = heard[round(rate * (t - 0.05)) : round(rate * (t + 0.05))]
+        assert float(np.abs(part).max()) > 0.3, t
 
 
 def test_a_part_of_a_sound() -> None:

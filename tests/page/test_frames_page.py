@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 import distal
+from distal.example_files import frame_examples
 from distal.export.page import FRAME_PLAYER, PLAYER, player_of
 from distal.lang import (
     Frame,
@@ -28,7 +29,6 @@ from distal.lang import (
     texel,
     vec4,
 )
-from distal.loading import frame_examples
 from distal.scene.viewing.viewable import viewable
 from tests.browser import BrowserUnavailableError, Watched, offline_page
 from tests.frames import pieces

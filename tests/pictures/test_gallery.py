@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
-import distal
+from distal.example_files import all_examples, posters
 from distal.fields.guarantees import UNBOUNDED
 
 ROOT = Path(__file__).parents[2]
 PICTURES = ROOT / "docs/pictures"
 MOST_BYTES = 150_000
-EXAMPLES = sorted(distal.gallery())
+SHOWN = sorted(all_examples())
 
 
 @pytest.fixture
@@ -36,7 +36,7 @@ def test_every_example_has_a_poster_that_shows_it():
     command = [sys.executable, ROOT / "tools/gen_posters.py", "--check"]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    assert sorted(distal.loading.posters()) == EXAMPLES
+    assert sorted(posters()) == SHOWN
 
 
 def test_every_sheet_of_the_catalogue_has_every_cell():
@@ -48,10 +48,10 @@ def test_every_sheet_of_the_catalogue_has_every_cell():
 def test_every_example_is_listed_once():
     lines = (ROOT / "docs/gallery.md").read_text().splitlines()
     shown = [line for line in lines if line.startswith("![") and "catalogue_" not in line]
-    assert sorted(shown) == [f"![{name}](pictures/{name}.png)" for name in EXAMPLES]
+    assert sorted(shown) == [f"![{name}](pictures/{name}.png)" for name in SHOWN]
 
 
-@pytest.mark.parametrize("example", EXAMPLES)
+@pytest.mark.parametrize("example", SHOWN)
 def test_every_picture_is_small_and_shows_something(example):
     path = PICTURES / f"{example}.png"
     picture = Image.open(path).convert("RGB")

@@ -23,7 +23,11 @@ from distal import (
 )
 from distal.lang import func, sin, slider, vec3
 from distal.render.bump import bumped_normal
+from tests import webgl
+from tests.browser import BrowserUnavailableError
+from tests.pictures.comparison import difference
 
+SIZE = (96, 72)
 SLOPE = 0.5
 GREY = matte((0.5, 0.5, 0.5))
 CAMERA = Camera((0.0, 5.0, 0.01), (0.0, 0.0, 0.0))
@@ -143,3 +147,27 @@ def test_glass_is_drawn_and_colors_are_refused():
         GREY.bump("red")  # type: ignore[arg-type]
     with pytest.raises(CompileError, match="'height of bump' takes a float; noise gives a vec3"):
         GREY.bump(noise("red", "blue"))
+
+
+@pytest.mark.parametrize("driver", ["swiftshader", "mesa"])
+def test_chromium_shades_the_same(driver):
+    @func
+    def grooves(p: vec3) -> float:
+        return 0.02 * sin(22.0 * p.x)
+
+    def scene(ball, floor):
+        slab = Box(6.0, 0.2, 6.0).translate(0, -1.1, 0)
+        return Scene(
+            Sphere(1.0).paint(ball) | slab.paint(floor),
+            lights=[DistantLight(direction=(-0.6, 0.8, 0.3), intensity=1.0)],
+            camera=Camera((0.0, 2.5, 5.0), (0.0, 0.0, 0.0)),
+        )
+
+    bumped = scene(GREY.bump(grooves), matte("#a63").bump(noise(0.0, 0.1)))
+    try:
+        found = webgl.run_webgl(distal.compile(bumped, target="glsl-es300"), SIZE, driver=driver)
+    except BrowserUnavailableError as missing:
+        pytest.skip(f"bumps are not drawn in a browser: {missing}")
+    assert difference(found, bumped.render(size=SIZE, samples=1).array).is_agreement
+    smooth = scene(GREY, matte("#a63"))
+    assert not difference(found, smooth.render(size=SIZE, samples=1).array).is_agreement

@@ -13,6 +13,8 @@ from distal import (
     Camera,
     ChamferBox,
     CompileError,
+    InfiniteCylinder,
+    Plane,
     Rectangle,
     RoundBox,
     Scene,
@@ -20,6 +22,7 @@ from distal import (
     union,
 )
 from distal.lang import slider
+from distal.scene.lowering.known_bounds import known_bounds_of
 
 POINTS = np.random.default_rng(2).uniform(-4.0, 4.0, (2000, 3)) * (10.0, 1.0, 1.0)
 
@@ -96,3 +99,44 @@ def test_what_is_wrong_is_said():
         Sphere(inf)
     with pytest.raises(CompileError, match="twist gives this shape no bound on its slope"):
         Box(inf, 1.0, 1.0).twist(1.0)
+
+
+# Transitions of infinite shapes
+
+
+def test_a_floor_rises_to_another_floor() -> None:
+    step = Plane(y=0.0).transition_linear(Plane(y=1.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0))
+    x = np.linspace(-3.0, 5.0, 81)
+    height = np.clip(x / 2.0, 0.0, 1.0)  # linear, because the planes are less than 2 apart
+    on = np.stack([x, height, 0.0 * x], axis=1)
+    assert np.abs(step(on)).max() < 1e-6
+    # Far from the way it is each of the planes; far above and below values are bounds.
+    for place, plane in ((-9.0, 0.0), (9.0, 1.0)):
+        for y in (-0.8, 0.4, 1.9):
+            assert float(step([[place, y, 0.0]])[0]) == pytest.approx(y - plane, abs=1e-5)
+        assert 60.0 < float(step([[place, 70.0, 0.0]])[0]) <= 70.0 - plane
+        assert float(step([[place, -50.0, 0.0]])[0]) < -40.0
+
+
+def test_surfaces_farther_apart_than_the_way_are_joined_by_a_wall() -> None:
+    wall = Plane(y=0.0).transition_linear(Plane(y=9.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
+    # Where both planes are farther than the way is long, both count the same: the middle.
+    for y in (2.0, 4.5, 7.0):
+        assert float(wall([[0.5, y, 0.0]])[0]) == pytest.approx(0.0, abs=1e-5)
+        assert float(wall([[0.0, y, 0.0]])[0]) > 0.5
+        assert float(wall([[1.0, y, 0.0]])[0]) < -0.5
+
+
+@pytest.mark.parametrize("ease", ["linear", "smooth"])
+def test_the_slope_of_infinite_transitions_is_kept(ease: str) -> None:
+    shapes = (
+        Plane(y=0.0).transition_linear(Plane(y=9.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), ease),
+        Sphere(1.0).transition_radial(Plane(y=-0.5), 0.5, 1.5, ease),
+        InfiniteCylinder(1.0).transition_linear(Plane(), (-1.0, 0.0, 0.0), (0.5, 0.3, 0.0), ease),
+    )
+    random = np.random.default_rng(3)
+    a = random.uniform(-3.0, 3.0, (20_000, 3))
+    b = a + random.normal(0.0, 1e-2, a.shape)
+    for shape in shapes:
+        steepest = float((np.abs(shape(a) - shape(b)) / np.linalg.norm(a - b, axis=1)).max())
+        assert 1.0 < steepest <= known_bounds_of(shape.node).slope * (1.0 + 1e-3)

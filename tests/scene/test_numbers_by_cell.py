@@ -238,6 +238,22 @@ def test_texts_of_all_languages(target):
     assert "cell" in text
 
 
+def test_a_target_without_whole_numbers_of_that_kind_says_so():
+    random = Sphere(0.1 + 0.1 * random_by_cell(seed=3)).repeat(1.0, 0.0, 1.0, count=(3, 1, 3))
+    with pytest.raises(distal.CompileError) as found:
+        distal.compile(Scene(random), target="glsl-es100")
+    (diagnostic,) = found.value.diagnostics
+    assert diagnostic.message == (
+        "glsl-es100 has no unsigned integers, which noise and random numbers of the library need"
+    )
+    assert diagnostic.hint == "compile for another target, such as glsl-es300"
+    assert diagnostic.span is None
+    by_cell = Sphere(0.1 + 0.05 * cell.x).repeat(1.0, 0.0, 1.0, count=(3, 1, 3))
+    assert "cell" in distal.compile(Scene(by_cell), target="glsl-es100").text
+
+
+BESIDE = Sphere(0.2).translate(1.0, 0.0, 0.0)
+
 WRONG = [
     (
         lambda: Sphere(0.1 + 0.1 * cell.x).array([(0, 0, 0), (1, 0, 0)], scale=[1, 2]),
@@ -259,6 +275,11 @@ WRONG = [
         lambda: Sphere(0.2 + 0.01 * cell.x).repeat(1.0, mirrored=True),
         "mirrored copies match only if all are alike; 'radius of Sphere' depends on the cell",
         "leave out mirrored=True; neighbours=1 for a shape that is larger than its cell",
+    ),
+    (
+        lambda: BESIDE.repeat_polar(3 + cell.x, neighbours="all").repeat(9.0, count=(3, 1, 1)),
+        "'count of repeat polar all' is the same in all cells",
+        "choose between shapes: select(cell.x < 1.5, a, b)",
     ),
     (
         lambda: Camera(fov=cell.x),

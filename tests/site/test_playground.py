@@ -18,12 +18,13 @@ from distal.editor.links import link_of
 from distal.editor.local.files import SceneFiles
 from distal.editor.messages import LookRequest
 from distal.editor.worker import StudioWorker
-from distal.loading import gallery
+from distal.example_files import all_examples, gallery
 from tests.browser import BrowserUnavailableError, browser
 from tools.site import playground
 
 SLOW_MS = 120_000
 NAMES = ["melting", "raymarcher", "sdfray_row"]
+KEEP_FRAMES = ["coral", "spectrum"]
 # They import NumPy.
 WITH_NUMPY = frozenset(("beach", "bricks", "forest", "molecule", "ripples", "sdfray_glass"))
 # Without NumPy their parts are in no table.
@@ -51,7 +52,7 @@ class Quiet(http.server.SimpleHTTPRequestHandler):
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory) -> Path:
     made = tmp_path_factory.mktemp("site") / "playground"
-    playground.build(made, NAMES)
+    playground.build(made, [*NAMES, *KEEP_FRAMES])
     return made
 
 
@@ -134,6 +135,32 @@ def test_the_first_picture_needs_no_python(address):
         # Another view has no program yet: it needs the compiler.
         with page.expect_request("**/distal.zip", timeout=SLOW_MS):
             page.get_by_label("View", exact=True).select_option(index=1)
+
+
+def test_a_picture_that_keeps_frames_needs_no_python(address):
+    with context(address) as made:
+        page = made.new_page()
+        page.goto(f"{address}#example=coral")
+        page.wait_for_function(_PLAYER, timeout=SLOW_MS)
+        drawn = """async () => {
+          const player = document.querySelector(".picture .host").distal;
+          player.pause();
+          const sizes = [];
+          for (const time of [0, 0.1, 0.2, 0.3]) {
+            player.setTime(time);
+            await player.settled();
+            sizes.push((await player.screenshot(1)).size);
+          }
+          return sizes;
+        }"""
+        assert len(set(page.evaluate(drawn))) > 1  # it grows
+
+
+def test_a_sound_file_needs_what_the_playground_has_not(awake):
+    text = all_examples()["spectrum"].read_text(encoding="utf-8")
+    answer = ask(awake, text)
+    assert answer["kind"] == "mistakes"
+    assert NO_NUMPY in answer["mistakes"][0]["message"]
 
 
 def test_texts_are_those_of_this_python(awake, tmp_path):

@@ -26,8 +26,9 @@ from distal.backends.messages import map_message
 from distal.backends.numpy import interpreter as reference
 from distal.compiler.driver import compile, lower, run_passes
 from distal.diagnostics import CompileError
+from distal.example_files import gallery
 from distal.lang import Image
-from distal.loading import gallery, load
+from distal.loading import load
 from tests.examples import functions_of_a_pixel
 
 HERE = Path(__file__).parent

@@ -13,13 +13,14 @@ from pathlib import Path
 from PIL import Image
 
 from distal.editor.local.server import examples
+from distal.example_files import all_examples
 from distal.export.page import page as scene_page
 from distal.export.page_options import PageOptions
 from distal.images.png import quantise
 from distal.lang.render_options import RenderOptions
 from distal.lessons.prose import code_block, python
 from distal.lessons.reading import read
-from distal.loading import gallery, load
+from distal.loading import load
 from distal.scene.viewing.viewable import viewable
 from tools.site.documents import page
 from tools.site.pages import CARD, card, card_picture, example_card
@@ -72,7 +73,7 @@ for the CPU, to GLSL for browsers and to WGSL for GPUs: one source, everywhere.<
 
 
 def _code(folder: Path) -> str:
-    source = gallery()[HERO].read_text(encoding="utf-8")
+    source = all_examples()[HERO].read_text(encoding="utf-8")
     code = source[source.index("from ") :].strip()
     figures = []
     for number, (text, values, look) in enumerate(CHANGES):

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from PIL import Image
 
+from distal import example_files
 from distal.editor.local.files import SceneFiles
 from distal.editor.local.server import examples
 from distal.export.page import page as scene_page
@@ -21,7 +22,7 @@ from distal.export.page_options import PageOptions
 from distal.lessons.page import LessonLinks, lesson_page
 from distal.lessons.reading import read
 from distal.lessons.scenes import staged
-from distal.loading import gallery, load
+from distal.loading import load
 from distal.scene.viewing.viewable import viewable
 from tools.site.documents import Found, page, playground_link
 
@@ -103,7 +104,11 @@ def build_lessons(folder: Path, files: Sequence[Path]) -> list[Found]:
             (names[j], heads[j].title) if 0 <= j < len(files) else ("", "") for j in (i - 1, i + 1)
         ]
         scene = heads[i].scene
-        path = gallery()[scene[8:]] if scene.startswith("example:") else file.parent / scene
+        path = (
+            example_files.all_examples()[scene[8:]]
+            if scene.startswith("example:")
+            else file.parent / scene
+        )
         texts = SceneFiles(path)
         editor = playground_link(texts.all().files, texts.main, "../")
         links = LessonLinks("index.html", *neighbours, editor)
@@ -130,7 +135,7 @@ def all_lessons() -> list[Path]:
 
 def all_examples() -> list[str]:
     """Return the names of the gallery that have a picture."""
-    return [name for name in gallery() if (PICTURES / f"{name}.png").exists()]
+    return [name for name in example_files.all_examples() if (PICTURES / f"{name}.png").exists()]
 
 
 def copy_style(folder: Path) -> None:

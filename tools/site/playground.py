@@ -20,7 +20,7 @@ from distal.editor.local.files import SceneFiles
 from distal.editor.local.server import APP, examples
 from distal.editor.messages import LookRequest, SceneFound
 from distal.editor.worker import StudioWorker
-from distal.loading import gallery, posters
+from distal.example_files import all_examples, posters
 from distal.version import __version__
 
 ROOT = Path(__file__).parents[2]
@@ -75,7 +75,7 @@ def write_package(path: Path) -> None:
             inner = file.relative_to(source).as_posix()
             if not any(inner.startswith(f"{left}/") for left in _LEFT_OUT):
                 _add(archive, f"distal/{inner}", file.read_bytes())
-        for name in ("player.js", "path_player.js"):
+        for name in ("player.js", "path_player.js", "frame_player.js"):
             _add(archive, f"distal/export/{name}", (source / "export" / name).read_bytes())
 
 
@@ -100,7 +100,7 @@ def opened_examples(names: Sequence[str]) -> dict[str, dict[str, object]]:
     with tempfile.TemporaryDirectory() as folder:
         worker = StudioWorker(Path(folder))
         for number, name in enumerate(dict.fromkeys(names)):
-            files = SceneFiles(gallery()[name])
+            files = SceneFiles(all_examples()[name])
             texts = files.all().files
             request = LookRequest(
                 id=number, revision=number, files=texts, main=files.main, guided=False

@@ -20,9 +20,9 @@ from distal.cli import COMMANDS, SHORT
 from distal.cli.arguments import UsageError, check_is_not_scene, read_scene
 from distal.cli.base import SceneArgument, answer, application, load, reporting
 from distal.compiler.driver import COMPILE_TARGETS, IR_TARGET
+from distal.example_files import EXAMPLE_PREFIX, all_examples
 from distal.export.texts import with_header, write_files
 from distal.images.atomic_files import check_destination
-from distal.loading import EXAMPLE_PREFIX, frame_examples
 
 for _name in COMMANDS:
     if _name not in SHORT:  # importing a module adds its command
@@ -79,7 +79,7 @@ def compile(
 @reporting
 def examples() -> None:
     """List the gallery and the examples that keep frames; render one as example:NAME."""
-    for name, path in sorted((distal.gallery() | frame_examples()).items()):
+    for name, path in sorted(all_examples().items()):
         answer(f"example:{name}\t{path}")
 
 

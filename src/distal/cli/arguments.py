@@ -12,10 +12,11 @@ from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
 
+from distal.example_files import EXAMPLE_PREFIX
 from distal.ir.limits import LARGEST_TIME
 from distal.lang.parameter_values import LARGEST_FLOAT, Value
 from distal.lang.parameters import Parameter
-from distal.loading import EXAMPLE_PREFIX, split_source
+from distal.loading import split_source
 from distal.scene.steering import Steering
 
 

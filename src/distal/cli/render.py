@@ -48,8 +48,8 @@ from distal.cli.base import (
     load_picture,
     reporting,
 )
+from distal.example_files import EXAMPLE_PREFIX
 from distal.lang.progress_lines import COMPILING, LOADING
-from distal.loading import EXAMPLE_PREFIX
 
 if TYPE_CHECKING:
     from distal.images.picture import Picture

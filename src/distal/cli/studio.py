@@ -15,7 +15,7 @@ from distal.cli.arguments import UsageError
 from distal.cli.base import answer, application, reporting
 from distal.editor.local.early import EarlyWorker
 from distal.editor.local.files import SceneFiles
-from distal.loading import EXAMPLE_PREFIX, gallery
+from distal.example_files import EXAMPLE_PREFIX, all_examples
 
 if TYPE_CHECKING:
     from distal.editor.local.serving import LocalServer
@@ -107,7 +107,7 @@ def _lesson(given: str, port: int, time_limit: float) -> tuple[LocalServer, str]
 def _files(given: str) -> SceneFiles:
     if given.startswith(EXAMPLE_PREFIX):
         name = given.removeprefix(EXAMPLE_PREFIX)
-        path = gallery().get(name)
+        path = all_examples().get(name)
         if path is None:
             raise UsageError(f"there is no example '{name}'; 'distal examples' lists them")
         texts = SceneFiles(path).all().files

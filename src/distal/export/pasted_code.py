@@ -10,9 +10,10 @@ import json
 from pathlib import PurePath
 from typing import Final
 
+from distal.example_files import EXAMPLE_PREFIX
 from distal.lang.functions import Image
 from distal.lang.render_options import RenderOptions
-from distal.loading import EXAMPLE_PREFIX, loaded_from, split_source
+from distal.loading import loaded_from, split_source
 from distal.scene.viewing.viewable import Viewable
 
 _DEFAULT_SIZE: Final = RenderOptions().size

@@ -221,7 +221,7 @@ class SoundFile(LiveTexture):
     Args:
         path: A file: ``.wav``, or what PyAV reads (``.mp3``, ``.ogg``, ``.flac`` ...), ten minutes
             at most. A relative name is looked up in the folder of the file that declares it, then
-            in the working folder.
+            in the working folder; "example:arpeggio.wav" is that of an example.
         loop: Whether it begins again at its end; else it is silent from there on.
     """
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from os import PathLike
 from typing import Any, ClassVar
 
+from distal.example_files import data_file
 from distal.ir.types import (
     FLOAT,
     INT,
@@ -43,11 +44,16 @@ def checked_axes(axes: object) -> str:
 
 
 def beside(file: str, data: Any) -> Any:
-    """Return file names as paths in the folder of ``file``, where such files exist."""
+    """Return file names as paths in the folder of ``file``, where such files exist.
+
+    "example:FILE" is a file of the examples.
+    """
     if isinstance(data, list | tuple) and len(data) == 6:  # the faces of a cube map
         return [beside(file, part) if isinstance(part, str | PathLike) else part for part in data]
     if not isinstance(data, str | PathLike):
         return data
+    if (example := data_file(os.fspath(data))) is not None:
+        return str(example)
     candidate = os.path.join(os.path.dirname(os.path.abspath(file)), os.fspath(data))
     return candidate if os.path.exists(candidate) else data
 

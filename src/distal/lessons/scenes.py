@@ -12,10 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from distal.diagnostics import CompileError, LoadError
+from distal.example_files import EXAMPLE_PREFIX
 from distal.lang.parameter_values import Value
 from distal.lessons.document import Goal, Layers, Lesson, Phrases, Try
 from distal.lessons.mistakes import choice_hint, mistake
-from distal.loading import EXAMPLE_PREFIX, load, split_source
+from distal.loading import load, split_source
 from distal.scene.viewing.viewable import Viewable, viewable
 
 

@@ -94,11 +94,11 @@ class StandardExecutor:
         resources = (r for part in (*run.parts, *run.frames) for r in part.module.resources)
         return any(isinstance(r.source, Keyboard) for r in resources)
 
-    def sound(self, image: Image | Composed) -> SoundFile | None:
-        """Return the sound that the picture, or an image whose frames it reads, reads first."""
+    def sounds(self, image: Image | Composed) -> list[SoundFile]:
+        """Return the sounds that the picture, and images whose frames it reads, read; each once."""
         run = self.parts(image)
         resources = (r for part in (*run.parts, *run.frames) for r in part.module.resources)
-        return next((r.source for r in resources if isinstance(r.source, SoundFile)), None)
+        return list(dict.fromkeys(r.source for r in resources if isinstance(r.source, SoundFile)))
 
     def follows_time(self, function: Func | Composed) -> bool:
         """Return whether a function that is no picture depends on the time."""

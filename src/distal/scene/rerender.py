@@ -15,13 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LONGEST_MESSAGE, LoadError, printable
+from distal.example_files import EXAMPLE_PREFIX
 from distal.images import exr, jpeg, png
 from distal.images.atomic_files import SaveError
 from distal.images.metadata import Provenance, ReadError
 from distal.images.picture import Picture
 from distal.images.picture_files import Record, read
 from distal.lang.render_options import Cancel, Progress, RenderOptions
-from distal.loading import EXAMPLE_PREFIX, SceneCode, digest_of, load, split_source
+from distal.loading import SceneCode, digest_of, load, split_source
 from distal.scene.rendering import render_scene
 from distal.scene.section import CutPlane
 from distal.scene.steering import Steering

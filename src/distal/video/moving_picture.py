@@ -32,7 +32,7 @@ from distal.scene.view_ranges import with_range
 from distal.scene.viewing.viewable import COLOR, Viewable, viewable
 from distal.sounds.reading import Samples, read
 from distal.video.formats import VideoError
-from distal.video.soundtrack import cut
+from distal.video.soundtrack import cut, mixed
 
 if TYPE_CHECKING:
     from distal.lang.composed import Composed
@@ -79,19 +79,18 @@ class MovingPicture:
         return bool(executor().parts(self._image).frames)
 
     def sound(self, start: Fraction, duration: Fraction) -> Samples | None:
-        """Return what is heard with it, if it reads a sound file.
+        """Return what is heard with it: all sound files that it reads, mixed; None without one.
 
         Args:
             start: The time of its first frame, in seconds.
             duration: Seconds.
 
         Raises:
-            LoadError: The file cannot be read.
+            LoadError: A file cannot be read.
         """
-        heard = executor().sound(self._image)
-        if heard is None:
-            return None
-        return cut(read(heard.path), start, duration, loop=heard.loop)
+        sounds = executor().sounds(self._image)
+        heard = [cut(read(each.path), start, duration, loop=each.loop) for each in sounds]
+        return mixed(heard) if heard else None
 
     def picture(self, index: int, time: float, size: tuple[int, int] | None = None) -> Picture:
         """Render the picture at a time.

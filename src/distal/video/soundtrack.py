@@ -6,6 +6,7 @@ pictures.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, Final
 
@@ -38,6 +39,22 @@ def cut(samples: Samples, start: Fraction, duration: Fraction, *, loop: bool) ->
     if not loop:
         heard = np.where((places >= 0) & (places < count), heard, np.float32(0.0))
     return Samples(samples.rate, heard)
+
+
+def mixed(sounds: Sequence[Samples]) -> Samples:
+    """Return what is heard of sounds at once, as a page plays them: their sum, cut off at full.
+
+    Args:
+        sounds: One or more; those of other rates are converted.
+    """
+    if len(sounds) == 1:
+        return sounds[0]
+    parts = [_at_rate(each) for each in sounds]
+    count = max(part.shape[1] for part in parts)
+    total = np.zeros((max(len(part) for part in parts), count), np.float32)
+    for part in parts:
+        total[:, : part.shape[1]] += part  # one channel is heard on both sides
+    return Samples(_RATE, np.clip(total, -1.0, 1.0))
 
 
 class Soundtrack:

@@ -21,11 +21,12 @@ from distal.diagnostics import (
     printable,
     printable_lines,
 )
+from distal.example_files import EXAMPLE_PREFIX
 from distal.images.atomic_files import SaveError
 from distal.images.metadata import Ends
 from distal.lang.number_text import shown as number_text
 from distal.load_watch import LoadWatch
-from distal.loading import EXAMPLE_PREFIX, file_of
+from distal.loading import file_of
 from distal.saved_files import PERIOD_S, FileWatcher
 from distal.scene.steering import STILL
 from distal.scene.viewing.guide import point_text

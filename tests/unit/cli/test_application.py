@@ -250,9 +250,8 @@ def test_compile_refuses_wrong_usage(scene, run, words):
 
 
 def test_examples_are_listed(scene, run, monkeypatch):
-    monkeypatch.setattr(
-        "distal.cli.application.frame_examples", lambda: {"coral": Path("/g/frames/coral.py")}
-    )
+    found = {"coral": Path("/g/frames/coral.py"), "ball": Path("/g/ball.py")}
+    monkeypatch.setattr("distal.cli.application.all_examples", lambda: found)
     assert run("examples").stdout == "example:ball\t/g/ball.py\nexample:coral\t/g/frames/coral.py\n"
 
 

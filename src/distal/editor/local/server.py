@@ -21,7 +21,7 @@ from distal.editor.local.renders import RenderLimits, RenderQueue
 from distal.editor.local.serving import NOT_FOUND, HttpReply, LocalServer
 from distal.editor.local.tab import CODE_S, StudioTab
 from distal.editor.messages import Changed, Restarted, encoded
-from distal.loading import gallery, posters
+from distal.example_files import all_examples, posters
 from distal.version import __version__
 
 APP: Final = Path(__file__).parent.parent / "app"
@@ -163,7 +163,7 @@ class StudioServer(LocalServer):
 def _of_gallery(file: str) -> HttpReply:
     """Return the texts or the poster of an example: NAME.json or NAME.webp."""
     name, _, kind = file.rpartition(".")
-    path = gallery().get(name)
+    path = all_examples().get(name)
     poster = posters().get(name)
     if path is not None and kind == "json":
         files = SceneFiles(path)
@@ -175,8 +175,8 @@ def _of_gallery(file: str) -> HttpReply:
 
 
 def examples() -> list[dict[str, str]]:
-    """Return the names of the gallery, and what each shows: the first line of its docstring."""
-    return [{"name": n, "title": _first_line(path)} for n, path in gallery().items()]
+    """Return the names of all examples, and what each shows: the first line of its docstring."""
+    return [{"name": n, "title": _first_line(path)} for n, path in all_examples().items()]
 
 
 def _first_line(path: Path) -> str:

@@ -7,9 +7,9 @@ and the rules for its slope and material.
 from __future__ import annotations
 
 from distal.fields.ease import ease_requirement, ease_slope, eased
-from distal.fields.extents import diameter, hull_of, unless_endless
-from distal.fields.guarantees import Bounds, Growth, Limit, operator
-from distal.lang import abs, clamp, dot, func, length, max, vec3
+from distal.fields.extents import diameter, hull_of
+from distal.fields.guarantees import ENDLESS, Bounds, Growth, Limit, operator
+from distal.lang import clamp, dot, func, length, max, min, mix, select, vec3
 
 
 @func
@@ -26,27 +26,38 @@ def transition(
     a: float,
     b: float,
     t: float,
+    way: float,
     bounds_a: Bounds,
     bounds_b: Bounds,
     slope_a: float,
     slope_b: float,
 ) -> float:
-    """Interpolate between two shapes by ``t``.
+    """Interpolate between two shapes by ``t``, which changes within a length ``way``.
 
-    The difference of the values is limited to its bound at the surfaces; farther out, where both
-    are positive, the result stays positive.
+    The difference of finite shapes' values is limited to its bound at the surfaces; farther out,
+    where both are positive, the result stays positive. Values of infinite shapes differ without
+    limit: both are cut off at what they can reach within ``way``, and the result stays between
+    them. So the surface is that of the first shape before the way, and of the second beyond it.
     """
     limit = most_apart(bounds_a, bounds_b, slope_a, slope_b)
+    if limit > ENDLESS:
+        most = max(slope_a, slope_b) * way
+        within = mix(clamp(a, -most, most), clamp(b, -most, most), t)
+        return clamp(within, min(a, b), max(a, b))
     return a + t * clamp(b - a, -limit, limit)
 
 
 @func
 def transition_slope(
-    rise: float, bounds_a: Bounds, bounds_b: Bounds, slope_a: float, slope_b: float
+    rise: float, way: float, bounds_a: Bounds, bounds_b: Bounds, slope_a: float, slope_b: float
 ) -> float:
-    """Return a mean of both slopes plus the slope of ``t`` times the difference of values."""
+    """Return a mean of both slopes plus the slope of ``t`` times the difference of values.
+
+    ``rise`` is the slope of ``t`` times ``way``.
+    """
     limit = most_apart(bounds_a, bounds_b, slope_a, slope_b)
-    return unless_endless(limit, max(slope_a, slope_b) + rise * limit)
+    slope = max(slope_a, slope_b)
+    return slope + rise * select(limit > ENDLESS, 2.0 * slope, limit / way)
 
 
 @func
@@ -71,7 +82,7 @@ def transition_linear(
 ) -> float:
     """Return the first shape before the point ``start``, the second beyond ``end``."""
     t = linear_progress(p, start, end, ease)
-    return transition(a, b, t, bounds_a, bounds_b, slope_a, slope_b)
+    return transition(a, b, t, length(end - start), bounds_a, bounds_b, slope_a, slope_b)
 
 
 @func
@@ -93,8 +104,8 @@ def transition_linear_slope(
     ease: int = 1,
 ) -> float:
     """Return the slope; it is larger for a shorter distance from start to end."""
-    rise = ease_slope(ease) / length(end - start)
-    return transition_slope(rise, bounds_a, bounds_b, slope_a, slope_b)
+    way = length(end - start)
+    return transition_slope(ease_slope(ease), way, bounds_a, bounds_b, slope_a, slope_b)
 
 
 @func
@@ -118,7 +129,7 @@ def transition_radial(
 ) -> float:
     """Return the first shape within ``inner`` of the y axis, the second beyond ``outer``."""
     t = radial_progress(p, inner, outer, ease)
-    return transition(a, b, t, bounds_a, bounds_b, slope_a, slope_b)
+    return transition(a, b, t, outer - inner, bounds_a, bounds_b, slope_a, slope_b)
 
 
 @func
@@ -140,8 +151,7 @@ def transition_radial_slope(
     ease: int = 1,
 ) -> float:
     """Return the slope; it is larger for a narrower ring."""
-    rise = ease_slope(ease) / abs(outer - inner)
-    return transition_slope(rise, bounds_a, bounds_b, slope_a, slope_b)
+    return transition_slope(ease_slope(ease), outer - inner, bounds_a, bounds_b, slope_a, slope_b)
 
 
 def way_requirement(
@@ -166,7 +176,6 @@ TRANSITION_LINEAR = operator(
     mix=transition_linear_mix,
     slope=transition_linear_slope,
     requires=way_requirement,
-    needs="shapes with an end: without a box their values can be any distance apart",
     growth=Growth.KEPT,
 )
 TRANSITION_RADIAL = operator(
@@ -176,6 +185,5 @@ TRANSITION_RADIAL = operator(
     slope=transition_radial_slope,
     limits={"inner": Limit.NOT_NEGATIVE},
     requires=ring_requirement,
-    needs="shapes with an end: without a box their values can be any distance apart",
     growth=Growth.KEPT,
 )

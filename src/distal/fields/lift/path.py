@@ -76,19 +76,28 @@ def bend_cosine(ahead: vec3, turned: vec3) -> float:
 
 
 @func
-def joints_are_apart(bounds: Bounds2, pieces: int, point_at: Callable[[int], vec3]) -> bool:
+def bend_tangent(ahead: vec3, turned: vec3) -> float:
+    """Return the tangent of half the angle between two directions."""
+    cosine = bend_cosine(ahead, turned)
+    return sqrt(max(1.0 - cosine * cosine, 0.0)) / max(cosine, TINY)
+
+
+@func
+def joints_are_apart(
+    bounds: Bounds2, pieces: int, point_at: Callable[[int], vec3], closed: bool
+) -> bool:
     """Return whether no two joints' planes intersect within the outline."""
     radius = circle_around(bounds)
     apart = True
     start = point_at(0)
     end = point_at(1)
-    taken = 0.0
+    arriving = point_at(pieces) - point_at(pieces - 1)
+    taken = bend_tangent(direction(arriving), direction(end - start)) if closed else 0.0
     for i in range(pieces):
-        following = point_at(min(i + 2, pieces))
+        following = point_at(i + 2 if closed else min(i + 2, pieces))
         ahead = direction(end - start)
-        turned = select(i == pieces - 1, ahead, direction(following - end))
-        cosine = bend_cosine(ahead, turned)
-        tangent = sqrt(max(1.0 - cosine * cosine, 0.0)) / max(cosine, TINY)
+        turned = direction(following - end)
+        tangent = 0.0 if i == pieces - 1 and not closed else bend_tangent(ahead, turned)
         apart = apart and radius * (taken + tangent) < length(end - start)
         taken = tangent
         start = end
@@ -97,12 +106,12 @@ def joints_are_apart(bounds: Bounds2, pieces: int, point_at: Callable[[int], vec
 
 
 @func
-def sharpest_bend(pieces: int, point_at: Callable[[int], vec3]) -> float:
+def sharpest_bend(pieces: int, point_at: Callable[[int], vec3], closed: bool) -> float:
     """Return the smallest cosine of half a bend's angle."""
     sharpest = 1.0
     start = point_at(0)
     end = point_at(1)
-    for i in range(pieces - 1):
+    for i in range(pieces if closed else pieces - 1):
         following = point_at(i + 2)
         cosine = bend_cosine(direction(end - start), direction(following - end))
         sharpest = min(sharpest, cosine)
@@ -126,14 +135,17 @@ def swept_along(
     point_at: Callable[[int], vec3],
     up: vec3,
     bounds: Bounds2,
+    closed: bool,
 ) -> vec3:
     """Return the distance, and the point in the outline (y, z), of the nearest piece of a path.
+
+    The end of a closed path is a joint like the others, if its frame meets itself there.
 
     Behind a joint's plane the next piece is used, so that there are no hollow places: inside, only
     the distance to the path's own ends counts. This is continuous if the joints are apart;
     otherwise each piece is closed by its planes.
     """
-    joined = joints_are_apart(bounds, pieces, point_at)
+    joined = joints_are_apart(bounds, pieces, point_at, closed)
     start = point_at(0)
     end = point_at(1)
     ahead = direction(end - start)
@@ -143,10 +155,13 @@ def swept_along(
     inside_ends = -min(from_disc(p - start, ahead, radius), from_disc(p - final, arriving, radius))
     y = upright(ahead, up)
     past_start = dot(start - p, ahead)
+    if closed:
+        inside_ends = -UNBOUNDED
+        past_start = dot(start - p, direction(arriving + ahead))
     found = vec3(UNBOUNDED, 0.0, 0.0)
     for i in range(pieces):
-        following = point_at(min(i + 2, pieces))
-        last = i == pieces - 1
+        following = point_at(i + 2 if closed else min(i + 2, pieces))
+        last = i == pieces - 1 and not closed
         turned = select(last, ahead, direction(following - end))
         end_plane = direction(ahead + turned)
         q = p - start
@@ -168,68 +183,96 @@ def swept_along(
 
 @func
 def sweep_slope(
-    slope: float, bounds: Bounds2, pieces: int, point_at: Callable[[int], vec3]
+    slope: float, bounds: Bounds2, pieces: int, point_at: Callable[[int], vec3], closed: bool
 ) -> float:
     """Return the outline's slope, at least 1; no bound if a bend is too sharp.
 
     There is also no bound for an infinite outline.
     """
-    fits = sharpest_bend(pieces, point_at) > SHARPEST and circle_around(bounds) < ENDLESS
+    fits = sharpest_bend(pieces, point_at, closed) > SHARPEST and circle_around(bounds) < ENDLESS
     return select(fits, max(slope, 1.0), UNBOUNDED)
 
 
 @func
-def sweep_box(bounds: Bounds2, pieces: int, point_at: Callable[[int], vec3]) -> Bounds:
+def sweep_box(
+    bounds: Bounds2, pieces: int, point_at: Callable[[int], vec3], closed: bool
+) -> Bounds:
     """Return the box around the points, enlarged by the outline's extent at the sharpest bend."""
     low = point_at(0)
     high = low
     for i in range(pieces):
         low = min(low, point_at(i + 1))
         high = max(high, point_at(i + 1))
-    reach = circle_around(bounds) / max(sharpest_bend(pieces, point_at), SHARPEST)
+    reach = circle_around(bounds) / max(sharpest_bend(pieces, point_at, closed), SHARPEST)
     return Bounds(low - reach, high + reach)
 
 
 @func
-def sweep_growth(growth: float, pieces: int, point_at: Callable[[int], vec3]) -> float:
+def sweep_growth(
+    growth: float, pieces: int, point_at: Callable[[int], vec3], closed: bool
+) -> float:
     """Return the growth: the largest distance from the box for a value of 1.
 
     A point lies within the growth of the outline's circle, and 1 past a joint's plane; at the
     sharpest bend both are divided by the cosine.
     """
-    return min((1.0 + growth) / max(sharpest_bend(pieces, point_at), SHARPEST), UNBOUNDED)
+    return min((1.0 + growth) / max(sharpest_bend(pieces, point_at, closed), SHARPEST), UNBOUNDED)
 
 
 @func
-def swept(field: Field2, p: vec3, points: Buffer[vec3], bounds: Bounds2, up: vec3 = UP) -> float:
-    """Return the distance to the outline swept along lines between points, with flat ends."""
-    return swept_along(field, p, size(points) - 1, lambda i: points[i], up, bounds).x
+def corner(points: Buffer[vec3], i: int) -> vec3:
+    """Return a point of a path; those after the end of a closed one are those after its start."""
+    last = size(points) - 1
+    return points[i - last if i > last else i]
+
+
+@func
+def swept(
+    field: Field2,
+    p: vec3,
+    points: Buffer[vec3],
+    bounds: Bounds2,
+    up: vec3 = UP,
+    closed: bool = False,
+) -> float:
+    """Return the distance to the outline swept along lines between points, with flat ends.
+
+    A closed path ends with its first point.
+    """
+    pieces = size(points) - 1
+    return swept_along(field, p, pieces, lambda i: corner(points, i), up, bounds, closed).x
 
 
 @func
 def swept_site(
-    field: Field2, p: vec3, points: Buffer[vec3], bounds: Bounds2, up: vec3 = UP
+    field: Field2,
+    p: vec3,
+    points: Buffer[vec3],
+    bounds: Bounds2,
+    up: vec3 = UP,
+    closed: bool = False,
 ) -> vec2:
     """Return the point in the outline."""
-    return swept_along(field, p, size(points) - 1, lambda i: points[i], up, bounds).yz
+    pieces = size(points) - 1
+    return swept_along(field, p, pieces, lambda i: corner(points, i), up, bounds, closed).yz
 
 
 @func
-def swept_slope(slope: float, bounds: Bounds2, points: Buffer[vec3]) -> float:
+def swept_slope(slope: float, bounds: Bounds2, points: Buffer[vec3], closed: bool = False) -> float:
     """Return ``sweep_slope`` of the points."""
-    return sweep_slope(slope, bounds, size(points) - 1, lambda i: points[i])
+    return sweep_slope(slope, bounds, size(points) - 1, lambda i: corner(points, i), closed)
 
 
 @func
-def swept_bounds(bounds: Bounds2, points: Buffer[vec3]) -> Bounds:
+def swept_bounds(bounds: Bounds2, points: Buffer[vec3], closed: bool = False) -> Bounds:
     """Return ``sweep_box`` of the points."""
-    return sweep_box(bounds, size(points) - 1, lambda i: points[i])
+    return sweep_box(bounds, size(points) - 1, lambda i: corner(points, i), closed)
 
 
 @func
-def swept_growth(growth: float, points: Buffer[vec3]) -> float:
+def swept_growth(growth: float, points: Buffer[vec3], closed: bool = False) -> float:
     """Return ``sweep_growth`` of the points."""
-    return sweep_growth(growth, size(points) - 1, lambda i: points[i])
+    return sweep_growth(growth, size(points) - 1, lambda i: corner(points, i), closed)
 
 
 @func
@@ -256,7 +299,7 @@ def swept_bezier(
     The quadratic curve is approximated by straight pieces.
     """
     return swept_along(
-        field, p, pieces, lambda i: on_bezier(i, pieces, start, control, end), up, bounds
+        field, p, pieces, lambda i: on_bezier(i, pieces, start, control, end), up, bounds, False
     ).x
 
 
@@ -273,7 +316,7 @@ def swept_bezier_site(
 ) -> vec2:
     """Return the point in the outline."""
     return swept_along(
-        field, p, pieces, lambda i: on_bezier(i, pieces, start, control, end), up, bounds
+        field, p, pieces, lambda i: on_bezier(i, pieces, start, control, end), up, bounds, False
     ).yz
 
 
@@ -287,7 +330,9 @@ def swept_bezier_slope(
     pieces: int = 12,
 ) -> float:
     """Return ``sweep_slope`` of the curve."""
-    return sweep_slope(slope, bounds, pieces, lambda i: on_bezier(i, pieces, start, control, end))
+    return sweep_slope(
+        slope, bounds, pieces, lambda i: on_bezier(i, pieces, start, control, end), False
+    )
 
 
 @func
@@ -299,7 +344,7 @@ def swept_bezier_bounds(
     pieces: int = 12,
 ) -> Bounds:
     """Return ``sweep_box`` of the curve."""
-    return sweep_box(bounds, pieces, lambda i: on_bezier(i, pieces, start, control, end))
+    return sweep_box(bounds, pieces, lambda i: on_bezier(i, pieces, start, control, end), False)
 
 
 @func
@@ -311,7 +356,7 @@ def swept_bezier_growth(
     pieces: int = 12,
 ) -> float:
     """Return ``sweep_growth`` of the curve."""
-    return sweep_growth(growth, pieces, lambda i: on_bezier(i, pieces, start, control, end))
+    return sweep_growth(growth, pieces, lambda i: on_bezier(i, pieces, start, control, end), False)
 
 
 def bezier_requirement(start: tuple[float, ...], end: tuple[float, ...], pieces: int) -> str | None:

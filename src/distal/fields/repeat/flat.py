@@ -21,7 +21,6 @@ from distal.fields.guarantees import (
     Site2,
     operator,
 )
-from distal.fields.place.flat import kaleidoscope_flat_bounds
 from distal.fields.repeat.along import cells_in_line
 from distal.fields.repeat.cells import (
     Copies,
@@ -49,6 +48,7 @@ from distal.fields.repeat.polar import (
     nearest_of_all_polar,
     nearest_polar,
     polar_around_requirement,
+    polar_bounds,
     polar_requirement,
     repeated_polar,
     repeated_polar_around_slope,
@@ -194,6 +194,15 @@ def column(bounds: Bounds2) -> Bounds:
 def off_ground(p: vec3) -> vec2:
     """Return a point of the xz plane as a point of the plane."""
     return vec2(p.x, -p.z)
+
+
+@func
+def polar_flat_bounds(bounds: Bounds2, count: int) -> Bounds2:
+    """Return the rectangle around all copies."""
+    box = polar_bounds(column(bounds), count)
+    return Bounds2(
+        off_ground(vec3(box.low.x, 0.0, box.high.z)), off_ground(vec3(box.high.x, 0.0, box.low.z))
+    )
 
 
 @func
@@ -352,7 +361,7 @@ REPEAT_POLAR_ALL_FLAT = operator(
     around=repeated_polar_flat_all,
     site=repeated_polar_flat_all_site,
     keeps=EXACT_OUTSIDE,
-    bounds=kaleidoscope_flat_bounds,
+    bounds=polar_flat_bounds,
     requires=polar_requirement,
     growth=Growth.TURNED,
 )
@@ -363,7 +372,7 @@ REPEAT_POLAR_FLAT = operator(
     finish=repeated_polar_flat_value,
     keeps=INSIDE_AND_BOUND,
     slope=repeated_polar_flat_slope,
-    bounds=kaleidoscope_flat_bounds,
+    bounds=polar_flat_bounds,
     requires=polar_requirement,
     needs=POLAR_FITTING.replace("the y axis", "the origin"),
     growth=Growth.HELD,
@@ -375,7 +384,7 @@ REPEAT_POLAR_NEIGHBOURS_FLAT = operator(
     site=repeated_polar_flat_site,
     keeps=LOWER_BOUND,
     slope=repeated_polar_flat_around_slope,
-    bounds=kaleidoscope_flat_bounds,
+    bounds=polar_flat_bounds,
     requires=polar_around_requirement,
     needs=POLAR_SMALLER.replace("the y axis", "the origin"),
     growth=Growth.HELD,

@@ -13,9 +13,10 @@ the copy that leaves it is as far away as the one that enters.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Final
 
 from distal.fields.constants import PI
-from distal.fields.extents import drum_distance
+from distal.fields.extents import box_distance, drum_distance, hull_of, turned_flat
 from distal.fields.guarantees import (
     ENDLESS,
     EXACT_OUTSIDE,
@@ -23,6 +24,7 @@ from distal.fields.guarantees import (
     LOWER_BOUND,
     UNBOUNDED,
     Bounds,
+    Bounds2,
     Growth,
     Site,
     operator,
@@ -39,6 +41,7 @@ from distal.lang import (
     floor,
     func,
     length,
+    mat2,
     max,
     min,
     round,
@@ -48,6 +51,10 @@ from distal.lang import (
     vec2,
     vec3,
 )
+
+# Up to so many copies the hull of their boxes is found; the cylinder's box is at most 4 % larger
+# than that of more.
+FEW: Final = 12
 
 
 @struct
@@ -123,6 +130,32 @@ def to_drum(p: vec3, bounds: Bounds) -> float:
 
 
 @func
+def polar_bounds(bounds: Bounds, count: int) -> Bounds:
+    """Return the box around all copies: the hull of their boxes if they are few."""
+    around = kaleidoscope_bounds(bounds)
+    if count <= FEW:
+        plan = Bounds2(bounds.low.xz, bounds.high.xz)
+        sides = plan
+        for i in range(1, FEW):
+            if i < count:
+                angle = float(i) * (2.0 * PI / float(count))
+                c, s = cos(angle), sin(angle)
+                sides = hull_of(sides, turned_flat(plan, mat2(vec2(c, s), vec2(-s, c))))
+        low = max(around.low, vec3(sides.low.x, bounds.low.y, sides.low.y))
+        high = min(around.high, vec3(sides.high.x, bounds.high.y, sides.high.y))
+        return Bounds(low, high)
+    return around
+
+
+@func
+def to_copies(p: vec3, bounds: Bounds, count: int) -> float:
+    """Return the distance to a solid that contains all copies: their cylinder within their box."""
+    if count <= FEW:
+        return max(to_drum(p, bounds), box_distance(p, polar_bounds(bounds, count)))
+    return to_drum(p, bounds)
+
+
+@func
 def polar_index(p: vec3, count: int, sector: Sector) -> float:
     """Return the index of the copy whose middle is nearest by angle.
 
@@ -165,11 +198,11 @@ def repeated_polar(p: vec3, count: int, bounds: Bounds) -> Site:
 def repeated_polar_value(d: float, p: vec3, count: int, bounds: Bounds) -> float:
     """Return the value, limited by the other sectors; at least the distance to the cylinder."""
     if count < 2:
-        return max(d, to_drum(p, bounds))
+        return max(d, to_copies(p, bounds, count))
     sector = sector_of(bounds)
     at = in_sector(turned_by(p, polar_index(p, count, sector), count), sector)
     others = to_next(at, 2.0 * PI / float(count) - sector.half, sector)
-    return max(min(max(d, to_own(at, sector)), others), to_drum(p, bounds))
+    return max(min(max(d, to_own(at, sector)), others), to_copies(p, bounds, count))
 
 
 @func
@@ -219,7 +252,7 @@ def nearest_polar(
         nearest = min(nearest, behind)
     if neighbours == 2 and count > 3:
         nearest = min(nearest, to_next(at, 2.0 * step - sector.half, sector))
-    return Nearest(max(nearest, to_drum(p, bounds)), polar_site(p, chosen, count))
+    return Nearest(max(nearest, to_copies(p, bounds, count)), polar_site(p, chosen, count))
 
 
 @func
@@ -302,7 +335,7 @@ REPEAT_POLAR = operator(
     finish=repeated_polar_value,
     keeps=INSIDE_AND_BOUND,
     slope=repeated_polar_slope,
-    bounds=kaleidoscope_bounds,
+    bounds=polar_bounds,
     requires=polar_requirement,
     needs=POLAR_FITTING,
     growth=Growth.HELD,
@@ -314,7 +347,7 @@ REPEAT_POLAR_NEIGHBOURS = operator(
     site=repeated_polar_around_site,
     keeps=LOWER_BOUND,
     slope=repeated_polar_around_slope,
-    bounds=kaleidoscope_bounds,
+    bounds=polar_bounds,
     requires=polar_around_requirement,
     needs=POLAR_SMALLER,
     growth=Growth.HELD,
@@ -325,7 +358,7 @@ REPEAT_POLAR_ALL = operator(
     around=repeated_polar_all,
     site=repeated_polar_all_site,
     keeps=EXACT_OUTSIDE,
-    bounds=kaleidoscope_bounds,
+    bounds=polar_bounds,
     requires=polar_requirement,
     growth=Growth.TURNED,
 )

@@ -7,9 +7,11 @@ names the author's operation that needs the function.
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, replace
 from typing import Final
 
+from distal import packages
 from distal.diagnostics import CompileError, Span
 from distal.ir.build import compare, integer
 from distal.ir.nodes import (
@@ -43,6 +45,12 @@ _BIT_OPS: Final = frozenset((BinaryOp.AND, BinaryOp.OR, BinaryOp.XOR, BinaryOp.S
 # A longer loop is rejected if its actual length is known only at run time.
 _LONGEST_CLAMPED_LOOP: Final = 65536
 
+# Where the scene code of the library is.
+_LIBRARY: Final = tuple(
+    os.path.join(os.path.dirname(os.path.abspath(packages.__file__)), name)
+    for name in ("fields", "render", "lang")
+)
+
 _OTHER_TARGET: Final = "compile for another target, such as glsl-es300"
 
 
@@ -55,6 +63,11 @@ class Blame:
 
 
 def _refusal(target: Target, lacks: str, blame: Blame, hint: str) -> CompileError:
+    span = blame.span
+    if span is not None and os.path.dirname(span.file).startswith(_LIBRARY):
+        # The author did not write that line, and cannot change it.
+        needs = ", which noise and random numbers of the library need"
+        return CompileError.at(f"{target.name} has no {lacks}{needs}", None, _OTHER_TARGET)
     needs = f", which '{blame.what}' needs" if blame.what else ""
     return CompileError.at(f"{target.name} has no {lacks}{needs}", blame.span, hint)
 

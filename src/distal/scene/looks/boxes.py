@@ -50,12 +50,14 @@ class SubjectBox:
         high: Upper corner.
         endless: The parts of the scene that are infinite, such as planes.
         cut: Whether the box is that of an infinite part, cut.
+        parts: The finite parts and their boxes; none if they are too many to look at each.
     """
 
     low: tuple[float, ...]
     high: tuple[float, ...]
     endless: tuple[Node, ...]
     cut: bool
+    parts: tuple[tuple[Node, Corners], ...] = ()
 
     @property
     def middle(self) -> tuple[float, ...]:
@@ -91,12 +93,14 @@ def subject_box(root: Node, params: Mapping[str, Any], time: float) -> SubjectBo
         parts = list(parts_of(table.node))
         sources = [table.node, *(member.source for member, _ in table.beside)]
     known = list(zip(sources, _boxes(parts, params, time), strict=True))
-    finite = [box for _, box in known if box is not None and _is_finite(*box)]
+    parts_there = [(part, box) for part, box in known if box is not None and _is_finite(*box)]
+    finite = [box for _, box in parts_there]
     endless = tuple(part for part, box in known if box is not None and not _is_finite(*box))
     if finite:
         low = tuple(map(min, zip(*(low for low, _ in finite), strict=True)))
         high = tuple(map(max, zip(*(high for _, high in finite), strict=True)))
-        return SubjectBox(low, high, endless, cut=False)
+        few = () if root.parts > MOST_FOLDED else tuple(parts_there)
+        return SubjectBox(low, high, endless, cut=False, parts=few)
     whole = _boxes([root], params, time)[0] or ((-math.inf,) * 3, (math.inf,) * 3)
     pairs = [_cut(a, b) for a, b in zip(*whole, strict=True)]
     return SubjectBox(tuple(a for a, _ in pairs), tuple(b for _, b in pairs), endless, cut=True)

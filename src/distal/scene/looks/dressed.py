@@ -69,7 +69,9 @@ class Dressed:
         self._given, self._place = given, place
         self.shape: BaseShape = one_shape(given.shape, place)
         params, time = staged or ({}, 0.0)
-        self._dressing = Dressing(look, lambda: subject_box(self.shape.node, params, time))
+        self._dressing = Dressing(
+            look, lambda: subject_box(self.shape.node, params, time), params, time
+        )
         self.given_lights = checked_lights(given.lights, place)
         skies = any(isinstance(light, Surroundings) for light in self.given_lights)
         self._own_background = given.background is not None or skies

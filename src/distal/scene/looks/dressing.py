@@ -23,6 +23,7 @@ from distal.scene.objects.cameras import BaseCamera
 from distal.scene.objects.declared import scene_call
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.lights import Light
+from distal.scene.objects.lowest_point import lowest_of
 from distal.scene.tree.arguments import slots_of
 
 if TYPE_CHECKING:
@@ -68,10 +69,19 @@ class Dressing:
     Args:
         look: The look.
         find_box: Returns the box of what the picture shows; called at most once.
+        params: Values of parameters by name, for the floor; the others have their defaults.
+        time: Time in seconds, for the floor.
     """
 
-    def __init__(self, look: Look, find_box: Callable[[], SubjectBox]) -> None:
+    def __init__(
+        self,
+        look: Look,
+        find_box: Callable[[], SubjectBox],
+        params: Mapping[str, Any],
+        time: float,
+    ) -> None:
         self.look = look
+        self._params, self._time = params, time
         self._find_box = find_box
         self._azimuth: Any = look["azimuth"]
         self._eye_height = math.inf  # of the author's camera, where it is known
@@ -164,13 +174,27 @@ class Dressing:
         """Whether the author's camera stands below the floor, and sees nothing else."""
         return self._eye_height < self._floor_height
 
-    @property
+    @cached_property
     def _floor_height(self) -> float:
-        return self.box.low[1] - BELOW * self.box.radius
+        return self._lowest - BELOW * self.box.radius
+
+    @property
+    def _lowest(self) -> float:
+        """The height of the lowest point of all parts, of which those in loose boxes are measured.
+
+        A part whose box is above the lowest point found is not looked at.
+        """
+        if not self.box.parts:
+            return self.box.low[1]
+        lowest = self.box.high[1]
+        for part, box in sorted(self.box.parts, key=lambda each: each[1][0][1]):
+            if box[0][1] < lowest:
+                lowest = min(lowest, lowest_of(part, box, self._params, self._time))
+        return lowest
 
     @property
     def floor(self) -> BaseShape:
-        """The floor, at the lowest point of the box."""
+        """The floor, at the lowest point of what stands on it."""
         floor: BaseShape = Plane(y=self._floor_height).paint(self.ground).named("floor")
         return floor
 

@@ -287,6 +287,9 @@ class Shape(Meshable, FromData):
     ) -> Self:
         """Change gradually from this shape to another along the line from ``start`` to ``end``.
 
+        Of infinite shapes, what is farther from a surface than ``end`` from ``start`` changes
+        like what is that far: surfaces farther apart are joined by a steep wall.
+
         Args:
             other: The other shape.
             start: A point; before it, only this shape is seen.
@@ -301,6 +304,9 @@ class Shape(Meshable, FromData):
         self, other: BaseShape, inner: Number, outer: Number, ease: str = "linear"
     ) -> Self:
         """Change gradually from this shape near the y axis to another farther out.
+
+        Of infinite shapes, what is farther from a surface than the ring is wide changes like what
+        is that far.
 
         Args:
             other: The other shape.

@@ -21,7 +21,7 @@ from distal.scene.objects.copies import CopyColumns, copied
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.shapes import CLASSES
 from distal.scene.points.curves import points_along
-from distal.scene.points.frames import across, quaternions, rolled, untwisted
+from distal.scene.points.frames import across, quaternions, rolled, seam_turn, untwisted
 from distal.scene.points.parabolas import Parabolas, parabolas_of
 from distal.scene.points.requests import positive
 from distal.scene.tree.conversion import Asked, number
@@ -38,6 +38,8 @@ Floats = NDArray[np.float64]
 _FRACTION: Final = 5e-4
 # Straight pieces of each parabola, along which frames are carried and outlines are swept.
 _STRAIGHT: Final = 4
+# The turn of an outline, in radians, below which it meets itself: rounding of plane curves.
+_MEETS: Final = 1e-6
 # Frames are carried in steps by this many for each copy at least.
 _STEPS: Final = 8
 _LEAST_STEPS: Final = 512
@@ -147,27 +149,36 @@ class Curve(Immutable):
     def sweep(self, outline: Shape2D, up: Vector = _UP) -> Shape:
         """Return the solid of an outline that moves along the curve without a twist.
 
-        The curve is divided into straight pieces, 4 of each parabola, whose joints are mitred.
+        The curve is divided into straight pieces, 4 of each parabola, whose joints are mitred. A
+        closed curve is swept all the way round if the outline comes back as it began, as along
+        every curve in a plane.
 
         Args:
             outline: A flat shape.
             up: The direction of the outline's y axis at the start, as far as possible.
 
         Raises:
-            SceneValueError: The curve is closed, or too sharp for the outline.
+            SceneValueError: The outline comes back turned, or the curve is too sharp for it.
         """
         place = author_place()
         if not isinstance(outline, BaseShape) or not outline.flat:
             refuse_kind(
                 f"a curve sweeps a flat shape, not {outline!r:.60}", "Rectangle(0.2, 0.1)", place
             )
+        corners = self._corners()
         if self.closed:
-            refuse(
-                "an outline along a closed curve has a seam, where its ends do not match",
-                "tube(radius) is round; or leave a gap: end=0.999 * tau",
-                place,
-            )
-        made: Shape = outline._under(path.SWEEP, (self._corners(), up), {}, place)
+            corners[-1] = corners[0]
+            turn = seam_turn(corners)
+            if abs(turn) > _MEETS:
+                refuse(
+                    "an outline along this closed curve does not meet itself: it comes back turned "
+                    f"by {math.degrees(turn):.3g} degrees",
+                    "tube(radius) is round; or leave a gap: end=0.999 * tau",
+                    place,
+                )
+        made: Shape = outline._under(
+            path.SWEEP, (corners,), {"up": up, "closed": self.closed}, place
+        )
         return made
 
     def frames(

@@ -387,6 +387,9 @@ class _ArgumentBinding:
                 parts[name] = value
             else:
                 takes = f"it takes {self._listed()}" if names else "it takes no numbers"
+                if len(vectors) == 1:
+                    letters = ", ".join(_LETTERS[: _size(vectors[0])])
+                    takes += f"; {letters} are parts of '{vectors[0].name}'"
                 hint = did_you_mean(name, names) or takes
                 self._wrong(f"{self.what} has no '{name}'", hint)
         if parts:

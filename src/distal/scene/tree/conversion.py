@@ -258,17 +258,17 @@ def _changing_choice(value: Symbolic, asked: Asked) -> Number:
             f"give a plain {kind}",
             asked.place,
         )
+    if is_whole and CELL in places_in(held):
+        refuse(
+            f"'{asked.label}' is the same in all cells",
+            "choose between shapes: select(cell.x < 1.5, a, b)",
+            asked.place,
+        )
     if held.node.type is not asked.type:
         kind, hint = ("a whole number", "integer(…)") if is_whole else ("a condition", "toggle(…)")
         refuse_kind(
             f"'{asked.label}' takes {kind}; {_described(value)} is a {held.node.type}",
             f"make it with {hint}" + ("" if is_whole else ", or compare: x > 0.5"),
-            asked.place,
-        )
-    if is_whole and CELL in places_in(held):
-        refuse(
-            f"'{asked.label}' is the same in all cells",
-            "choose between shapes: select",
             asked.place,
         )
     _check_places(held, asked)
