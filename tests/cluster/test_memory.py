@@ -10,7 +10,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 # All cases: the length of a long film; else one that shows what a frame leaves as well.
-FRAMES = 2000 if os.environ.get("DISTAL_ALL_CASES") else 320
+FRAMES = 2000 if os.environ.get("DISTAL_ALL_CASES") else 520
 
 
 def test_objects_and_memory_of_a_long_film():
