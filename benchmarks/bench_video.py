@@ -76,7 +76,7 @@ def encode_alone(pictures: list[object], frames: int, folder: Path) -> None:
         piece = Piece(path, codec, SIZE, RATE, encoder_threads())
         for i in range(first, first + count):
             at = i % (2 * HELD)  # forth and back, so that it moves smoothly
-            piece.add(converter.frame(pictures[min(at, 2 * HELD - 1 - at)]))
+            piece.add(converter.frame_of(pictures[min(at, 2 * HELD - 1 - at)].levels))
         piece.finish()
         pieces.append((path, count))
     join(pieces, folder / "alone.mp4", FORMATS[".mp4"], RATE, {})
@@ -91,7 +91,7 @@ def main() -> None:
     frames = options.seconds * 60
     image = distal.load("example:raymarcher")
     pictures = [
-        executor().render(image, RenderOptions(size=SIZE, time=float(i / RATE))).array
+        executor().render(image, RenderOptions(size=SIZE, time=float(i / RATE)))
         for i in range(HELD)
     ]
     render, encode, both = Stage("rendering alone"), Stage("encoding alone"), Stage("video")

@@ -10,6 +10,7 @@ from distal import Box, Scene, Sphere
 from distal.cluster import ClusterError, WorkerPool, pool_of
 from distal.cluster import pool as pools
 from distal.devices.base import Cancelled
+from distal.images.picture import Picture, Provenance
 from distal.lang import Frame, Texture2D, fract, image, sample, slider, vec3
 from distal.lang.render_options import RenderOptions
 from distal.lang.runtime_access import executor
@@ -134,3 +135,12 @@ def test_mistakes_of_a_scene_are_told_here(client):
 
     with pytest.raises(distal.CompileError, match="wrong"):
         wrong.render((8, 8), cluster=client)
+
+
+def test_pictures_of_levels():
+    """A film's frames return as levels: the encoder gets them as they are, once rounded."""
+    levels = np.arange(1024, dtype=np.uint8).reshape(16, 16, 4)
+    made = Picture.of_levels(levels, Provenance(), {}).with_provenance(view="color")
+    assert made.levels is levels
+    np.testing.assert_array_equal(made.array, levels.astype(np.float32) / np.float32(255.0))
+    np.testing.assert_array_equal(Picture(made.array).levels, levels)

@@ -10,6 +10,7 @@ import time
 
 import psutil
 import pytest
+from distributed import LocalCluster
 from distributed.client import ClosedClientError
 
 import distal
@@ -180,6 +181,29 @@ def test_when_no_workers_are_left(tmp_path, monkeypatch):
         f"the scheduler {address} has had no workers for 3 s; what is finished is kept"
     )
     assert told == [f"the scheduler {address} has no workers left: waiting"]
+
+
+def test_the_watch_asks_the_scheduler(client, monkeypatch):
+    """What the client has noted may be what its timer asked for: no workers."""
+    told = []
+    pool = WorkerPool(client, tell=told.append)
+    monkeypatch.setattr(client, "scheduler_info", lambda n_workers=0: {"workers": {}})
+    pool.watch._next = 0.0
+    pool.watch.look()
+    assert told == []
+
+
+def test_local_processes_that_end_late(monkeypatch):
+    """What is finished then is finished: no error."""
+    close = LocalCluster.close
+
+    def late(cluster):
+        close(cluster)
+        raise TimeoutError
+
+    monkeypatch.setattr(LocalCluster, "close", late)
+    with connected("local:1") as pool:
+        pool.check()
 
 
 def test_a_worker_that_each_picture_kills(client, tmp_path, monkeypatch):

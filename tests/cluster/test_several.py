@@ -85,20 +85,33 @@ def test_one_client_is_cancelled_and_the_other_goes_on(client, tmp_path):
 
 
 @image
-def long(frame: Frame) -> vec3:
-    """Takes seconds for a part of a picture, unless it is stopped."""
+def endless(frame: Frame) -> vec3:
+    """Never ends after the first second, unless it is stopped."""
     total, i = 0.0, 0
-    while i < 2000000:
+    while i < 10 or frame.time > 1.0:
         total += sin(float(i))
-        i += 1
+        i = (i + 1) % 1000000
     return vec3(total)
+
+
+def running(dask_worker):
+    """The number of tasks that the threads of a worker do, also of those that nobody wants."""
+    return dask_worker.state.executing_count
 
 
 def test_a_running_task_stops_when_it_is_cancelled(client):
     """Not only those that have not begun: the worker is free for others at once."""
+    seen, pool = [], WorkerPool(client, timeout=250.0)
+    endless.render((256, 192), cluster=pool)  # so that the workers have compiled it
+
+    def cancel():
+        seen.append(sum(client.run(running).values()) > 0)
+        return sum(seen) > 10
+
     with pytest.raises(Cancelled):
-        calls = []
-        long.render((256, 192), cluster=client, cancel=lambda: calls.append(1) or len(calls) > 20)
+        endless.render((256, 192), time=2.0, cluster=pool, cancel=cancel)
+    # If they did not stop, the limit of time would stop them long after this.
+    wait(lambda: not any(client.run(running).values()), 100.0)
     tinted = Scene(Box(0.5))
     assert (tinted.render((32, 24), cluster=client).array == tinted.render((32, 24)).array).all()
 

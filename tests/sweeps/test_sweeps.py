@@ -9,9 +9,11 @@ import re
 import numpy as np
 import pytest
 from PIL import Image
+from typer.testing import CliRunner
 
 import distal
 from distal import Scene, Sphere
+from distal.cli.application import application
 from distal.devices.base import Cancelled
 from distal.images.atomic_files import SaveError
 from distal.images.png import quantise
@@ -174,6 +176,7 @@ def test_measures_need_a_solid(tmp_path):
         ({}, "a.png", {}, ValueError, "a sweep takes values: --set NAME="),
         ({"amount": "0:1:400", "count": "1:9", "time": "0:1:40"}, "a", {}, ValueError,
          "a sweep has at most 100000 pictures, not 144000"),
+        ({"amount": "0,1", "Amount": "0.5"}, "a.png", {}, ValueError, "'Amount' has values twice"),
         ({"amount": "0:1:400"}, "a.png", {}, ValueError, "a sheet of 400x1 pictures would have"),
         ({"amount": "0:1:4"}, "a.jpg", {}, SaveError, "a sweep is a .png or a folder, not a.jpg"),
         ({"amount": "0:1:4"}, "a.png", {"params": {"amount": 1.0}}, ValueError,
@@ -196,3 +199,11 @@ def test_on_a_cluster(tmp_path):
     with local_cluster(2) as client:
         distal.sweep(flat, {"amount": "0:1:6"}, tmp_path / "all.png", size=(16, 12), cluster=client)
     assert (tmp_path / "all.png").read_bytes() == (tmp_path / "alone.png").read_bytes()
+
+
+def test_the_command_takes_a_parameter_once(tmp_path):
+    """Before, the last one was taken without a word."""
+    words = ["sweep", "example:raymarcher", "--set", "time=0,1", "--set", "time=2"]
+    made = CliRunner().invoke(application, [*words, "-o", str(tmp_path / "s.png")])
+    assert made.exit_code == 2 and not list(tmp_path.iterdir())
+    assert "--set gives 'time' twice: NAME=0.2,0.4 has both values" in made.output

@@ -90,7 +90,7 @@ def sweep(
         if not equals:
             raise UsageError(f"--set takes NAME=VALUES, not '{text:.60}'")
         if name.strip() in values:
-            raise UsageError(f"--set gives '{name.strip()}' twice")
+            raise UsageError(f"--set gives '{name.strip()}' twice: NAME=0.2,0.4 has both values")
         values[name.strip()] = given
     bar = frame_progress(shown_progress)
     bar.stage(LOADING)

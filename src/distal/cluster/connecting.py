@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Final
 
@@ -70,19 +70,22 @@ def _count(where: str) -> int:
 @contextmanager
 def _local(count: int) -> Iterator[Any]:
     distributed = imported("distributed")
-    with (
-        imported("dask").config.set(_SHORT_LOGS),
-        distributed.LocalCluster(
+    with imported("dask").config.set(_SHORT_LOGS):
+        cluster = distributed.LocalCluster(
             n_workers=count,
             threads_per_worker=1,
             processes=True,
             host="127.0.0.1",
             dashboard_address="127.0.0.1:0",
             silence_logs=50,
-        ) as cluster,
-        distributed.Client(cluster, set_as_default=False) as client,
-    ):
-        yield client
+        )
+        try:
+            with distributed.Client(cluster, set_as_default=False) as client:
+                yield client
+        finally:
+            # On a busy machine processes end late; they are daemons, and end with this one.
+            with suppress(TimeoutError):
+                cluster.close()
 
 
 def _check_file(path: Path) -> None:

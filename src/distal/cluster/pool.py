@@ -369,9 +369,9 @@ def _fields_but(given: Any, *names: str) -> Plain:
 def _picture(image: Image | Composed, options: RenderOptions, found: Mapping[str, Any]) -> Picture:
     """Return the picture that a worker has rendered, as this process would have."""
     pixels = found["pixels"]
-    if pixels.dtype == np.uint8:
-        pixels = pixels.astype(np.float32) / np.float32(255.0)
     values = chosen_uniforms(executor().parts(image).declared, options)
     origin = executor().origin(image, replace(options, device=CPU), values, found["samples"])
     stats = {**found["stats"], "lost": found["lost"]}
+    if pixels.dtype == np.uint8:
+        return Picture.of_levels(pixels, origin, stats)
     return Picture(pixels, origin, stats, found.get("light"))

@@ -68,12 +68,10 @@ def _worker() -> Any:
 
 def _wanted() -> Callable[[], bool]:
     """Return a function that says whether somebody waits for the task of this thread."""
-    from distributed.threadpoolexecutor import thread_state  # noqa: PLC0415 (slow to import)
-
-    key = getattr(thread_state, "key", None)
     try:
         worker = _worker()
-    except ValueError:  # no thread of a worker
+        key = worker.get_current_task()
+    except (ValueError, KeyError):  # no thread of a worker
         return lambda: True
     known: Any = worker.state.tasks.get(key)
     return lambda: known is None or known.state not in _UNWANTED

@@ -92,7 +92,9 @@ class Watch:
     def _look(self, now: float, tasks: Mapping[str, str]) -> None:
         with explained(self._client):
             processing = self._client.processing()
-            workers = self._client.scheduler_info(n_workers=-1)["workers"]
+            # Not Client.scheduler_info: what it returns may be that of its timer, without workers.
+            identity = self._client.sync(self._client.scheduler.identity, n_workers=-1)
+        workers = identity["workers"]
         self._check_workers(now, bool(workers))
         held = {worker: set(keys) for worker, keys in processing.items() if keys}
         since = {}

@@ -18,7 +18,6 @@ from distal.cluster import tasks
 from distal.cluster.programs import Plain, received
 from distal.devices.cpu import CpuKernel
 from distal.devices.features import chosen_level
-from distal.images.png import quantise
 from distal.lang.render_options import Refinement, RenderOptions
 from distal.lang.runtime_access import executor
 from distal.runtime.device_names import CPU
@@ -65,7 +64,7 @@ def picture(program: Plain, digest: str, data: Mapping[str, Any], call: Plain) -
 
 def _picture(image: Received, options: RenderOptions, call: Plain) -> Plain:
     made, exact = executor().render(image, options), call["exact"]
-    pixels = made.array if exact else quantise(made.array)
+    pixels = made.array if exact else made.levels
     found: Plain = {
         "pixels": np.asarray(pixels),
         "samples": made.provenance.samples,

@@ -62,6 +62,7 @@ class Picture:
             "normal" and "albedo" are means over samples, of what is seen in mirrors and through
             clear glass, and there are "samples" (uint32, the number of each pixel) and "variance"
             (float32, of the pixel's luma: its squared standard error; infinite if unknown).
+        rounded: uint8, of the shape of ``array``: its levels, if it was made from them.
     """
 
     array: NDArray[np.float32]
@@ -69,6 +70,15 @@ class Picture:
     stats: Mapping[str, Any] = field(default_factory=dict)
     light: NDArray[np.float32] | None = field(default=None, repr=False)
     layers: Mapping[str, NDArray[Any]] = field(default_factory=dict, repr=False)
+    rounded: NDArray[np.uint8] | None = field(default=None, repr=False)
+
+    @classmethod
+    def of_levels(
+        cls, levels: NDArray[np.uint8], provenance: Provenance, stats: Mapping[str, Any]
+    ) -> Picture:
+        """Return a picture of 8-bit levels, (height, width, 4), which ``levels`` returns again."""
+        array = np.divide(levels, np.float32(255.0), dtype=np.float32)
+        return cls(array, provenance, stats, rounded=levels)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "array", _checked(self.array))
@@ -79,6 +89,11 @@ class Picture:
         object.__setattr__(self, "stats", MappingProxyType(dict(self.stats)))
         layers = {name: _layer(name, values, self.array) for name, values in self.layers.items()}
         object.__setattr__(self, "layers", MappingProxyType(layers))
+
+    @property
+    def levels(self) -> NDArray[np.uint8]:
+        """``array`` rounded to 256 levels, as saving does: uint8, (height, width, 4)."""
+        return png.quantise(self.array) if self.rounded is None else self.rounded
 
     @property
     def linear(self) -> NDArray[np.float32]:

@@ -155,5 +155,13 @@ def count_of(axes: Sequence[Axis]) -> int:
 
 
 def chosen_axes(values: Mapping[str, Any], parameters: Sequence[Parameter]) -> list[Axis]:
-    """Return the axes of a sweep, in the order in which they were given."""
-    return [axis_of(name, given, parameters) for name, given in values.items()]
+    """Return the axes of a sweep, in the order in which they were given.
+
+    Raises:
+        ValueError: A parameter or its values are wrong, or it is given by two names.
+    """
+    axes = [axis_of(name, given, parameters) for name, given in values.items()]
+    for number, axis in enumerate(axes):
+        if axis.name in (other.name for other in axes[:number]):
+            raise ValueError(f"'{axis.label}' has values twice: give all of them once")
+    return axes

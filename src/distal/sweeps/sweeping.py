@@ -26,7 +26,7 @@ from distal.devices.base import PartError, cancel_test
 from distal.diagnostics import DeviceError
 from distal.images.atomic_files import SaveError, check_destination, replacement
 from distal.images.picture import Picture
-from distal.images.png import encode_levels, quantise
+from distal.images.png import encode_levels
 from distal.lang.presentable import Presentable
 from distal.lang.render_options import Cancel, RenderOptions
 from distal.loading import loaded_from
@@ -180,7 +180,7 @@ class _Sweep:
         rows: dict[int, dict[str, Any]] = {}
         for index, picture, row in self._rendered(list(range(count_of(self.axes))), {}):
             if picture is not None:
-                sheet.put(index, quantise(picture.array))
+                sheet.put(index, picture.levels)
             rows[index] = row
         texts = {"Software": f"distal {__version__}", "distal:sweep": json.dumps(self._recipe())}
         with replacement(path) as file:

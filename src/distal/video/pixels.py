@@ -1,6 +1,6 @@
 """Convert pixels for encoders.
 
-Input: display-encoded float pixels, top row first. Output: 8-bit frames in RGB, or in BT.709's
+Input: display-encoded levels, top row first. Output: 8-bit frames in RGB, or in BT.709's
 Y'CbCr with its color tags. Does not depend on files.
 """
 
@@ -11,7 +11,6 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.images.png import quantise
 from distal.video.formats import Codec, library
 
 # ITU-T H.273: the codes for BT.709's primaries, transfer and matrix; for sRGB's transfer; for RGB.
@@ -34,12 +33,8 @@ class Converter:
         # 0.46 at 640x480) and change colors by 0.06 of a level; brightness would be the same.
         self._way = ways.BILINEAR | ways.FULL_CHR_H_INP
 
-    def frame(self, array: NDArray[np.float32]) -> Any:
-        """Return the frame of a picture; alpha is ignored."""
-        return self.frame_of(quantise(array))
-
     def frame_of(self, levels: NDArray[np.uint8]) -> Any:
-        """Return the frame of 8-bit red, green, blue and alpha."""
+        """Return the frame of 8-bit red, green, blue and alpha, which is ignored."""
         made = self._av.VideoFrame.from_numpy_buffer(levels, "rgba")
         if self._codec.exact:
             return self._reformatter.reformat(made, format=self._codec.pixels, threads=1)
