@@ -173,7 +173,12 @@ WIDE = slider("Wide", 0.5, -1.0, 1.0)
     ("make", "error", "message", "hint"),
     [
         (lambda: box(radios=1), KIND, "RoundBox has no 'radios'", "did you mean 'radius'?"),
-        (lambda: move(w=1), KIND, "translate has no 'w'", "it takes offset"),
+        (
+            lambda: move(w=1),
+            KIND,
+            "translate has no 'w'",
+            "it takes offset; offset also as x, y, z",
+        ),
         (lambda: move(), KIND, "translate needs 'offset'", "it takes offset"),
         (
             lambda: box((1, 2, 3), 1, 2, 3),
