@@ -532,8 +532,8 @@ def _keeps(limit: Limit, least: float, largest: float, parts: Sequence[float]) -
 def _color_hint(known: Plain) -> str | None:
     """Return the text of a color that is given by whole numbers up to 255."""
     parts = components(known)
-    if not all(c in range(256) for c in parts) or len(parts) < 3:
-        return None
+    if len(parts) != 3 or max(parts) < 16 or not all(c in range(256) for c in parts):
+        return None  # a small number may be meant as a factor
     return f"write '#{bytes(map(int, parts)).hex()}'"
 
 
