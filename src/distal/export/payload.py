@@ -25,6 +25,7 @@ from distal.diagnostics import CompileError
 from distal.export.page_options import PageOptions
 from distal.export.pasted_code import code_around
 from distal.export.tables import plain_resource, table
+from distal.fields.library import OPERATORS
 from distal.frontend import lower
 from distal.ir.nodes import Module
 from distal.ir.types import TEXTURE_2D, Buffer, Texture
@@ -51,7 +52,8 @@ PACKAGE: Final = PurePath(distal.__file__).parent
 FORMAT: Final = 1
 TARGET: Final = "glsl-es300"
 # Generic names; the name of the scene's file is more informative.
-_PLAIN_NAMES: Final = frozenset({"scene", "picture", "shape", "image", "main"})
+# An operator's name says nothing to those who see a page: "Union".
+_PLAIN_NAMES: Final = frozenset({"scene", "picture", "shape", "image", "main", *OPERATORS})
 _COMMENT: Final = re.compile(r"\s*//.*$")
 
 Places = tuple[tuple[str, int] | None, ...]
