@@ -110,6 +110,10 @@ GIVEN: Final[dict[str, Callable[[], dict[str, Any]]]] = {
     "Metaballs": lambda: {"balls": BALLS},
     "BoxCheap": lambda: {"size": (1.2, 0.8, 1.0)},
     "Ellipsoid": lambda: {"radii": (0.8, 0.4, 0.5)},
+    # Larger than their defaults: lines of a few pixels would be all that is seen.
+    "Honeycomb": lambda: {"cell_size": 1.0, "wall": 0.15},
+    "VoronoiLines": lambda: {"cell_size": 1.0, "thickness": 0.1},
+    "RackProfile": lambda: {"module": 0.15, "base": 0.3, "count": 4},
 }
 
 _BODY: Final = RoundBox((1.0, 1.0, 1.0), 0.1)
@@ -190,9 +194,9 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     "repeat polar all": lambda: (
         Torus(0.4, 0.08).translate(0.35, 0, 0).repeat_polar(5, neighbours="all")
     ),
-    "flat repeat": lambda: _STAR.scale(0.3).apply("flat repeat", (0.5, 0.5)),
-    "flat repeat neighbours": lambda: _STAR.scale(0.5).apply(
-        "flat repeat neighbours", (0.5, 0.5), neighbours=1
+    "flat repeat": lambda: _STAR.scale(0.7).apply("flat repeat", (1.1, 1.1)),
+    "flat repeat neighbours": lambda: _STAR.apply(
+        "flat repeat neighbours", (1.0, 1.0), neighbours=1
     ),
     "flat repeat limited": lambda: _STAR.scale(0.3).apply(
         "flat repeat limited", (0.5, 0.5), count_x=3, count_y=2
@@ -201,7 +205,7 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
         "flat repeat limited neighbours", (0.5, 0.5), count_x=3, count_y=2, neighbours=1
     ),
     "flat repeat mirrored": lambda: (
-        Heart(0.3).rotate(0.6).apply("flat repeat mirrored", (0.5, 0.5))
+        Heart(0.6).rotate(0.6).apply("flat repeat mirrored", (1.1, 1.1))
     ),
     "flat repeat polar": lambda: (
         Heart(0.25).rotate(-np.pi / 2).translate(0.45, 0).apply("flat repeat polar", 6)

@@ -13,7 +13,7 @@ import pkgutil
 import re
 import sys
 import types
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -30,6 +30,22 @@ _MISSING: Final = re.compile(
 )
 # What Python and NumPy say where a module stands for a number.
 _NOT_MODULE: Final = re.compile(r"real number, not module|operand type.*'module'|type module ")
+# Lines of GLSL and C; signs that text programs write.
+_DECLARED: Final = re.compile(
+    r"\s*(?:const\s+)?(?:float|int|uint|bool|[iub]?vec[234]|mat[234]|var|let|auto)\s+(\w+)\s*="
+)
+_STEPPED: Final = re.compile(r"(\w+)(\+\+|--)")
+_WRITTEN: Final = {
+    **{"&&": "and", "||": "or"},
+    **dict.fromkeys("\u201c\u201d\u201e", '"'),
+    **dict.fromkeys("\u2018\u2019", "'"),
+    **dict.fromkeys("\u2013\u2212", "-"),
+    "\u00d7": "*",
+}
+_USUAL_NAMES: Final = ("scene", "picture", "shape")
+_MADE: Final = {"Picture": "render", "Mesh": "mesh", "Outline": "outline"}
+_NOT_CALLED: Final = re.compile(r"operand type.*'(ABCMeta|type)'")
+_OWN: Final = ("distal", "distal.lang")
 _UNKNOWN_IMPORT: Final = re.compile(r"^cannot import name '(\w+)' from '([\w.]+)'")
 
 
@@ -165,7 +181,7 @@ def _of_import(
         name, module = found.groups()
         known = sys.modules.get(module)
         others = [] if known is None else _public(known)
-        of_others = COUNTERPARTS.get(name) if module == "distal.lang" else None
+        of_others = COUNTERPARTS.get(name) if module in _OWN else None
         hint = _import_of(name) or of_others or _similar(name, others)
         return f"'{module}' has no '{name}'", hint
     if isinstance(error, ModuleNotFoundError) and error.name:
@@ -205,7 +221,55 @@ def _of_type(
         time = frame.f_globals.get("time")
         if isinstance(time, types.ModuleType):
             return "'time' is Python's module here", "from distal import time, and np.sin(time)"
+    if _NOT_CALLED.search(message):
+        return message, "a class is no shape; call it: Box(…)"
     return message, None
+
+
+def hint_of_syntax(line: str) -> str | None:
+    """Return what to write instead of a line of GLSL or C; None if it is not one.
+
+    Args:
+        line: The line where Python stopped reading.
+    """
+    declared = _DECLARED.match(line)
+    if declared is not None:
+        return f"types are not written: {declared[1]} = …"
+    stepped = _STEPPED.search(line)
+    if stepped is not None:
+        return f"write {stepped[1]} {stepped[2][0]}= 1"
+    known = next((word for word in _WRITTEN if word in line), None)
+    return None if known is None else f"write {_WRITTEN[known]} instead of {known}"
+
+
+def hint_of_nothing(names: Mapping[str, Any], shown: type) -> str:
+    """Return what a file that shows nothing may lack.
+
+    Args:
+        names: What the file defines.
+        shown: The base class of shapes and scenes.
+    """
+    own = {k: v for k, v in names.items() if not k.startswith("_")}
+    for name, value in own.items():
+        parts = [*value] if isinstance(value, list | tuple) else []
+        if parts and all(isinstance(part, shown) for part in parts):
+            return f"'{name}' is a {type(value).__name__} of shapes: scene = Scene({name})"
+        if isinstance(value, type) and issubclass(value, shown) and name in _USUAL_NAMES:
+            return f"'{name}' is a class; call it: {value.__name__}(…)"
+        if type(value).__module__.startswith("distal.") and type(value).__name__ in _MADE:
+            made = type(value).__name__
+            return f"'{name}' is a {made} already: leave out .{_MADE[made]}()"
+    for name, value in own.items():
+        if isinstance(value, types.FunctionType) and value.__module__ == names.get("__name__"):
+            return f"{name}() is a function; give its result a name: scene = {name}()"
+    return "scene = Scene(…)"
+
+
+def _of_recursion(
+    error: RecursionError, frame: types.FrameType | None, folder: Path
+) -> tuple[str, str | None]:
+    name = "a function" if frame is None else f"{frame.f_code.co_name}()"
+    return f"{name} calls itself again and again", "return something else when n == 0"
 
 
 def _shown(called: str) -> str:
@@ -235,6 +299,7 @@ _EXPLAINED: Final[tuple[tuple[type[Exception], Callable[..., tuple[str, str | No
     (AttributeError, _of_attribute),
     (ImportError, _of_import),
     (TypeError, _of_type),
+    (RecursionError, _of_recursion),
 )
 
 

@@ -9,10 +9,11 @@ standard library alone.
 from __future__ import annotations
 
 import _thread
-import ast
 import contextlib
 import linecache
+import math
 import os
+import re
 import signal
 import sys
 import threading
@@ -29,6 +30,7 @@ from distal.saved_files import FileWatcher
 
 PATIENCE_S: Final = 3.0
 _PERIOD_S: Final = 0.25  # between two attempts to end the run, and two looks at the file
+_LOOP: Final = re.compile(r"(async\s+for|for|while)\b")
 _LEFT_S: Final = 1.0  # from ctrl-C to the end of the process
 _INTERRUPTED: Final = 130  # the exit status of shells
 
@@ -205,18 +207,23 @@ def _authors(frame: types.FrameType | None, file: Path) -> Iterator[tuple[types.
 
 
 def _loop_around(file: str, line: int) -> int | None:
-    """Return the line of the innermost loop around a line."""
-    try:
-        tree = ast.parse("".join(linecache.getlines(file)))
-    except (SyntaxError, ValueError, RecursionError):
-        return None
-    loops = (ast.While, ast.For)
-    around = [
-        node.lineno
-        for node in ast.walk(tree)
-        if isinstance(node, loops) and node.lineno <= line <= (node.end_lineno or 0)
-    ]
-    return max(around, default=None)
+    """Return the line of the innermost loop around a line, by how far lines are indented.
+
+    ``ast.parse`` is no way: before Python 3.11.8 and 3.12.2, two threads that parse at the same
+    time make each other fail with a ``SystemError``, and the author's thread may be parsing.
+    """
+    lines = linecache.getlines(file)[:line]
+    least: float = math.inf
+    for number in range(len(lines), 0, -1):
+        text = lines[number - 1].expandtabs()
+        rest = text.lstrip()
+        indent = len(text) - len(rest)
+        if indent >= least or not rest or rest.startswith("#"):
+            continue
+        if _LOOP.match(rest):
+            return number
+        least = indent
+    return None
 
 
 def _span(file: str, line: int) -> Span:

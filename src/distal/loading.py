@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 from weakref import WeakKeyDictionary
 
-from distal.author_errors import failure
+from distal.author_errors import failure, hint_of_nothing, hint_of_syntax
 from distal.diagnostics import CompileError, Diagnostic, LoadError, Span
 from distal.example_files import EXAMPLE_PREFIX, all_examples
 from distal.ir.nodes import EntryKind
@@ -288,7 +288,9 @@ def _syntax_error(error: SyntaxError, filename: str) -> CompileError:
     same_line = error.end_lineno == error.lineno and error.end_offset
     end = error.end_offset - 1 if same_line and error.end_offset else len(text)
     span = Span(filename, line, start, max(end, start + 1), text, line)
-    return CompileError([Diagnostic(f"this is not Python: {error.msg}", span)])
+    return CompileError(
+        [Diagnostic(f"this is not Python: {error.msg}", span, hint_of_syntax(text))]
+    )
 
 
 def _pick(module: types.ModuleType, file: Path, name: str | None) -> SceneCode:
@@ -304,8 +306,17 @@ def _pick(module: types.ModuleType, file: Path, name: str | None) -> SceneCode:
         if wanted in offered:
             return offered[wanted]
     if not offered:
-        raise LoadError(f"{file} defines no scene and no @image; {_listed(found)}")
+        raise _nothing_shown(module, file, found)
     raise LoadError(f"{file} defines several {what}; say which: {file}:NAME; {_listed(offered)}")
+
+
+def _nothing_shown(
+    module: types.ModuleType, file: Path, found: Mapping[str, SceneCode]
+) -> LoadError:
+    reason = f"{file} defines no scene and no @image; {_listed(found)}"
+    hint = hint_of_nothing(vars(module), Composed)
+    text = Diagnostic(reason, None, hint).text("").removeprefix(": ")
+    return LoadError(text, None, reason, hint)
 
 
 def _offered(module: types.ModuleType) -> tuple[dict[str, SceneCode], str]:

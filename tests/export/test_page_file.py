@@ -10,6 +10,7 @@ import re
 import zlib
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -434,3 +435,9 @@ def test_the_command_takes_a_mode(tmp_path):
         1,
         "error: modes are for scenes and shapes; 'picture' is an @image\n",
     )
+
+
+def test_the_name_of_an_operator_is_not_a_pages_title():
+    file = Path("models/bird_house.py")
+    for name, wanted in (("union", "bird house"), ("left_wing", "left wing")):
+        assert payload_room.name_of(SimpleNamespace(name=name, file=file)) == wanted

@@ -315,7 +315,11 @@ ERRORS = {
         "a scene without shapes shows nothing",
         "give it a shape: Scene(Sphere())",
     ),
-    "none as a scene": (lambda: Scene(None), "a scene shows shapes, not None", None),
+    "none as a scene": (
+        lambda: Scene(None),
+        "a scene shows shapes, not None",
+        "a function without return gives None",
+    ),
     "flat scene": (
         lambda: Scene(Circle()),
         "'Circle' is a flat shape; a scene shows solids",

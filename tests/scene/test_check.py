@@ -4,9 +4,10 @@ import json
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from distal import Box, Hexagon, Plane, Scene, Shape, Sphere, time
+from distal import Box, Hexagon, Plane, Scene, Shape, Sphere, Torus, time, union
 from distal.lang import func, length, max, sin, slider, vec3
 from distal.scene.checks.bounds_report import bounds_of_nodes
 from distal.scene.checks.measuring import measure
@@ -327,3 +328,16 @@ def test_measurements_are_the_same_for_the_same_seed():
     assert first == again
     assert first != other
     assert math.isclose(first.median, other.median, rel_tol=0.05)
+
+
+def test_the_bounds_of_each_of_many_parts_are_its_own():
+    # Sliders keep the parts out of a table; parts are shared, and more than one function holds.
+    height = slider("Height", 0.5, 0.1, 1.0)
+    part = Torus(0.4, 0.1).rotate(x=height)
+    parts = [part.translate(x=3.0 * i) for i in range(40)]
+    found = bounds_of_nodes(union(parts).node, {}, 0.0)
+    for i, one in enumerate(parts):
+        low, high = found[id(one.node)].low, found[id(one.node)].high
+        wanted = one.bounds()
+        np.testing.assert_allclose((low, high), wanted, atol=1e-5)
+        assert low[0] < 3.0 * i < high[0]

@@ -96,7 +96,8 @@ def _picture(data: Any) -> NDArray[np.float32]:
         with Image.open(data) as picture:
             return _with_channels(np.asarray(picture.convert("RGBA")), 2)
     except Exception as error:  # Pillow raises many kinds of exceptions for broken files
-        raise LoadError(f"the texture '{data}' cannot be read: {printable(error)}") from error
+        reason = getattr(error, "strerror", None) or error
+        raise LoadError(f"the texture '{data}' cannot be read: {printable(reason)}") from error
 
 
 def _numbers(data: Any) -> NDArray[Any]:

@@ -18,6 +18,7 @@ from distal.diagnostics import CompileError
 from distal.export.page_options import PageOptions
 from distal.export.page_programs import Compile, PagePrograms
 from distal.export.pasted_code import code_around
+from distal.fields.library import OPERATORS
 from distal.lang.chosen_values import checked_values
 from distal.lang.functions import Image
 from distal.lang.parameters import Parameter
@@ -26,7 +27,8 @@ from distal.version import __version__
 
 FORMAT: Final = 1
 # Generic names; the name of the scene's file is more informative.
-_PLAIN_NAMES: Final = frozenset({"scene", "picture", "shape", "image", "main"})
+# An operator's name says nothing to those who see a page: "Union".
+_PLAIN_NAMES: Final = frozenset({"scene", "picture", "shape", "image", "main", *OPERATORS})
 
 
 @dataclass(frozen=True, slots=True)

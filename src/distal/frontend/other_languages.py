@@ -21,10 +21,20 @@ _RANDOM_NAMES: Final = (
 _DERIVATIVE: Final = "gradient(f, frame.coord) is exact; differences of pixels vary with the device"
 _SAMPLE: Final = "sample(texture, p)"
 
+_NOISE: Final = (
+    *("value_noise", "gradient_noise", "simplex_noise", "fbm", "turbulence", "worley", "cellular"),
+    "voronoi_border",
+)
 _CHANNEL: Final = "a Texture2D, or the name of a @buffer"
 
 COUNTERPARTS: Final[Mapping[str, str]] = {
     **dict.fromkeys(_RANDOM_NAMES, _RANDOM),
+    **{name: f"from distal.fields.noise import {name}" for name in _NOISE},
+    **dict.fromkeys(
+        ("noise", "snoise", "cnoise", "perlin", "perlin_noise"),
+        "from distal.fields.noise import gradient_noise",
+    ),
+    "voronoi": "from distal.fields.noise import worley",
     **dict.fromkeys(("dFdx", "dFdy", "fwidth", "ddx", "ddy"), _DERIVATIVE),
     **dict.fromkeys(("texture", "texture2D", "tex2D", "texelFetch"), f"{_SAMPLE}, or texel"),
     "lerp": "mix(a, b, share)",

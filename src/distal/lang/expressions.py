@@ -23,6 +23,7 @@ from distal.lang.runtime_access import executor, python_expressions
 if TYPE_CHECKING:
     from distal.lang.parameters import Parameter
 
+_RANGE: Final = "range takes a plain int; a live count: shape.shown(i < n) for i in range(8)"
 _LANES: Final = {"r": "x", "g": "y", "b": "z", "a": "w", **{c: c for c in "xyzw"}}
 
 # NumPy's functions and their equivalent in scene code: an operator or an intrinsic.
@@ -75,7 +76,7 @@ class Symbolic(Immutable):
         _unknown("its number", "a count or a choice of a shape is a plain int")
 
     def __index__(self) -> int:
-        _unknown("its number", "range and other counts take a plain int: for i in range(8)")
+        _unknown("its number", _RANGE)
 
     # Comparisons are conditions: for ``select``, ``shown`` and the switches of shapes
 

@@ -7,12 +7,14 @@ library, or a ``CompileError`` at that line. Does not depend on how a scene is r
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from types import UnionType
 from typing import Any, Final
 
 from distal.diagnostics import Span
 from distal.fields.guarantees import UNBOUNDED, Limit
 from distal.ir.types import FLOAT, INT
 from distal.lang import func, vec3
+from distal.lang.composed import Composed
 from distal.scene.objects.cameras import BaseCamera
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.lights import Light
@@ -129,12 +131,28 @@ def one_shape(shape: Any, place: Span | None) -> BaseShape:
         refuse("a scene without shapes shows nothing", "give it a shape: Scene(Sphere())", place)
     for one in shapes:
         if not isinstance(one, BaseShape):
-            refuse_kind(f"a scene shows shapes, not {one!r:.60}", None, place)
+            refuse_kind(f"a scene shows shapes, not {_described(one)}", _shape_hint(one), place)
         if one.flat:
             hint = "make it solid: .extrude(height) or .revolve()"
             refuse(f"'{one.name}' is a flat shape; a scene shows solids", hint, place)
     first: BaseShape = shapes[0]
     return first.union(*shapes[1:]) if len(shapes) > 1 else first
+
+
+def _described(given: Any) -> str:
+    """Return how a message names what is no shape."""
+    return f"the class {given.__name__}" if isinstance(given, type) else f"{given!r:.60}"
+
+
+def _shape_hint(given: Any) -> str | None:
+    """Return what to write instead of something that is no shape."""
+    if given is None:
+        return "a function without return gives None"
+    if isinstance(given, type) and issubclass(given, BaseShape):
+        return f"call it: {given.__name__}(…)"
+    if isinstance(given, UnionType):
+        return "call the classes: Sphere(1.0) | Box(1.0)"
+    return "a scene is given shapes: Scene(shape)" if isinstance(given, Composed) else None
 
 
 def listed(given: Any) -> list[Any]:

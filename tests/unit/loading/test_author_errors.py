@@ -75,7 +75,7 @@ TypeError: a parameter or the time has no value yet, so its number is not known 
    |
  3 | for i in range(n): pass
    |          ^^^^^^^^
-   = hint: range and other counts take a plain int: for i in range(8)""",
+   = hint: range takes a plain int; a live count: shape.shown(i < n) for i in range(8)""",
     ),
     "a misspelled method": (
         "from distal import *\nball = Sphere(1.0).rotat(x=1)\n",
@@ -187,6 +187,16 @@ error: translate takes no module, and 'time' is one
    |        ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
    = hint: from distal import time""",
     ),
+    "the module time by name": (
+        "import time\nfrom distal import *\nball = Sphere(1.0).translate(y=time)\n",
+        """\
+error: translate takes no module, and 'time' is one
+  --> scene.py:3:8
+   |
+ 3 | ball = Sphere(1.0).translate(y=time)
+   |        ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+   = hint: from distal import time""",
+    ),
     "a slider as a count": (
         "from distal.lang import slider\nn = slider('n', 3, 1, 8)\nfor i in range(n): pass\n",
         """\
@@ -195,7 +205,7 @@ TypeError: a parameter or the time has no value yet, so its number is not known 
    |
  3 | for i in range(n): pass
    |          ^^^^^^^^
-   = hint: range and other counts take a plain int: for i in range(8)""",
+   = hint: range takes a plain int; a live count: shape.shown(i < n) for i in range(8)""",
     ),
     "a parameter as a condition": (
         "from distal.lang import slider\nn = slider('n', 3, 1, 8)\nif n > 2: pass\n",

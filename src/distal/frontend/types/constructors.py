@@ -114,6 +114,8 @@ def _vector(body: FunctionBody, type: Vector, args: Sequence[Value], node: ast.C
         hint = None
         if len(parts) == 1 and total > type.size:
             hint = f"write .{'xyzw'[: type.size]} to take the first {type.size}"
+        elif total < type.size:
+            hint = f"give {type.size - total} more: {type}(…{', 0.0' * (type.size - total)})"
         raise body.problem(f"{type} has {type.size} components, not {total}", node, hint)
     return Compose(tuple(parts), type, span=body.span(node))
 

@@ -442,6 +442,18 @@ class RememberedBounds(BoundsComposer):
             known = self.found[id(node)] = super().of(body, node, values)
         return known
 
+    def _of_many(
+        self,
+        body: StatementList,
+        rule: Operator,
+        children: Sequence[tuple[Node, Sequence[Expr]]],
+        own: Mapping[str, Expr],
+        *,
+        flat: bool,
+    ) -> ShapeBounds:
+        """Return bounds without functions for groups: what is remembered is read in this one."""
+        return self.of_operator(body, rule, [self.of(body, *child) for child in children], own)
+
 
 def _named(a: ShapeBounds, b: ShapeBounds | None) -> dict[str, Expr]:
     """Return bounds by the parameter names of an operator's functions."""

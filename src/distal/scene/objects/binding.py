@@ -124,7 +124,7 @@ def own_node(
     """
     if not isinstance(function, Func):
         refuse(
-            f"a shape is made from a @func, not from {function!r:.60}",
+            f"a shape is made from a @func, not from {_named(function)}",
             "write @func above it",
             place,
         )
@@ -157,6 +157,11 @@ def own_node(
             refuse(f"'{name}' cannot be both exact and normalized", "leave out one of them", place)
         rule = replace(rule, normalize=_NORMALIZED[flat, box is not None], estimate=slope is None)
     return Node(rule, flat, (), found, constants, place)
+
+
+def _named(given: Any) -> str:
+    name = getattr(given, "__name__", "")
+    return f"the function '{name}'" if name.isidentifier() else f"{given!r:.60}"
 
 
 def _corners(bounds: Any, place: Span | None) -> tuple[Any, Any]:

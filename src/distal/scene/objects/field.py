@@ -429,6 +429,16 @@ class BaseShape(Composed, Presentable):
 
         __radd__ = __add__  # sum() begins with 0 + shape
 
+        def __mul__(self, other):
+            refuse_kind("a shape is not multiplied", "shape.scale(2)", author_place())
+
+        __rmul__ = __truediv__ = __mul__
+
+    def __bool__(self) -> bool:
+        """Refuse ``a and b``, which would be one of the two, and ``if a``."""
+        hint = "a & b, a | b or a - b; and shape is None asks whether there is one"
+        refuse_kind("a shape is neither true nor false", hint, author_place())
+
     def __invert__(self: S) -> S:
         return self.complement()
 

@@ -109,7 +109,7 @@ class Shape(Meshable, FromData):
         if axis is None or angle is None:
             refuse(
                 "a rotation needs an angle and an axis",
-                "rotate(0.5, axis=(0, 1, 0))",
+                "rotate(y=0.5), or rotate(0.5, axis=(0, 1, 0))",
                 author_place(),
             )
         return self._with(placing.ROTATE, axis=axis, angle=angle)

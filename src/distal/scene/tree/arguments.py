@@ -373,10 +373,16 @@ class _ArgumentBinding:
     def _listed(self) -> str:
         return ", ".join(s.name for s in self.slots)
 
+    def _refuse_modules(self, given: Iterable[Any]) -> None:
+        for module in (arg for arg in given if isinstance(arg, ModuleType)):
+            hint = "from distal import time" if module.__name__ == "time" else None
+            self._wrong(f"{self.what} takes no module, and '{module.__name__}' is one", hint)
+
     # By name
 
     def take_keywords(self, kwargs: Mapping[str, Any]) -> None:
         """Assign the arguments by name."""
+        self._refuse_modules(kwargs.values())
         names = {s.name for s in self.slots}
         vectors = [s for s in self.slots if s.is_vector]
         parts: dict[str, Any] = {}
@@ -387,10 +393,10 @@ class _ArgumentBinding:
                 parts[name] = value
             else:
                 takes = f"it takes {self._listed()}" if names else "it takes no numbers"
-                if len(vectors) == 1:
-                    letters = ", ".join(_LETTERS[: _size(vectors[0])])
-                    takes += f"; {letters} are parts of '{vectors[0].name}'"
-                hint = did_you_mean(name, names) or takes
+                letters = _LETTERS[: _size(vectors[0])] if len(vectors) == 1 else ""
+                if letters:
+                    takes += f"; {', '.join(letters)} are parts of '{vectors[0].name}'"
+                hint = did_you_mean(name, {*names, *letters}) or takes
                 self._wrong(f"{self.what} has no '{name}'", hint)
         if parts:
             self._take_parts(vectors[0], parts)
@@ -408,9 +414,7 @@ class _ArgumentBinding:
     def take_positional(self, args: Sequence[Any]) -> None:
         """Assign the arguments by position."""
         left = list(args)
-        for module in (arg for arg in args if isinstance(arg, ModuleType)):
-            hint = "from distal import time" if module.__name__ == "time" else None
-            self._wrong(f"{self.what} takes no module, and '{module.__name__}' is one", hint)
+        self._refuse_modules(args)
         for slot in self.slots:
             if not left:
                 return

@@ -469,7 +469,7 @@ def _check_plain(known: Plain, asked: Asked) -> None:
     if wrong is not None:
         refuse(
             f"'{asked.label}' must be {wrong}, not {shown(known)}",
-            _direction_hint(known, asked.limit),
+            _color_hint(known) if asked.is_color else _direction_hint(known, asked.limit),
             asked.place,
         )
 
@@ -527,6 +527,14 @@ def _keeps(limit: Limit, least: float, largest: float, parts: Sequence[float]) -
         return abs(math.hypot(*parts) - 1.0) <= _UNIT_TOLERANCE
     assert limit is Limit.ANY, limit
     return True
+
+
+def _color_hint(known: Plain) -> str | None:
+    """Return the text of a color that is given by whole numbers up to 255."""
+    parts = components(known)
+    if len(parts) != 3 or max(parts) < 16 or not all(c in range(256) for c in parts):
+        return None  # a small number may be meant as a factor
+    return f"write '#{bytes(map(int, parts)).hex()}'"
 
 
 def _direction_hint(known: Plain, limit: Limit) -> str | None:
