@@ -21,6 +21,7 @@ import distal
 from distal.cli.application import application
 from distal.diagnostics import CompileError, LoadError
 from distal.export import page_programs, resources
+from distal.export.payload import name_of
 from distal.export.poster import MOST_TRIANGLE_BYTES
 from distal.export.registry import export
 from distal.images.atomic_files import SaveError
@@ -440,4 +441,4 @@ def test_the_command_takes_a_mode(tmp_path):
 def test_the_name_of_an_operator_is_not_a_pages_title():
     file = Path("models/bird_house.py")
     for name, wanted in (("union", "bird house"), ("left_wing", "left wing")):
-        assert payload_room.name_of(SimpleNamespace(name=name, file=file)) == wanted
+        assert name_of(SimpleNamespace(name=name, file=file)) == wanted
