@@ -18,6 +18,8 @@ from urllib.parse import urlsplit
 BLANK: Final = Path(__file__).with_name("blank_page.html")
 # What cannot be taken back: pages on which one of these was called are not used again.
 SPENDING: Final = ("on", "once", "route", "add_init_script", "expose_function", "expose_binding")
+# What SwiftShader says when a picture is read back, which Chromium does to show it: no fault.
+READ_BACK: Final = "GPU stall due to ReadPixels"
 # Options of a context that a page can change for itself.
 _MEDIA: Final = {"color_scheme": "light", "reduced_motion": "no-preference"}
 _STATE: Final = """async () => {
@@ -47,7 +49,8 @@ class KeptPage:
     Attributes:
         context: playwright's context.
         page: Its page; others of the context are closed at the end of a test.
-        messages: Lines of the console since the test began, and what was thrown.
+        messages: Lines of the console since the test began, and what was thrown, except that a
+            picture is read back.
         asked: Addresses that were asked for since the test began.
     """
 
@@ -70,7 +73,8 @@ class KeptPage:
 
     def _listen(self) -> None:
         def said(text: str) -> None:
-            self.messages.append(text)
+            if READ_BACK not in text:
+                self.messages.append(text)
 
         def asked(address: str) -> None:
             self.asked.append(address)
