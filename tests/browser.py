@@ -42,6 +42,7 @@ _RENDERER: Final = """() => {
   return name ? gl.getParameter(name) : "";
 }"""
 START_MS: Final = 30_000  # 1 s alone; other work on the machine may make it ten times that
+VIEWPORT: Final = {"width": 1280, "height": 720}  # playwright's own, of a page without options
 MOST_KEPT: Final = 3  # each has a renderer process
 ACTION_MS: Final = 20_000  # playwright's own limit for one step, unless a test says otherwise
 
@@ -93,7 +94,7 @@ def kept_page(*flags: str, **options: Any) -> Iterator[KeptPage]:
         kept = KeptPage(running, ACTION_MS, options)
     is_renewed = False
     try:
-        kept.begin(options.get("viewport"))
+        kept.begin(options.get("viewport", VIEWPORT))
         yield kept
         with contextlib.suppress(Exception):  # the page or its browser is gone, or does not answer
             is_renewed = kept.is_renewed()

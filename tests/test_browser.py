@@ -129,3 +129,12 @@ def test_a_page_that_differs_or_in_which_a_test_failed_is_closed(file):
 def test_two_pages_at_a_time_are_two(file):
     with kept_page(**OWN) as one, kept_page(**OWN) as other:
         assert one.page is not other.page
+
+
+def test_each_test_has_the_size_that_it_asks_for(file):
+    sizes = [{"viewport": {"width": 300, "height": 200}}, {}, {"viewport": OWN["viewport"]}]
+    found = []
+    for size in sizes:
+        with offline_page(file, locale="it-IT", **size) as watched:
+            found.append(watched.page.evaluate("() => [innerWidth, innerHeight]"))
+    assert found == [[300, 200], [1280, 720], [320, 200]]
