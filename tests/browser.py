@@ -1,8 +1,9 @@
 """A real browser for tests: headless Chromium that draws in software, with no way to a network.
 
 Input: files. Output: playwright's browser, and pages that remember what they said
-and what they asked for. Where there is no browser, a test skips aloud on the error raised here;
-one that is there and does not start is a fault. Knows nothing of WebGL: that is ``tests.webgl``.
+and what they asked for; how one page serves many tests is described in ``tests.kept_page``. Where
+there is no browser, a test skips aloud on the error raised here; one that is there and does not
+start is a fault. Knows nothing of WebGL: that is ``tests.webgl``.
 """
 
 from __future__ import annotations
@@ -17,10 +18,14 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
+from tests.kept_page import KeptPage, key_of
+
 NAMES: Final = ("chromium", "chromium-browser", "google-chrome")
 # SwiftShader is asked for by name, for the same pixels on a machine with a GPU. The resolver finds
-# no host but this machine: whatever Chromium itself wants to ask, it asks nobody.
+# no host but this machine: whatever Chromium itself wants to ask, it asks nobody. Pages are put
+# together without WebGL's driver, which in software needs three times as long for that.
 FLAGS: Final = (
+    "--disable-gpu-compositing",
     *("--no-sandbox", "--no-first-run", "--disable-quic", "--disable-sync"),
     *("--disable-background-networking", "--disable-component-update"),
     *("--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
@@ -37,6 +42,8 @@ _RENDERER: Final = """() => {
   return name ? gl.getParameter(name) : "";
 }"""
 START_MS: Final = 30_000  # 1 s alone; other work on the machine may make it ten times that
+VIEWPORT: Final = {"width": 1280, "height": 720}  # playwright's own, of a page without options
+MOST_KEPT: Final = 3  # each has a renderer process
 ACTION_MS: Final = 20_000  # playwright's own limit for one step, unless a test says otherwise
 
 
@@ -45,6 +52,7 @@ class BrowserUnavailableError(RuntimeError):
 
 
 _running: dict[tuple[str, ...], Any] = {}
+_kept: dict[tuple[str, ...], KeptPage] = {}  # that nobody has, the one that waits longest first
 
 
 def browser(*flags: str) -> Any:
@@ -66,25 +74,53 @@ def browser(*flags: str) -> Any:
 
 
 @contextmanager
-def offline_page(path: Path, *, flags: Sequence[str] = (), **options: Any) -> Iterator[Watched]:
-    """A file opened in a page of its own; anything it asks for over a network fails.
+def kept_page(*flags: str, **options: Any) -> Iterator[KeptPage]:
+    """A context and its page, which other tests have had before or will have after this one.
 
-    ``options`` are those of playwright's ``new_context``: ``viewport``, ``device_scale_factor``,
-    ``has_touch``, ``reduced_motion``, ``color_scheme``, … ``flags`` start another Chromium with
-    them: ``--disable-3d-apis`` is one without WebGL.
+    Whoever had it, it is as a new one (``tests.kept_page``); after a fault it is closed.
+
+    Args:
+        flags: As for ``browser``.
+        options: Those of playwright's ``new_context``: ``viewport``, ``device_scale_factor``,
+            ``has_touch``, ``reduced_motion``, ``color_scheme``, …
 
     Raises:
         BrowserUnavailableError: Chromium or playwright is missing.
     """
-    context = browser(*flags).new_context(offline=True, **options)
+    running = browser(*flags)
+    key = (*flags, key_of(options))
+    kept = _kept.pop(key, None)
+    if kept is None or not kept.serves(running):
+        kept = KeptPage(running, ACTION_MS, options)
+    is_renewed = False
     try:
-        context.set_default_timeout(ACTION_MS)
-        watched = Watched(context.new_page())
-        _watch(context, watched, path.resolve().as_uri())
-        watched.page.goto(path.resolve().as_uri())
-        yield watched
+        kept.begin(options.get("viewport", VIEWPORT))
+        yield kept
+        with contextlib.suppress(Exception):  # the page or its browser is gone, or does not answer
+            is_renewed = kept.is_renewed()
     finally:
-        context.close()
+        others = [_kept.pop(key)] if key in _kept else []
+        if is_renewed:
+            _kept[key] = kept
+            others += [_kept.pop(next(iter(_kept))) for _ in range(len(_kept) - MOST_KEPT)]
+        for other in others if is_renewed else [kept, *others]:
+            _close(other)
+
+
+@contextmanager
+def offline_page(path: Path, *, flags: Sequence[str] = (), **options: Any) -> Iterator[Watched]:
+    """A file opened in a page; anything it asks for over a network fails.
+
+    ``flags`` start another Chromium with them: ``--disable-3d-apis`` is one without WebGL. Options
+    as for ``kept_page``.
+
+    Raises:
+        BrowserUnavailableError: Chromium or playwright is missing.
+    """
+    address = path.resolve().as_uri()
+    with kept_page(*flags, offline=True, **options) as kept:
+        kept.page.goto(address)
+        yield Watched(kept.page, kept.messages, kept.asked, address)
 
 
 @dataclass
@@ -96,12 +132,21 @@ class Watched:
     Attributes:
         page: playwright's page.
         messages: Lines of the console such as ``warning: …``, and ``error: …`` of what was thrown.
-        requests: Addresses besides the page's own, ``data:`` and ``blob:``.
+        asked: Addresses that it asked for, its own among them.
+        address: Its own.
     """
 
     page: Any
     messages: list[str] = field(default_factory=list)
-    requests: list[str] = field(default_factory=list)
+    asked: list[str] = field(default_factory=list)
+    address: str = ""
+
+    @property
+    def requests(self) -> list[str]:
+        """Addresses besides the page's own, ``data:`` and ``blob:``."""
+        own = self.address.split("#")[0]
+        others = (url for url in self.asked if url.split("#")[0] != own)
+        return [url for url in others if not url.startswith(("data:", "blob:"))]
 
     @property
     def complaints(self) -> list[str]:
@@ -111,18 +156,6 @@ class Watched:
     def settle(self, wait_ms: float = 50.0) -> None:
         """Let the page go on for a while, and hear what it has to say."""
         self.page.wait_for_timeout(wait_ms)
-
-
-def _watch(context: Any, watched: Watched, address: str) -> None:
-    def asked(url: str) -> None:
-        if url.split("#")[0] != address and not url.startswith(("data:", "blob:")):
-            watched.requests.append(url)
-
-    context.on("console", lambda said: watched.messages.append(f"{said.type}: {said.text}"))
-    context.on("weberror", lambda thrown: watched.messages.append(f"error: {thrown.error}"))
-    context.on("request", lambda request: asked(request.url))
-    watched.page.on("websocket", lambda socket: asked(socket.url))
-    watched.page.on("crash", lambda _: watched.messages.append("error: the page crashed"))
 
 
 @cache

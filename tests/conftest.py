@@ -4,6 +4,7 @@ import atexit
 import gc
 import os
 import shutil
+import signal
 import tempfile
 
 from hypothesis import settings
@@ -30,6 +31,10 @@ if "DISTAL_CACHE_DIR" not in os.environ:
 # Mesa's drivers in software translate each shader with LLVM. Without its optimizer the largest one
 # is ready in half the time. ``make sweep`` and ``make parity`` keep the optimizer.
 os.environ.setdefault("GALLIVM_PERF", "nopt")
+
+# A shell's job in the background ignores ctrl-C, and so would the processes that tests interrupt.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # The compiler allocates many small objects that live on: each collection finds almost nothing.
 gc.set_threshold(100_000, 20, 50)

@@ -13,7 +13,7 @@ from distal.editor.local.files import SceneFiles
 from distal.editor.local.server import StudioServer
 from distal.loading import load
 from distal.scene.viewing.viewable import viewable
-from tests.browser import BrowserUnavailableError, Watched, browser
+from tests.browser import BrowserUnavailableError, Watched, kept_page
 from tests.page.looking import Looked
 
 SLOW_MS = 90_000  # software WebGL on a loaded machine
@@ -103,31 +103,26 @@ def studio(folder: Path, text: str = SCENE, tabs: int = 1, **options):
     thread = threading.Thread(target=server.serve, daemon=True)
     thread.start()
     try:
-        context = browser().new_context(reduced_motion="reduce", **{**DESK, **options})
+        with kept_page(reduced_motion="reduce", **{**DESK, **options}) as kept:
+            origin = server.address.split("/?")[0]
+            pages = [kept.page, *(kept.context.new_page() for _ in range(1, tabs))]
+            made = []
+            for page in pages:
+                page.goto(origin if made else server.address)
+                shown = Shown(Watched(page), file)
+                shown.wait(PLAYER)
+                shown.wait(IDLE)
+                made.append(shown)
+            yield made[0] if tabs == 1 else made
+            bad = [line for line in kept.messages if line.startswith(("error", "warning"))]
+            elsewhere = [
+                url
+                for url in kept.asked
+                if not url.startswith((origin, f"ws{origin[4:]}", "blob:", "data:"))
+            ]
+            assert not bad, bad
+            assert not elsewhere, elsewhere
     except BrowserUnavailableError as error:
-        server.close()
         pytest.skip(str(error))
-    messages: list[str] = []
-    asked: list[str] = []
-    context.on("console", lambda said: messages.append(f"{said.type}: {said.text}"))
-    context.on("weberror", lambda thrown: messages.append(f"error: {thrown.error}"))
-    context.on("request", lambda request: asked.append(request.url))
-    try:
-        address = server.address
-        origin = address.split("/?")[0]
-        made = []
-        for _ in range(tabs):
-            page = context.new_page()
-            page.goto(address if not made else origin)
-            shown = Shown(Watched(page), file)
-            shown.wait(PLAYER)
-            shown.wait(IDLE)
-            made.append(shown)
-        yield made[0] if tabs == 1 else made
-        bad = [line for line in messages if line.startswith(("error", "warning"))]
-        elsewhere = [url for url in asked if not url.startswith((origin, "blob:", "data:"))]
-        assert not bad, bad
-        assert not elsewhere, elsewhere
     finally:
-        context.close()
         server.close()

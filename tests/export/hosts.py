@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.browser import browser
+from tests.browser import kept_page
 
 Texels = NDArray[np.uint8]
 
@@ -202,12 +202,9 @@ def _drawn(
         }
         for name, texels in (textures or {}).items()
     }
-    page = browser().new_page()
-    try:
-        told = {"context": context, "vertex": vertex, "text": text, "size": size}
-        pixels = page.evaluate(
+    told = {"context": context, "vertex": vertex, "text": text, "size": size}
+    with kept_page() as kept:
+        pixels = kept.page.evaluate(
             _DRAW, {**told, "uniforms": dict(uniforms), "textures": sent, "repeat": repeat}
         )
-    finally:
-        page.close()
     return np.array(pixels, np.uint8).reshape(size[1], size[0], 4)[::-1].copy()
