@@ -77,6 +77,14 @@ def test_what_moves_or_changes() -> None:
     assert floor_of(other) == pytest.approx(-(math.cos(0.2) + 0.3), abs=3e-3)
 
 
+def test_each_part_has_its_own_parameters() -> None:
+    first, second = slider("First", 0.7, 0.0, 1.5), slider("Second", 0.4, 0.0, 1.5)
+    left = Capsule(0.3, 2.0).rotate(z=first)
+    both = left | Capsule(0.3, 2.0).rotate(z=second).translate(2.0, 0.0, 0.0)
+    scene = Scene.of_shape(both, {"first": 0.2, "second": 0.3}, 0.0)
+    assert floor_of(scene) == pytest.approx(-(math.cos(0.2) + 0.3), abs=3e-3)
+
+
 def test_without_numpy_it_is_the_box(monkeypatch: pytest.MonkeyPatch) -> None:
     def missing(name: str) -> Any:
         raise PackageError(f"no {name}")

@@ -17,6 +17,7 @@ from distal.fields.place import mirrors
 from distal.fields.place import solid as placing
 from distal.ir.nodes import FRAME_TIME, Uniform
 from distal.ir.walk import nodes_in
+from distal.lang.composed import Composed
 from distal.lang.expressions import Expression
 from distal.lang.runtime_access import executor
 from distal.packages import PackageError, imported
@@ -65,17 +66,24 @@ def lowest_of(
         return low[1]
     try:
         np = imported("numpy")
-        slope = float(BaseShape._of(node)._known_bounds(params, time)[0])
+        shape, program = BaseShape._of(node), DistanceOf(node)
+        slope = float(shape._known_bounds(_read_by(shape._bounds_function, params), time)[0])
         if not slope < ENDLESS:
             return low[1]
-        program = DistanceOf(node)
+        known = _read_by(program, params)
 
         def values(points: Any) -> Any:
-            return executor().call(program, (points,), {}, params, time, "reference")
+            return executor().call(program, (points,), {}, known, time, "reference")
 
         return lowest_height(values, slope, low, high, np)
     except PackageError:  # where scenes are only compiled to text
         return low[1]
+
+
+def _read_by(program: Composed, params: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values of the parameters that a program reads."""
+    names = {parameter.name for parameter in executor().parameters(program)}
+    return {name: value for name, value in params.items() if name in names}
 
 
 def _is_tight(node: Node) -> bool:
