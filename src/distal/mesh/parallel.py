@@ -13,11 +13,12 @@ from collections.abc import Callable, Sequence
 from typing import Final, Generic, TypeVar, cast
 
 from distal.devices import threads
+from distal.mesh.solid import Integers
 
 Piece = TypeVar("Piece")
 Result = TypeVar("Result")
 # Rows in a piece: their columns fit into the cache of a processor.
-ROWS_AT_ONCE: Final = 1 << 13
+ROWS_AT_ONCE: Final = 1 << 14
 _WATCH_S: Final = 0.02  # the longest delay of progress and of a request to stop
 
 
@@ -104,6 +105,11 @@ class _Run(Generic[Piece, Result]):
             except BaseException as error:  # raised in the calling thread
                 self.failures[number] = error
                 self.stopped.set()
+
+
+def pieces(rows: Integers) -> list[Integers]:
+    """Return rows in pieces that need little memory, none of them empty."""
+    return [rows[some] for some in slices_of(len(rows))]
 
 
 def slices_of(count: int, at_once: int = ROWS_AT_ONCE) -> list[slice]:
