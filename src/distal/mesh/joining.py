@@ -53,7 +53,7 @@ def separate_blocks(
         wrong = _of_eight(met & ~one)
         met = _of_eight(met)
         one = met & ~wrong
-        one &= _said_by_corners(inside[:, ::half, ::half, ::half])
+        one &= said_by_corners(inside[:, ::half, ::half, ::half])
         # Triangles of the smallest blocks are measured as densely as samples are, so signs are
         # enough; at a crease the mesh is right where interpolation is not.
         if level:
@@ -75,7 +75,7 @@ def _of_eight(cells: Bools) -> Bools:
     return found[..., 0::2] | found[..., 1::2]
 
 
-def _said_by_corners(inside: Bools) -> Bools:
+def said_by_corners(inside: Bools) -> Bools:
     """Return which blocks have the topology that the signs of their corners have.
 
     Each other sample must have the sign of a corner of its edge or face, or of any corner in the

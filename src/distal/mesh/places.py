@@ -37,11 +37,13 @@ class Roots:
         places: Of shape (n, 3).
         slopes: The gradients there, of shape (n, 3).
         kept: The places, at least the margin away from the ends of the edges.
+        means: The mean of these over the edges of each point, of shape (points, 3).
     """
 
     places: Floats
     slopes: Floats
     kept: Floats
+    means: Floats
 
 
 def margins_of(lattice: Lattice, size: Integers) -> Floats:
@@ -77,8 +79,11 @@ def roots_of(kernels: FieldKernels, lattice: Lattice, topology: Topology) -> Roo
     columns = (start, way, edges.first, edges.second)
     share, slopes = kernels.call(arithmetic.root_on_edge, *columns, types=_ROOT_COLUMNS)
     margin = margins_of(lattice, edges.size)
-    kept = np.clip(share, margin, 1.0 - margin)
-    return Roots(start + way * share[:, None], slopes, start + way * kept[:, None])
+    kept = start + way * np.clip(share, margin, 1.0 - margin)[:, None]
+    points = topology.points
+    uses = np.diff(points.first, append=len(points.edges))
+    means = np.add.reduceat(kept[points.edges], points.first) / uses[:, None]
+    return Roots(start + way * share[:, None], slopes, kept, means)
 
 
 def cell_points(
@@ -94,7 +99,7 @@ def cell_points(
     """
     points = topology.points
     count = len(points.region)
-    mean = means(topology, roots)
+    mean = roots.means
     at_crease = partial(_creased, topology, roots)
     creased = np.concatenate(parallel_map(at_crease, slices_of(count)))
     margin = margins_of(lattice, points.size)[:, None]
@@ -136,14 +141,6 @@ def _creased(topology: Topology, roots: Roots, rows: slice) -> Bools:
     return found
 
 
-def means(topology: Topology, roots: Roots) -> Floats:
-    """Return the mean root of each point's edges."""
-    points = topology.points
-    uses = np.diff(points.first, append=len(points.edges))
-    found: Floats = np.add.reduceat(roots.kept[points.edges], points.first) / uses[:, None]
-    return found
-
-
 def crease_points(
     kernels: FieldKernels,
     topology: Topology,
@@ -163,7 +160,6 @@ def crease_points(
         rows: The points.
     """
     points = topology.points
-    mean = means(topology, roots)
     found = np.empty((len(rows), 3))
     edges_of = np.diff(points.first, append=len(points.edges))
     slot = np.arange(_MOST_ROOTS)[None]
@@ -180,7 +176,7 @@ def crease_points(
             roots.places[edge],
             roots.slopes[edge],
             used.astype(np.float64),
-            mean[chosen],
+            roots.means[chosen],
             low[some],
             high[some],
             types=_CREASE_COLUMNS,
