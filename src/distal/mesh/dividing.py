@@ -28,8 +28,8 @@ from distal.mesh.tree_topology import (
 from distal.polygons.whole_numbers import sorted_keys
 
 Joined: TypeAlias = Literal["measured", "good", "replaced"]
-# Errors of a fractal do not fall where its cells are divided: with so many halves this ends, or with
-# as many as there are undivided cells.
+# Errors of a fractal do not fall where its cells are divided: this ends with so many halves, or
+# with as many as there are undivided cells.
 _MOST_HALVES: Final = 1_000_000
 # After a division the surroundings of the cells are measured, unless they are more than this share
 # of all; in the end all is.
