@@ -170,7 +170,7 @@ def test_division_ends_where_errors_do_not_fall(monkeypatch):
     watch = lambda part: None  # noqa: E731
     found = extracted(kernels, extent, STEP, 1.0, 10**6, watch)
     assert isinstance(found, Extracted)
-    monkeypatch.setattr(dividing, "_MOST_HALVES", 6 * found.cells)
+    monkeypatch.setattr(dividing, "_MOST_HALVES", 20 * found.cells)
     made = dividing.divided(kernels, extent, found, 0.2 * found.accuracy.mean, watch)
     assert made.error > 0.2 * found.accuracy.mean  # which the report says
     assert found.cells < made.cells < 8 * found.cells
