@@ -85,8 +85,8 @@ class FieldKernels:
                 made = known[function] = OfField(self.node, function, types)
             self.rows += len(columns[0])
         args = [as_rows(column) for column in columns]
-        given = {"params": self.params, "time": self.time, "here": is_worker()}
-        return executor().call(made, args, {}, **given)
+        here = is_worker()
+        return executor().call(made, args, {}, params=self.params, time=self.time, here=here)
 
 
 def rows_of(function: Func, *columns: Any) -> Any:
