@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from distal import Box, Cone, Cylinder, SimplexNoiseSolid
-from distal.mesh import leaves
+from distal.mesh import dividing, leaves
 from distal.mesh.checks import checked
 from distal.mesh.extract import Extracted, completed, extracted
 from distal.mesh.kernels import FieldKernels
@@ -161,3 +161,18 @@ def test_cells_are_not_smaller_than_numbers_of_32_bits():
     made = far.mesh(0.005)
     single = made.points.astype(np.float32).astype(np.float64)
     assert checked(single, made.triangles) == SOUND
+
+
+def test_division_ends_where_errors_do_not_fall(monkeypatch):
+    shape = noise("cubes", 1, 0.14, 60.0)
+    kernels = FieldKernels(shape.node, {}, 0.0)
+    extent = extent_of(shape.node, MeshRequest())
+    watch = lambda part: None  # noqa: E731
+    found = extracted(kernels, extent, STEP, 1.0, 10**6, watch)
+    assert isinstance(found, Extracted)
+    monkeypatch.setattr(dividing, "_MOST_HALVES", 20 * found.cells)
+    made = dividing.divided(kernels, extent, found, 0.2 * found.accuracy.mean, watch)
+    assert made.error > 0.2 * found.accuracy.mean  # which the report says
+    assert found.cells < made.cells < 8 * found.cells
+    assert made.tree is not None and any(len(keys) for keys in made.tree.divided)
+    sound(made.made)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pytest
 
@@ -14,6 +16,7 @@ from distal.mesh.join_arithmetic import unsaid_by_corners
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.lattice import keys_of
 from distal.mesh.meshing import MeshRequest, extent_of
+from distal.mesh.tables import CORNERS, cell_tables
 from distal.mesh.tree_topology import topology_of_tree
 from tests.mesh.noise_fields import noise
 
@@ -42,12 +45,36 @@ def test_a_plane_is_said_by_corners_and_a_bump_is_not():
     plane = GRID @ (0.3, 0.5, -0.2) - 0.7
     bump = plane.copy()
     bump[13] -= 0.05
-    crossing = np.where((GRID == 1.0).all(axis=1), -1.0, 1.0) * 0.4
-    found = rows_of(unsaid_by_corners, np.stack([plane, bump, crossing]), np.full(3, 2.0))
+    found = rows_of(unsaid_by_corners, np.stack([plane, bump]), np.full(2, 2.0))
     assert found[0] == pytest.approx(0.0, abs=1e-12)
     # The value changes by sqrt(.38) for each unit of length.
     assert found[1] == pytest.approx(0.05 / np.sqrt(0.38))
-    assert found[2] == -1.0  # a sample inside, and no corner
+
+
+def agreeing(block):
+    """Whether each sample has the sign of a corner of its edge or face."""
+    for place in np.argwhere(block | True):
+        ends = [(0, 2) if n == 1 else (n,) for n in place]
+        if block[tuple(place)] not in [block[corner] for corner in product(*ends)]:
+            return False
+    return True
+
+
+def test_signs_of_blocks_are_said_by_corners_if_each_sample_agrees_with_one():
+    rng = np.random.default_rng(3)
+    lattice = rng.random((60, 9, 9, 9)) < rng.random((60, 1, 1, 1))
+    # Half of them are cut by planes: most of their blocks agree.
+    ways = rng.normal(size=(30, 3))
+    places = np.stack(np.meshgrid(*[np.arange(9.0) - 4.0] * 3, indexing="ij"), axis=-1)
+    lattice[:30] = np.einsum("nc,xyzc->nxyz", ways, places) < rng.normal(size=(30, 1, 1, 1))
+    tables = cell_tables()
+    found = joining.said_by_corners(lattice)
+    for number, x, y, z in np.argwhere(np.ones_like(found)):
+        block = lattice[number, 2 * x : 2 * x + 3, 2 * y : 2 * y + 3, 2 * z : 2 * z + 3]
+        mask = sum(int(block[c[0] * 2, c[1] * 2, c[2] * 2]) << i for i, c in enumerate(CORNERS))
+        single = tables.components[tables.case[mask, 0]] == 1 and not tables.ambiguous[mask].any()
+        assert found[number, x, y, z] == (single and agreeing(block))
+    assert 0.1 < found[:30].mean() < 0.9
 
 
 def test_flat_faces_have_few_triangles():
@@ -96,15 +123,21 @@ def test_a_pin_on_a_plate_is_found_and_without_its_samples_it_is_lost(monkeypatc
     assert made.report["feature"] <= 0.08 and sum(made.report["joined"]) > 0
     assert made.report["warnings"] == [] and made.report["error"]["largest"] <= 0.02
     sound(made)
-    unsaid = joining._unsaid
+    said, unsaid = joining.said_by_corners, joining._unsaid
+    corners = np.flatnonzero((GRID != 1.0).all(axis=1))
 
-    def blind(samples, size):
+    def blind(inside):
         """Join blocks whose corners are all inside or all outside, whatever is between."""
-        inside = samples[:, joining._CORNERS] < 0.0
+        masks = joining.corner_masks(inside[:, ::2, ::2, ::2])
+        return (masks == 0) | (masks == 255) | said(inside)
+
+    def unsaid_if_mixed(samples, size):
+        inside = samples[:, corners] < 0.0
         mixed = inside.any(axis=1) & ~inside.all(axis=1)
         return np.where(mixed, unsaid(samples, size), 0.0)
 
-    monkeypatch.setattr(joining, "_unsaid", blind)
+    monkeypatch.setattr(joining, "said_by_corners", blind)
+    monkeypatch.setattr(joining, "_unsaid", unsaid_if_mixed)
     assert not pin_is_there()
 
 

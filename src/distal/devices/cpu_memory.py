@@ -146,7 +146,7 @@ def pack_points(
         precision: Bits of a float, 32 or 64.
     """
     kinds = [k for shape in shapes for k in kinds_in(shape)]
-    slots = _slots(max(1, len(kinds)) * stride, precision)
+    slots = np.empty(max(1, len(kinds)) * stride, float_type(precision))
     leaves = [leaf for shape, arg in zip(shapes, args, strict=True) for leaf in _leaves(shape, arg)]
     for i, (kind, leaf) in enumerate(zip(kinds, leaves, strict=True)):
         run = slots[i * stride : (i + 1) * stride]

@@ -16,6 +16,7 @@ from distal.ir.types import FLOAT, VEC3
 from distal.mesh import arithmetic, face_arithmetic, triangle_arithmetic
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.lattice import Lattice, keys_of
+from distal.mesh.parallel import parallel_map, slices_of
 from distal.mesh.pieces import distances
 from distal.mesh.places import Roots
 from distal.mesh.solid import Floats, Integers
@@ -107,12 +108,14 @@ def measured(
     counts = np.maximum(topology.edges.size[made.edge] // topology.unit, 1)
     found = distances(kernels, made.points, made.triangles, counts)
     misses, largest, place = found.largest, float(found.largest.max()), found.place
-    back = np.empty(len(misses))
-    for start in range(0, len(misses), _AT_ONCE):
-        rows = slice(start, start + _AT_ONCE)
+
+    def from_roots(rows: slice) -> Floats:
         a, b, c = (made.points[made.triangles[rows, i]] for i in range(3))
         root = roots.places[made.edge[rows]]
-        back[rows] = rows_of(triangle_arithmetic.distance_to_triangle, root, a, b, c)
+        found: Floats = rows_of(triangle_arithmetic.distance_to_triangle, root, a, b, c)
+        return found
+
+    back = np.concatenate(parallel_map(from_roots, slices_of(len(misses))))
     own = np.zeros(len(roots.places))
     runs_of = first_of_runs(made)
     own[made.edge[runs_of]] = np.minimum.reduceat(back, runs_of)

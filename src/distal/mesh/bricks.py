@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -19,15 +20,15 @@ import numpy.typing as npt
 
 from distal.ir.types import FLOAT, VEC3
 from distal.mesh.arithmetic import distance_value, samples_along_x
-from distal.mesh.joining import Blocks, separate_blocks
+from distal.mesh.joining import Blocks, corner_masks, separate_blocks
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import BRICK, Lattice, keys_of, position
+from distal.mesh.parallel import parallel_map, slices_of
 from distal.mesh.problems import MeshProblem
 from distal.mesh.solid import Floats, Integers
 from distal.mesh.tables import CORNERS
 
-BRICKS_AT_ONCE: Final = 512
-_POINTS_AT_ONCE: Final = 1 << 19
+BRICKS_AT_ONCE: Final = 128
 # Lattice points whose values say that the surface is closer than this, in cells, must be near a
 # cell with a change of sign.
 SUSPICIOUS: Final = 0.9
@@ -113,20 +114,27 @@ def descend(
         blocks = blocks[lattice.contains(blocks << level)]
         if len(blocks) > 8 * most:
             raise MeshProblem("too many")
-        kept = []
-        side = (BRICK << level) * lattice.step
-        for part in range(0, len(blocks), _POINTS_AT_ONCE):
-            rows = blocks[part : part + _POINTS_AT_ONCE]
-            centers = lattice.places((rows + 0.5) * (BRICK << level))
-            values = kernels.call(distance_value, centers, types=[("p", VEC3)])
-            check_numbers(values, centers)
-            reach = np.where(values > 0.0, min(slopes.divisor, slopes.slope), slopes.slope)
-            kept.append(rows[np.abs(values) <= reach * (side * _HALF_DIAGONAL * 1.000001)])
-            watch(0.0)
-        blocks = np.concatenate(kept) if kept else blocks[:0]
+        near = partial(_near_blocks, kernels, lattice, slopes, level)
+        some = [blocks[rows] for rows in slices_of(len(blocks))]
+        blocks = np.concatenate(
+            [blocks[:0], *parallel_map(near, some, watch=lambda share: watch(0.0))]
+        )
     if len(blocks) > most:
         raise MeshProblem("too many")
     return blocks
+
+
+def _near_blocks(
+    kernels: FieldKernels, lattice: Lattice, slopes: Slopes, level: int, blocks: Integers
+) -> Integers:
+    """Return the blocks, of ``BRICK << level`` cells a side, that the surface can pass through."""
+    side = (BRICK << level) * lattice.step
+    centers = lattice.places((blocks + 0.5) * (BRICK << level))
+    values = kernels.call(distance_value, centers, types=[("p", VEC3)])
+    check_numbers(values, centers)
+    reach = np.where(values > 0.0, min(slopes.divisor, slopes.slope), slopes.slope)
+    near: Integers = blocks[np.abs(values) <= reach * (side * _HALF_DIAGONAL * 1.000001)]
+    return near
 
 
 def check_numbers(values: Floats, places: Floats) -> None:
@@ -164,14 +172,11 @@ def surface_bricks(
     known = np.sort(keys_of(waiting))
     parts: list[_SampledBricks] = []
     while len(waiting):
-        wanted = []
-        for start in range(0, len(waiting), BRICKS_AT_ONCE):
-            some = waiting[start : start + BRICKS_AT_ONCE]
-            part = _sampled(kernels, lattice, slopes, some, joined)
-            wanted.append(part.neighbours)
-            parts.append(part)
-            watch(min(1.0, (start + BRICKS_AT_ONCE) / len(waiting)))
-        neighbours = np.concatenate(wanted)
+        some = [waiting[rows] for rows in slices_of(len(waiting), BRICKS_AT_ONCE)]
+        sampled = partial(_sampled, kernels, lattice, slopes, joined=joined)
+        found = parallel_map(sampled, some, watch)
+        parts += found
+        neighbours = np.concatenate([part.neighbours for part in found])
         keys, first = np.unique(keys_of(neighbours), return_index=True)
         waiting = neighbours[first[position(keys, known) < 0]]
         if not lattice.contains(waiting).all():
@@ -205,7 +210,7 @@ def _sampled(
     values = _values(kernels, lattice, bricks)
     inside = values < 0.0
     neighbours = _neighbours(bricks, inside)
-    masks = _masks(inside)
+    masks = corner_masks(inside)
     lost = _suspicious(lattice, slopes, bricks, values, masks)
     some = ((masks != 0) & (masks != 255)).any(axis=(1, 2, 3))
     values, inside, bricks, masks = values[some], inside[some], bricks[some], masks[some]
@@ -237,14 +242,6 @@ def _values(kernels: FieldKernels, lattice: Lattice, bricks: Integers) -> Floats
         raise MeshProblem("no number", tuple(corners[row] + (i * lattice.step, 0.0, 0.0)))
     sides = (len(bricks), BRICK + 1, BRICK + 1, BRICK + 1)
     return np.ascontiguousarray(found.reshape(sides).transpose(0, 3, 1, 2))
-
-
-def _masks(inside: npt.NDArray[np.bool_]) -> npt.NDArray[np.uint8]:
-    masks = np.zeros((len(inside), BRICK, BRICK, BRICK), np.uint8)
-    bits = inside.view(np.uint8)
-    for number, (x, y, z) in enumerate(CORNERS):
-        masks |= bits[:, x : x + BRICK, y : y + BRICK, z : z + BRICK] << number
-    return masks
 
 
 def _neighbours(bricks: Integers, inside: npt.NDArray[np.bool_]) -> Integers:
@@ -286,8 +283,9 @@ def _suspicious(
     if not near.any():
         return np.empty((0, 3))
     crossed = (masks != 0) & (masks != 255)
-    for x, y, z in CORNERS:
-        near &= ~crossed[:, x : x + BRICK - 1, y : y + BRICK - 1, z : z + BRICK - 1]
+    crossed = crossed[:, :-1] | crossed[:, 1:]
+    crossed = crossed[:, :, :-1] | crossed[:, :, 1:]
+    near &= ~(crossed[..., :-1] | crossed[..., 1:])
     brick, *local = np.nonzero(near)
     return lattice.places(bricks[brick] * BRICK + np.stack(local, axis=1) + 1)
 

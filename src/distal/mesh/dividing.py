@@ -28,6 +28,9 @@ from distal.mesh.tree_topology import (
 from distal.polygons.whole_numbers import sorted_keys
 
 Joined: TypeAlias = Literal["measured", "good", "replaced"]
+# Errors of a fractal do not fall where its cells are divided: this ends with so many halves, or
+# with as many as there are undivided cells.
+_MOST_HALVES: Final = 1_000_000
 # After a division the surroundings of the cells are measured, unless they are more than this share
 # of all; in the end all is.
 _MOST_OF_WHOLE: Final = 0.4
@@ -68,7 +71,7 @@ def divided(
     lattice, looked_at = tree.values.lattice, found.looked_at
     wanted = _some(_too_large(found, tree, tolerance), tree, joined_only=joined_only)
     for number, rings in enumerate(_RINGS):
-        if not wanted:
+        if not wanted or _too_many(tree, wanted):
             break
         before = tree.divided
         tree = settled(tree.with_divided(_with_rings(wanted, tree, rings)), before)
@@ -82,13 +85,19 @@ def divided(
             made = completed(kernels, extent, lattice, topology, seen, tolerance, _unwatched)
             wanted = _too_large(made, tree, tolerance, certain)
             wanted = _some(wanted, tree, joined_only=joined_only)
-        if not wanted or number == len(_RINGS) - 1:
+        if not wanted or number == len(_RINGS) - 1 or _too_many(tree, wanted):
             topology, tree = topology_of_tree(tree)
             made = completed(kernels, extent, lattice, topology, looked_at, tolerance, _unwatched)
             found = replace(made, tree=tree)
             wanted = _some(_too_large(found, tree, tolerance), tree, joined_only=joined_only)
         watch((number + 1) / len(_RINGS))
     return found
+
+
+def _too_many(tree: Tree, wanted: Divided) -> bool:
+    """Return whether there would be too many halves if more cells were divided."""
+    halved = sum(len(keys) for keys in (*tree.divided[tree.base :], *wanted))
+    return 8 * halved > max(_MOST_HALVES, len(tree.surface))
 
 
 def _some(wanted: Divided, tree: Tree, *, joined_only: bool) -> Divided:

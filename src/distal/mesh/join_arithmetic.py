@@ -10,18 +10,14 @@ from distal.lang import abs, array, func, length, max, vec3
 
 @func
 def unsaid_by_corners(values: array[float, 27], size: float) -> float:  # type: ignore[valid-type]
-    """Return how far a block's surface is from what its corners say; -1 for another topology.
+    """Return how far a block's surface is from what its corners say.
 
     Between the corners values are interpolated. The other samples close to the surface differ from
-    that by a distance, to first order. Each must have the sign of a corner of its edge or face:
-    then the surface has the same topology.
+    that by a distance, to first order.
 
     Args:
         values: The samples, three along each axis: z fastest, then y, then x.
         size: The side of the block.
-
-    Source: Tao Ju, Frank Losasso, Scott Schaefer, Joe Warren, "Dual Contouring of Hermite Data"
-        (2002), for the signs.
     """
     slope = vec3(0.0)
     for j in range(8):
@@ -34,21 +30,15 @@ def unsaid_by_corners(values: array[float, 27], size: float) -> float:  # type: 
     # The mean change over the block; half of it is as far away as the block's middle is.
     change = max(length(slope) * 0.25, 1e-300)
     largest = 0.0
-    same = True
     for i in range(27):
         total = 0.0
-        agrees = False
         for j in range(8):
             corner = values[j // 4 * 18 + j // 2 % 2 * 6 + j % 2 * 2]
             weight = share(i // 9, j // 4) * share(i // 3 % 3, j // 2 % 2) * share(i % 3, j % 2)
             total += weight * corner
-            if weight > 0.0 and (corner < 0.0) == (values[i] < 0.0):
-                agrees = True
-        if not agrees:
-            same = False
         if abs(values[i]) < 0.5 * change:
             largest = max(largest, abs(total - values[i]))
-    return largest * size / change if same else -1.0
+    return largest * size / change
 
 
 @func

@@ -6,6 +6,7 @@ triangle, in 64 bits. Does not depend on topology.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -18,6 +19,7 @@ from distal.ir.types import Type
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.runtime_access import executor
+from distal.mesh.parallel import is_worker
 from distal.scene.lowering.parts.table import rolled_for
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 
@@ -53,7 +55,7 @@ class OfField(Composed):
 
 @dataclass(slots=True)
 class FieldKernels:
-    """Evaluates functions of a shape's field.
+    """Evaluates functions of a shape's field; several threads may use it.
 
     Attributes:
         node: The shape's tree.
@@ -66,7 +68,7 @@ class FieldKernels:
     params: Mapping[str, Any]
     time: float
     rows: int = 0
-    _made: dict[Func, OfField] = field(default_factory=dict)
+    _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def call(self, function: Func, *columns: Any, types: Sequence[tuple[str, Type]]) -> Any:
         """Return the values of a function for many rows.
@@ -76,17 +78,21 @@ class FieldKernels:
             columns: The values of its other parameters.
             types: Their names and types.
         """
-        made = self._made.get(function)
-        if made is None:
-            made = self._made[function] = OfField(self.node, function, types)
-        self.rows += len(columns[0])
+        with self._lock:
+            known: dict[Func, OfField] = self.node.derived("functions of the field", dict)
+            made = known.get(function)
+            if made is None:
+                made = known[function] = OfField(self.node, function, types)
+            self.rows += len(columns[0])
         args = [as_rows(column) for column in columns]
-        return executor().call(made, args, {}, params=self.params, time=self.time)
+        here = is_worker()
+        return executor().call(made, args, {}, params=self.params, time=self.time, here=here)
 
 
 def rows_of(function: Func, *columns: Any) -> Any:
     """Return the values of a function that needs no field, for many rows."""
-    return executor().call(function, [as_rows(column) for column in columns], {})
+    args = [as_rows(column) for column in columns]
+    return executor().call(function, args, {}, here=is_worker())
 
 
 def as_rows(column: Any) -> Any:

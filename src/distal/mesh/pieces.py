@@ -8,16 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final
+from operator import itemgetter
 
 import numpy as np
 
 from distal.ir.types import VEC3
 from distal.mesh import face_arithmetic
 from distal.mesh.kernels import FieldKernels
+from distal.mesh.parallel import ROWS_AT_ONCE, parallel_map, slices_of
 from distal.mesh.solid import Floats, Integers
-
-_AT_ONCE: Final = 1 << 16
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,26 +51,29 @@ def distances(
         watch: Called now and then.
     """
     largest = np.empty(len(triangles))
-    worst, total, place = -1.0, 0.0, (0.0, 0.0, 0.0)
+    groups = []
     for count in np.flatnonzero(np.bincount(counts)):
-        weights = _pieces(int(count))
         rows = np.flatnonzero(counts == count)
-        size = max(1, _AT_ONCE // len(weights))
-        for start in range(0, len(rows), size):
-            some = rows[start : start + size]
-            corners = points[triangles[some]]
-            if count > 1:
-                corners = (weights.reshape(-1, 3) @ corners).reshape(-1, 3, 3)
-            a, b, c = (np.ascontiguousarray(corners[:, i]) for i in range(3))
-            types = [(name, VEC3) for name in "abc"]
-            found = kernels.call(face_arithmetic.largest_miss, a, b, c, types=types)
-            largest[some] = found[:, 0].reshape(len(some), -1).max(axis=1)
-            total += float(found[:, 1].sum())
-            at = int(np.argmax(found[:, 0]))
-            if found[at, 0] > worst:
-                x, y, z = ((a[at] + b[at] + c[at]) / 3.0).tolist()
-                worst, place = float(found[at, 0]), (x, y, z)
-            watch(1.0)
+        at_once = max(1, ROWS_AT_ONCE // int(count) ** 2)
+        groups += [(int(count), rows[some]) for some in slices_of(len(rows), at_once)]
+
+    def measure(group: tuple[int, Integers]) -> tuple[float, float, tuple[float, float, float]]:
+        count, some = group
+        a, b, c = (points[triangles[some, i]] for i in range(3))
+        if count > 1:
+            shares = _pieces(count)
+            corners = np.stack([a, b, c], axis=1)
+            a, b, c = ((shares[:, i] @ corners).reshape(-1, 3) for i in range(3))
+        types = [(name, VEC3) for name in "abc"]
+        found = kernels.call(face_arithmetic.largest_miss, a, b, c, types=types)
+        largest[some] = found[:, 0].reshape(len(some), -1).max(axis=1)
+        at = int(np.argmax(found[:, 0]))
+        x, y, z = ((a[at] + b[at] + c[at]) / 3.0).tolist()
+        return float(found[:, 1].sum()), float(found[at, 0]), (x, y, z)
+
+    measured = parallel_map(measure, groups, watch)
+    total = sum(part for part, _, _ in measured)
+    _, _, place = max(measured, key=itemgetter(1))  # of equal ones the first
     return PieceDistances(largest, total / float((counts**2).sum()), place)
 
 

@@ -7,6 +7,7 @@ part of its cell: that keeps the triangles from intersecting.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -15,6 +16,7 @@ from distal.ir.types import FLOAT, VEC3, Array, Type
 from distal.mesh import arithmetic, face_arithmetic
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.lattice import BRICK, Lattice
+from distal.mesh.parallel import parallel_map, pieces, slices_of
 from distal.mesh.solid import Bools, Floats, Integers
 from distal.mesh.tables import cell_tables
 from distal.mesh.topology import Topology
@@ -24,7 +26,6 @@ SMALLEST_MARGIN: Final = 1e-4
 SIDE_MARGIN: Final = 8.0 * 2.0**-23
 # The share of the way that is kept free in front of the planes around a region.
 REGION_MARGIN: Final = 0.02
-_AT_ONCE: Final = 1 << 16
 _MOST_ROOTS: Final = 12  # of one point at a crease
 
 
@@ -36,11 +37,13 @@ class Roots:
         places: Of shape (n, 3).
         slopes: The gradients there, of shape (n, 3).
         kept: The places, at least the margin away from the ends of the edges.
+        means: The mean of these over the edges of each point, of shape (points, 3).
     """
 
     places: Floats
     slopes: Floats
     kept: Floats
+    means: Floats
 
 
 def margins_of(lattice: Lattice, size: Integers) -> Floats:
@@ -76,8 +79,11 @@ def roots_of(kernels: FieldKernels, lattice: Lattice, topology: Topology) -> Roo
     columns = (start, way, edges.first, edges.second)
     share, slopes = kernels.call(arithmetic.root_on_edge, *columns, types=_ROOT_COLUMNS)
     margin = margins_of(lattice, edges.size)
-    kept = np.clip(share, margin, 1.0 - margin)
-    return Roots(start + way * share[:, None], slopes, start + way * kept[:, None])
+    kept = start + way * np.clip(share, margin, 1.0 - margin)[:, None]
+    points = topology.points
+    uses = np.diff(points.first, append=len(points.edges))
+    means = np.add.reduceat(kept[points.edges], points.first) / uses[:, None]
+    return Roots(start + way * share[:, None], slopes, kept, means)
 
 
 def cell_points(
@@ -93,23 +99,20 @@ def cell_points(
     """
     points = topology.points
     count = len(points.region)
-    mean = means(topology, roots)
-    creased = np.empty(count, np.bool_)
-    for some in pieces(np.arange(count)):
-        creased[some] = _creased(topology, roots, int(some[0]), int(some[-1]) + 1)
+    mean = roots.means
+    at_crease = partial(_creased, topology, roots)
+    creased = np.concatenate(parallel_map(at_crease, slices_of(count)))
     margin = margins_of(lattice, points.size)[:, None]
     size = points.size[:, None]
     low = lattice.places(points.cell + margin * size)
     high = lattice.places(points.cell + (1.0 - margin) * size)
     found = np.empty((count, 3))
-    for smooth in pieces(np.flatnonzero(~creased)):
-        found[smooth] = kernels.call(
-            arithmetic.smooth_point,
-            mean[smooth],
-            low[smooth],
-            high[smooth],
-            types=[("mean", VEC3), ("low", VEC3), ("high", VEC3)],
-        )
+
+    def place(smooth: Integers) -> None:
+        columns = mean[smooth], low[smooth], high[smooth]
+        found[smooth] = kernels.call(arithmetic.smooth_point, *columns, types=_SMOOTH_COLUMNS)
+
+    parallel_map(place, pieces(np.flatnonzero(~creased)))
     rows = np.flatnonzero(creased)
     found[rows] = crease_points(kernels, topology, roots, low[rows], high[rows], rows)
     shared = np.flatnonzero(points.shared)
@@ -118,16 +121,15 @@ def cell_points(
     return found, creased
 
 
-def _creased(topology: Topology, roots: Roots, start: int, end: int) -> Bools:
+def _creased(topology: Topology, roots: Roots, rows: slice) -> Bools:
     """Return which points are at a crease: the normals at the roots of each differ.
 
     Args:
         topology: What belongs together.
         roots: The roots.
-        start: The first point.
-        end: The one after the last.
+        rows: The points.
     """
-    points = topology.points
+    points, start, end = topology.points, rows.start, rows.stop
     stop = points.first[end] if end < len(points.first) else len(points.edges)
     first = points.first[start:end] - points.first[start]
     uses = np.diff(points.first[start:end], append=stop)
@@ -136,19 +138,6 @@ def _creased(topology: Topology, roots: Roots, start: int, end: int) -> Bools:
     average = rows_of(arithmetic.unit_or_zero, np.add.reduceat(normals, first))
     cosine = rows_of(arithmetic.cosine, normals, np.repeat(average, uses, axis=0))
     found: Bools = np.minimum.reduceat(cosine, first) < arithmetic.CREASE_COSINE
-    return found
-
-
-def pieces(rows: Integers) -> list[Integers]:
-    """Return rows in pieces that need little memory."""
-    return [rows[i : i + _AT_ONCE] for i in range(0, len(rows), _AT_ONCE)]
-
-
-def means(topology: Topology, roots: Roots) -> Floats:
-    """Return the mean root of each point's edges."""
-    points = topology.points
-    uses = np.diff(points.first, append=len(points.edges))
-    found: Floats = np.add.reduceat(roots.kept[points.edges], points.first) / uses[:, None]
     return found
 
 
@@ -171,12 +160,13 @@ def crease_points(
         rows: The points.
     """
     points = topology.points
-    mean = means(topology, roots)
     found = np.empty((len(rows), 3))
-    for some in pieces(np.arange(len(rows))):
+    edges_of = np.diff(points.first, append=len(points.edges))
+    slot = np.arange(_MOST_ROOTS)[None]
+
+    def place(some: slice) -> None:
         chosen = rows[some]
-        uses = np.diff(points.first, append=len(points.edges))[chosen]
-        slot = np.arange(_MOST_ROOTS)[None]
+        uses = edges_of[chosen]
         used = slot < uses[:, None]
         # A cell beside smaller ones can have more: evenly chosen ones say enough of its planes.
         nth = slot * np.maximum(uses[:, None], _MOST_ROOTS) // _MOST_ROOTS
@@ -186,11 +176,13 @@ def crease_points(
             roots.places[edge],
             roots.slopes[edge],
             used.astype(np.float64),
-            mean[chosen],
+            roots.means[chosen],
             low[some],
             high[some],
             types=_CREASE_COLUMNS,
         )
+
+    parallel_map(place, slices_of(len(rows)))
     return found
 
 
@@ -347,7 +339,8 @@ def _in_faces(
     """
     segments = topology.segments
     found = np.empty((len(rows), 3))
-    for some in pieces(np.arange(len(rows))):
+
+    def place(some: slice) -> None:
         chosen = rows[some]
         a, b = segments.edge_a[chosen], segments.edge_b[chosen]
         found[some] = kernels.call(
@@ -361,6 +354,8 @@ def _in_faces(
             high[some],
             types=[(name, VEC3) for name in _FACE_COLUMNS],
         )
+
+    parallel_map(place, slices_of(len(rows)))
     return found
 
 
@@ -370,6 +365,7 @@ _ROOT_COLUMNS: Final[list[tuple[str, Type]]] = [
     ("first", FLOAT),
     ("second", FLOAT),
 ]
+_SMOOTH_COLUMNS: Final = [(name, VEC3) for name in ("mean", "low", "high")]
 _FACE_COLUMNS: Final = ("a", "b", "slope_a", "slope_b", "normal", "low", "high")
 _CREASE_COLUMNS: Final[list[tuple[str, Type]]] = [
     ("points", Array(VEC3, _MOST_ROOTS)),

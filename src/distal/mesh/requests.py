@@ -57,6 +57,7 @@ def box_of(
         params: Values of parameters by name.
         time: Seconds.
     """
-    bounds = executor().call(BoundsOf(node), (), {}, params=params, time=time)
+    asked: BoundsOf = node.derived("bounds", lambda: BoundsOf(node))
+    bounds = executor().call(asked, (), {}, params=params, time=time)
     low, high = (np.array([ended(c) for c in corner]) for corner in bounds[2:4])
     return (float(bounds[0]), float(bounds[1])), low, high

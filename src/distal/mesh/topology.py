@@ -222,7 +222,7 @@ def topology_of(kernels: FieldKernels, lattice: Lattice, found: SurfaceBricks) -
     cells.case = _cases(kernels, lattice, cells)
     count = tables.components[cells.case]
     first = np.cumsum(count) - count
-    axis = np.concatenate([np.full(len(e.brick), a) for a, e in enumerate(found.edges)])
+    axis = np.concatenate([np.full(len(e.brick), a, np.int8) for a, e in enumerate(found.edges)])
     brick = np.concatenate([e.brick for e in found.edges])
     local = np.concatenate([e.start for e in found.edges])
     around = np.empty((len(axis), 4), np.int64)
@@ -241,8 +241,7 @@ def topology_of(kernels: FieldKernels, lattice: Lattice, found: SurfaceBricks) -
     start = found.bricks[brick] * BRICK + local
     first_value = np.concatenate([e.first for e in found.edges])
     second_value = np.concatenate([e.second for e in found.edges])
-    ones = np.ones(len(axis), np.int64)
-    edges = EdgeRows(axis, start, ones, around, sides, first_value, second_value)
+    edges = EdgeRows(axis, start, _ones(len(axis)), around, sides, first_value, second_value)
     return Topology(edges, points, segments, len(cells.mask))
 
 
@@ -284,7 +283,7 @@ def _points(cells: _SurfaceCells, count: Integers, around: Integers) -> PointRow
     uses = np.bincount(around.reshape(-1), minlength=len(cell))
     return PointRows(
         cell=cells.place[cell],
-        size=np.ones(len(cell), np.int64),
+        size=_ones(len(cell)),
         region=cell_tables().regions[cells.case[cell], component],
         shared=count[cell] > 1,
         edges=order // 4,
@@ -304,7 +303,7 @@ def _segments(
         edges: How many edges there are.
     """
     tables = cell_tables()
-    sides = np.full((edges, 4), -1, np.int64)
+    sides: Integers = np.full((edges, 4), -1, np.int32)
     parts = []
     total = 0
     for axis in range(3):
@@ -322,9 +321,8 @@ def _segments(
         in_next = _IN_NEXT[axis, a]
         parts.append(
             (
-                np.full(len(cell), axis),
-                cells.place[cell] + step,
-                np.ones(len(cell), np.int64),
+                np.full(len(cell), axis, np.int8),
+                (cells.place[cell] + step).astype(np.int32),
                 first[cell] + tables.component[cells.case[cell], a],
                 first[upper] + tables.component[cells.case[upper], in_next],
                 edge_a,
@@ -332,5 +330,10 @@ def _segments(
                 pairs[cell, 1, 0] >= 0,
             )
         )
-    columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
-    return SegmentRows(*columns), sides
+    axes, faces, *columns = (np.concatenate(column) for column in zip(*parts, strict=True))
+    return SegmentRows(axes, faces, _ones(total), *columns), sides
+
+
+def _ones(count: int) -> Integers:
+    """Return the sizes of equal cells: one number, read as many times as asked."""
+    return np.broadcast_to(np.int64(1), count)

@@ -20,7 +20,8 @@ from distal.ir.types import VEC3
 from distal.mesh import face_arithmetic, triangle_arithmetic
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.lattice import Lattice
-from distal.mesh.places import Roots, common_reach, face_points, margins_of, pieces
+from distal.mesh.parallel import parallel_map, pieces
+from distal.mesh.places import Roots, common_reach, face_points, margins_of
 from distal.mesh.solid import Bools, Floats, Integers
 from distal.mesh.topology import Topology
 from distal.polygons.whole_numbers import stable_order
@@ -83,8 +84,11 @@ def triangulated(
     sides = np.where(segments < 0, _NO_FACE, of_segment[segments])
     plain = np.flatnonzero((sides == -1).all(axis=1))
     diagonal = np.full(len(sides), _NEITHER)
-    for rows in pieces(plain):
+
+    def choose(rows: Integers) -> None:
         diagonal[rows] = _diagonals(kernels, lattice, topology, roots, places, rows, tolerance)
+
+    parallel_map(choose, pieces(plain))
     straight = ((sides == -1) | (sides == _NO_FACE)).all(axis=1)
     three = np.flatnonzero(straight & ((sides == _NO_FACE).sum(axis=1) == 1))
     for rows in pieces(three):
@@ -109,12 +113,15 @@ def _open_segments(
     """Return which segments need a point on their face."""
     segments, points = topology.segments, topology.points
     opened = points.shared[segments.lower] | points.shared[segments.upper] | segments.paired
-    for rows in pieces(np.flatnonzero(~opened)):
+
+    def open_(rows: Integers) -> None:
         passes = _pass_their_faces(lattice, topology, places, reach, rows)
         opened[rows[~passes]] = True
         rest = rows[passes]
         ends = places[segments.lower[rest]], places[segments.upper[rest]]
         opened[rest] = kernels.call(face_arithmetic.middle_distance, *ends, types=_LINE) > tolerance
+
+    parallel_map(open_, pieces(np.flatnonzero(~opened)))
     found: Bools = opened
     return found
 

@@ -334,6 +334,7 @@ class PythonExecutor(TapeExecutor):
         time: float = 0.0,
         device: str = CPU,
         settings: Mapping[str, Any] | None = None,
+        here: bool = False,
     ) -> Any:
         """Evaluate the function for numbers, vectors, or arrays with one row per point.
 
@@ -345,6 +346,7 @@ class PythonExecutor(TapeExecutor):
             time: Seconds.
             device: The name of a device, as for ``render``.
             settings: Values of the scene's numbers by name; the others have their defaults.
+            here: Whether the calling thread computes them, on the CPU: for few rows.
 
         Raises:
             TypeError: No overload accepts the values.
@@ -366,7 +368,11 @@ class PythonExecutor(TapeExecutor):
             kernel = self.kernels.kernel(lowered, device, 64 if double else 32)
         else:  # compiling for a single value would take longer than the reference needs
             kernel = self.kernels.kernel(lowered, REFERENCE, 64)
-        result = kernel.evaluate(rows, uniforms, lowered.resources)
+        if here and rows and device == CPU:
+            cpu_kernel = cast("CpuKernel", kernel)
+            result = cpu_kernel.evaluate(rows, uniforms, lowered.resources, here=True)
+        else:
+            result = kernel.evaluate(rows, uniforms, lowered.resources)
         return with_names(result, result_type) if many else single(result, result_type)
 
     def evaluate(
