@@ -117,7 +117,7 @@ _SAID: Final = _said_planes()
 
 def corner_masks(inside: Bools) -> npt.NDArray[np.uint8]:
     """Return which corners of cells are inside, as bits, from a lattice of samples."""
-    bits = inside.view(np.uint8)
+    bits: Any = inside.view(np.uint8)
     bits = bits[:, :-1] | bits[:, 1:] << 1
     bits = bits[:, :, :-1] | bits[:, :, 1:] << 2
     masks: npt.NDArray[np.uint8] = bits[..., :-1] | bits[..., 1:] << 4
