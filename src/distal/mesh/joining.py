@@ -8,7 +8,7 @@ nothing is lost that these would find. Does not depend on a shape.
 from __future__ import annotations
 
 from itertools import product
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
