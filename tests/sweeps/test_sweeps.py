@@ -62,6 +62,8 @@ def test_values(name, given, values):
         ("amount", "0:2:3", "'Amount' lies between 0 and 1, not 2"),
         ("amount", "0:1:200000", "'Amount' takes at most 100000 values, not 200000"),
         ("amount", ",", "'Amount' has no values"),
+        ("time", "", "'time' has no values"),
+        ("time", [], "'time' has no values"),
         ("kind", "even", "'Kind' takes one of plain, odd, not 'even'"),
     ],
 )

@@ -7,7 +7,9 @@ a block. Nothing listens beyond this machine.
 from __future__ import annotations
 
 import json
+import threading
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Final
@@ -123,6 +125,33 @@ def _check_certificate(where: str) -> None:
         raise ClusterError(f"{where} needs a certificate: {_CERTIFICATE} name the files")
 
 
+def _in_time(connect: Callable[[], Any]) -> Any:
+    """Return the client that a function makes.
+
+    Dask's limit of time does not hold if a server that is no scheduler answers: it waits for the
+    bytes that the answer seems to announce.
+
+    Raises:
+        TimeoutError: The function does not return.
+    """
+    ended: Future[Any] = Future()
+
+    def run() -> None:
+        try:
+            ended.set_result(connect())
+        except BaseException as error:
+            ended.set_exception(error)
+
+    # No pool of threads, which Python would wait for at its end.
+    threading.Thread(target=run, daemon=True).start()
+    try:
+        return ended.result(3.0 * _CONNECT_S)
+    except TimeoutError:
+        if ended.done():
+            raise
+        raise TimeoutError("what listens there does not answer as a scheduler does") from None
+
+
 def _client(where: str) -> Any:
     if where.startswith("tls://"):
         _check_certificate(where)
@@ -135,10 +164,10 @@ def _client(where: str) -> Any:
         raise ClusterError(f"'{where}' has no port: {protocol}://host:8786")
     try:
         if separator:
-            return client(where, **given)
+            return _in_time(lambda: client(where, **given))
         if where.endswith(".json"):
             _check_file(Path(where))
-            return client(scheduler_file=where, **given)
+            return _in_time(lambda: client(scheduler_file=where, **given))
     except ClusterError:
         raise
     except (OSError, TimeoutError) as error:

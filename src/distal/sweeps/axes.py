@@ -56,6 +56,8 @@ def axis_of(name: str, given: Any, parameters: Sequence[Parameter]) -> Axis:
     if name not in known:
         if name == TIME:
             times = tuple(map(float, _spread(name, given) or _listed(given, ",")))
+            if not times:
+                raise ValueError(f"'{TIME}' has no values")
             return Axis(TIME, TIME, times, tuple(map(shown, times)), is_time=True)
         names = ", ".join([*dict.fromkeys(p.name for p in known.values()), TIME])
         raise ValueError(f"there is no parameter '{name:.60}'; a sweep takes {names}")
