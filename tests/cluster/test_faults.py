@@ -241,15 +241,18 @@ def test_addresses(where, words, tmp_path, monkeypatch):
     assert distal.__version__
 
 
-def test_a_server_that_is_no_scheduler(monkeypatch):
-    """Dask takes its answer for the length of a message, and waits for that without end."""
+@pytest.mark.parametrize("given", [b"", b"HTTP/1.0 400 Bad request syntax\r\n\r\n"])
+def test_a_server_that_is_no_scheduler(given, monkeypatch):
+    """Dask waits for an answer without end, or takes it for the length of a message."""
     monkeypatch.setattr(connecting, "_CONNECT_S", 2.0)
+    accepted = []  # else they would be closed
     with socket.create_server(("127.0.0.1", 0)) as server:
 
         def answer():
             with suppress(OSError):
                 while True:
-                    server.accept()[0].sendall(b"HTTP/1.0 400 Bad request syntax\r\n\r\n")
+                    accepted.append(server.accept()[0])
+                    accepted[-1].sendall(given)
 
         threading.Thread(target=answer, daemon=True).start()
         where = f"tcp://127.0.0.1:{server.getsockname()[1]}"

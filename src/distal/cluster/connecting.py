@@ -20,6 +20,7 @@ from distal.devices.threads import usable_threads
 from distal.packages import imported
 
 _CONNECT_S: Final = 10.0
+_OTHER_SERVER: Final = "what listens there does not answer as a scheduler does"
 _LOCAL: Final = "local"
 _PROTOCOLS: Final = ("tcp", "tls", "ucx", "ws", "wss")
 _FORMS: Final = "local, local:4, tcp://host:8786, tls://host:8786, or the scheduler's file"
@@ -128,8 +129,8 @@ def _check_certificate(where: str) -> None:
 def _in_time(connect: Callable[[], Any]) -> Any:
     """Return the client that a function makes.
 
-    Dask's limit of time does not hold if a server that is no scheduler answers: it waits for the
-    bytes that the answer seems to announce.
+    Dask's limit of time does not hold for a server that is no scheduler: it waits for an answer, or
+    for the bytes that one seems to announce.
 
     Raises:
         TimeoutError: The function does not return.
@@ -149,7 +150,7 @@ def _in_time(connect: Callable[[], Any]) -> Any:
     except TimeoutError:
         if ended.done():
             raise
-        raise TimeoutError("what listens there does not answer as a scheduler does") from None
+        raise TimeoutError(_OTHER_SERVER) from None
 
 
 def _client(where: str) -> Any:
@@ -172,6 +173,8 @@ def _client(where: str) -> Any:
         raise
     except (OSError, TimeoutError) as error:
         raise ClusterError(f"no scheduler answers at {where}: {words(error)}") from None
+    except MemoryError:  # the length of a message, as Dask reads the answer of another server
+        raise ClusterError(f"no scheduler answers at {where}: {_OTHER_SERVER}") from None
     except Exception as error:
         raise ClusterError(f"{where} is no scheduler: {words(error)}") from None
     raise ClusterError(f"'{where}' is no cluster; --cluster takes {_FORMS}")
