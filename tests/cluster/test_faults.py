@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 import random
 import signal
+import socket
 import threading
 import time
+from contextlib import suppress
 
 import psutil
 import pytest
@@ -237,6 +239,26 @@ def test_addresses(where, words, tmp_path, monkeypatch):
         pass
     assert str(caught.value).startswith(words)
     assert distal.__version__
+
+
+@pytest.mark.parametrize("given", [b"", b"HTTP/1.0 400 Bad request syntax\r\n\r\n"])
+def test_a_server_that_is_no_scheduler(given, monkeypatch):
+    """Dask waits for an answer without end, or takes it for the length of a message."""
+    monkeypatch.setattr(connecting, "_CONNECT_S", 2.0)
+    accepted = []  # else they would be closed
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def answer():
+            with suppress(OSError):
+                while True:
+                    accepted.append(server.accept()[0])
+                    accepted[-1].sendall(given)
+
+        threading.Thread(target=answer, daemon=True).start()
+        where = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        with pytest.raises(ClusterError) as caught, connected(where):
+            pass
+    assert str(caught.value).startswith(f"no scheduler answers at {where}: ")
 
 
 def test_local_processes_listen_on_this_machine_alone():

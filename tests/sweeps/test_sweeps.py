@@ -65,6 +65,8 @@ def test_values(name, given, values):
         ("amount", ",", "'Amount' has no values"),
         ("time", ",", "'time' has no values"),
         ("time", "0,soon", "time is a number of seconds, not 'soon'"),
+        ("time", "", "'time' has no values"),
+        ("time", [], "'time' has no values"),
         ("kind", "even", "'Kind' takes one of plain, odd, not 'even'"),
     ],
 )

@@ -7,7 +7,9 @@ a block. Nothing listens beyond this machine.
 from __future__ import annotations
 
 import json
+import threading
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Final
@@ -18,6 +20,7 @@ from distal.devices.threads import usable_threads
 from distal.packages import imported
 
 _CONNECT_S: Final = 10.0
+_OTHER_SERVER: Final = "what listens there does not answer as a scheduler does"
 _LOCAL: Final = "local"
 _PROTOCOLS: Final = ("tcp", "tls", "ucx", "ws", "wss")
 _FORMS: Final = "local, local:4, tcp://host:8786, tls://host:8786, or the scheduler's file"
@@ -123,6 +126,33 @@ def _check_certificate(where: str) -> None:
         raise ClusterError(f"{where} needs a certificate: {_CERTIFICATE} name the files")
 
 
+def _in_time(connect: Callable[[], Any]) -> Any:
+    """Return the client that a function makes.
+
+    Dask's limit of time does not hold for a server that is no scheduler: it waits for an answer, or
+    for the bytes that one seems to announce.
+
+    Raises:
+        TimeoutError: The function does not return.
+    """
+    ended: Future[Any] = Future()
+
+    def run() -> None:
+        try:
+            ended.set_result(connect())
+        except BaseException as error:
+            ended.set_exception(error)
+
+    # No pool of threads, which Python would wait for at its end.
+    threading.Thread(target=run, daemon=True).start()
+    try:
+        return ended.result(3.0 * _CONNECT_S)
+    except TimeoutError:
+        if ended.done():
+            raise
+        raise TimeoutError(_OTHER_SERVER) from None
+
+
 def _client(where: str) -> Any:
     if where.startswith("tls://"):
         _check_certificate(where)
@@ -135,14 +165,16 @@ def _client(where: str) -> Any:
         raise ClusterError(f"'{where}' has no port: {protocol}://host:8786")
     try:
         if separator:
-            return client(where, **given)
+            return _in_time(lambda: client(where, **given))
         if where.endswith(".json"):
             _check_file(Path(where))
-            return client(scheduler_file=where, **given)
+            return _in_time(lambda: client(scheduler_file=where, **given))
     except ClusterError:
         raise
     except (OSError, TimeoutError) as error:
         raise ClusterError(f"no scheduler answers at {where}: {words(error)}") from None
+    except MemoryError:  # the length of a message, as Dask reads the answer of another server
+        raise ClusterError(f"no scheduler answers at {where}: {_OTHER_SERVER}") from None
     except Exception as error:
         raise ClusterError(f"{where} is no scheduler: {words(error)}") from None
     raise ClusterError(f"'{where}' is no cluster; --cluster takes {_FORMS}")

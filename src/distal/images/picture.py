@@ -70,7 +70,7 @@ class Picture:
     stats: Mapping[str, Any] = field(default_factory=dict)
     light: NDArray[np.float32] | None = field(default=None, repr=False)
     layers: Mapping[str, NDArray[Any]] = field(default_factory=dict, repr=False)
-    rounded: NDArray[np.uint8] | None = field(default=None, repr=False)
+    rounded: NDArray[np.uint8] | None = field(default=None, init=False, repr=False)
 
     @classmethod
     def of_levels(
@@ -78,7 +78,9 @@ class Picture:
     ) -> Picture:
         """Return a picture of 8-bit levels, (height, width, 4), which ``levels`` returns again."""
         array = np.divide(levels, np.float32(255.0), dtype=np.float32)
-        return cls(array, provenance, stats, rounded=levels)
+        made = cls(array, provenance, stats)
+        object.__setattr__(made, "rounded", levels)
+        return made
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "array", _checked(self.array))
