@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import distal
-from distal import Box, Capsule, Plane, Scene, Sphere, time
+from distal import Box, Capsule, Plane, Scene, Sphere, place, time
 from distal.lang import slider
 from distal.lang.runtime_access import executor
 from distal.packages import PackageError
@@ -75,6 +75,9 @@ def test_what_moves_or_changes() -> None:
     assert floor_of(Scene(Capsule(0.3, 2.0).rotate(z=turn))) == pytest.approx(TILTED, abs=3e-3)
     other = Scene.of_shape(Capsule(0.3, 2.0).rotate(z=turn), {"turn": 0.2}, 0.0)
     assert floor_of(other) == pytest.approx(-(math.cos(0.2) + 0.3), abs=3e-3)
+    waving = Sphere(0.5 + 0.1 * np.sin(9.0 * place.y + time)).rotate(z=0.7)
+    below = 0.002 * max(b - a for a, b in zip(*waving.bounds(), strict=True))
+    assert abs(floor_of(Scene(waving)) - waving.bounds()[0][1]) < 10.0 * below
 
 
 def test_each_part_has_its_own_parameters() -> None:

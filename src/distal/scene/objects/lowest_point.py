@@ -24,6 +24,7 @@ from distal.packages import PackageError, imported
 from distal.scene.lowering.derived import DistanceOf
 from distal.scene.objects.field import BaseShape
 from distal.scene.tree.node import Node
+from distal.scene.tree.varying import VaryingNumber
 
 _COLUMNS: Final = 16  # along x and z, at first
 _LEVELS: Final = 5  # of divided columns
@@ -96,6 +97,8 @@ def _is_tight(node: Node) -> bool:
 def _moves(root: Node) -> bool:
     """Return whether a number of the tree depends on the time."""
     for node in root.walk():
+        if any(isinstance(v, VaryingNumber) and v.moves for v in node.constants.values()):
+            return True
         for number in node.numbers.values():
             value = number.value
             if isinstance(value, Expression) and any(
