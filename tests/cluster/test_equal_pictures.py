@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -144,3 +146,5 @@ def test_pictures_of_levels():
     assert made.levels is levels
     np.testing.assert_array_equal(made.array, levels.astype(np.float32) / np.float32(255.0))
     np.testing.assert_array_equal(Picture(made.array).levels, levels)
+    other = replace(made, array=1.0 - made.array)
+    np.testing.assert_array_equal(other.levels, 255 - levels)

@@ -128,8 +128,7 @@ ALL = np.ones((8, 8))
         ),
         (
             lambda: Shape2D.from_image("missing.png"),
-            "from_image: the texture 'missing.png' cannot be read: [Errno 2] No such file or "
-            "directory: 'missing.png'",
+            "from_image: the texture 'missing.png' cannot be read: No such file or directory",
             None,
         ),
         (

@@ -131,11 +131,17 @@ class Picture:
 
     def with_provenance(self, **changes: Any) -> Picture:
         """Return the same picture with some fields of its ``Provenance`` changed."""
-        return replace(self, provenance=replace(self.provenance, **changes))
+        return self._with(provenance=replace(self.provenance, **changes))
 
     def with_layers(self, layers: Mapping[str, NDArray[Any]]) -> Picture:
         """Return the same picture with these layers."""
-        return replace(self, layers=layers)
+        return self._with(layers=layers)
+
+    def _with(self, **changes: Any) -> Picture:
+        """Return a picture of the same pixels."""
+        made = replace(self, **changes)
+        object.__setattr__(made, "rounded", self.rounded)
+        return made
 
     def save(self, path: str | PathLike[str], bits: int | None = None) -> None:
         """Write the picture in the format of the suffix. The file is complete or not written.
