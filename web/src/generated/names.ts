@@ -124,7 +124,7 @@ export const DISTAL: Names = {
   "Parallelogram": ["(width=0.8, height=0.6, skew=0.3)", "Parallelogram with two horizontal sides, centred at the origin."],
   "Pentagon": ["(radius=0.5)", "Regular pentagon with a corner at the top."],
   "Pentagram": ["(radius=0.5)", "Star with five points made of the diagonals of a pentagon; one point is at the top."],
-  "Picture": ["(array, provenance=<factory>, stats=<factory>, light=None, layers=<factory>, rounded=None)", "Pixels encoded for display, with their provenance."],
+  "Picture": ["(array, provenance=<factory>, stats=<factory>, light=None, layers=<factory>)", "Pixels encoded for display, with their provenance."],
   "Pie": ["(radius=1.0, angle=0.7)", "Sector of a disc, symmetric about the y axis."],
   "Plane": ["(y=0.0)", "Ground: the half space below a horizontal plane."],
   "PointLight": ["(position, intensity=1.0, color=(1.0, 1.0, 1.0), radius=0.0)", "Light from one point, falling off with the square of the distance."],
