@@ -7,7 +7,7 @@ hold something below the lowest surface found are divided. Does not depend on lo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from typing import Any, Final
 
 from distal.fields.combine import joins
@@ -47,6 +47,9 @@ _TIGHT: Final = frozenset(
 )
 
 Corner = tuple[float, ...]
+# Heights by what they depend on: a scene is made again at each change of its file.
+_found: dict[Hashable, float] = {}
+_MOST_FOUND: Final = 1024
 
 
 def lowest_of(
@@ -76,9 +79,31 @@ def lowest_of(
         def values(points: Any) -> Any:
             return executor().call(program, (points,), {}, known, time, "reference")
 
-        return lowest_height(values, slope, low, high, np)
+        key = _key_of(program, (low, high, time, tuple(sorted(known.items()))))
+        found = _found.get(key)
+        if found is None:
+            found = lowest_height(values, slope, low, high, np)
+            if key is not None:
+                if len(_found) >= _MOST_FOUND:
+                    _found.clear()
+                _found[key] = found
+        return found
     except PackageError:  # where scenes are only compiled to text
         return low[1]
+
+
+def _key_of(program: Composed, about: Hashable) -> Hashable:
+    """Return what a height depends on; None if that has textures or buffers."""
+    lowered = executor().lowered(program)
+    if lowered.module.resources:
+        return None
+    numbers = tuple((u.name, u.default) for u in lowered.module.uniforms)
+    key = lowered.digest, numbers, about
+    try:
+        hash(key)
+    except TypeError:  # values of parameters that are lists or arrays
+        return None
+    return key
 
 
 def _read_by(program: Composed, params: Mapping[str, Any]) -> dict[str, Any]:
