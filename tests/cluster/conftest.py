@@ -30,8 +30,8 @@ def local_cluster(count: int = 2, **given: Any) -> Iterator[Any]:
         yield client
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def client() -> Iterator[Any]:
-    """Two processes for all tests that do not harm them."""
+    """Two processes for all tests here that do not harm them; idle, they take a tenth of a processor."""
     with local_cluster() as found:
         yield found
