@@ -32,6 +32,6 @@ def local_cluster(count: int = 2, **given: Any) -> Iterator[Any]:
 
 @pytest.fixture(scope="package")
 def client() -> Iterator[Any]:
-    """Two processes for all tests here that do not harm them; idle, they take a tenth of a processor."""
+    """Two processes for all tests here that do not harm them; idle ones take processor time."""
     with local_cluster() as found:
         yield found
