@@ -27,7 +27,7 @@ float held_angle(float x) {
     return clamp(x, -4194304.0, 4194304.0);
 }
 
-// elementary.py:55
+// elementary.py:54
 float sine_near_zero(float r) {
     float s = r * r;
     float p = -0.00019809778 + s * 2.6058e-6;

@@ -513,6 +513,23 @@ def test_the_worker_keeps_order_tells_errors_and_can_be_left() -> None:
     stuck.set()
 
 
+def test_a_job_that_waits_is_cancelled_too() -> None:
+    """A file was saved while its first picture, which never ended, waited behind a compiler."""
+    posted: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    told: list[object] = []
+    worker = Worker(posted.put)
+    compiled = threading.Event()
+    worker.submit(lambda _: compiled.wait(LONG_S), told.append)
+    worker.submit(lambda cancel: cancel.wait(LONG_S), told.append)
+    worker.cancel()
+    worker.submit(lambda cancel: cancel.is_set(), told.append)
+    compiled.set()
+    for _ in range(3):
+        posted.get(timeout=LONG_S)()
+    assert told == [True, True, False]
+    assert worker.stop(LONG_S)
+
+
 def test_the_worker_leaves_a_job_that_never_ends() -> None:
     posted: queue.SimpleQueue[Any] = queue.SimpleQueue()
     told: list[object] = []

@@ -76,7 +76,13 @@ class Picture:
     def of_levels(
         cls, levels: NDArray[np.uint8], provenance: Provenance, stats: Mapping[str, Any]
     ) -> Picture:
-        """Return a picture of 8-bit levels, (height, width, 4), which ``levels`` returns again."""
+        """Return a picture of 8-bit levels, which ``levels`` returns again.
+
+        Args:
+            levels: uint8, (height, width, 4), straight alpha, top row first.
+            provenance: How it was made.
+            stats: What was measured while it was made.
+        """
         array = np.divide(levels, np.float32(255.0), dtype=np.float32)
         made = cls(array, provenance, stats)
         object.__setattr__(made, "rounded", levels)

@@ -22,13 +22,13 @@ ROWS_AT_ONCE: Final = 1 << 14
 _WATCH_S: Final = 0.02  # the longest delay of progress and of a request to stop
 
 
-class _Worker(threading.Thread):
+class _PieceThread(threading.Thread):
     """A thread that computes pieces. Its stack is large enough for every kernel."""
 
 
 def is_worker() -> bool:
     """Return whether this thread computes pieces: its kernels need no threads of their own."""
-    return isinstance(threading.current_thread(), _Worker)
+    return isinstance(threading.current_thread(), _PieceThread)
 
 
 def parallel_map(
@@ -52,9 +52,9 @@ def parallel_map(
         found = [function(piece) for piece in pieces]
         watch(1.0)
         return found
-    run = _Run(function, pieces)
+    run = _MapRun(function, pieces)
     workers: list[threading.Thread] = [
-        _Worker(target=run.work, daemon=True)
+        _PieceThread(target=run.work, daemon=True)
         for _ in range(min(threads.usable_threads(), len(pieces)))
     ]
     started: list[threading.Thread] = []
@@ -74,7 +74,7 @@ def parallel_map(
     return cast("list[Result]", run.found)
 
 
-class _Run(Generic[Piece, Result]):
+class _MapRun(Generic[Piece, Result]):
     """What the threads of one map share.
 
     Attributes:

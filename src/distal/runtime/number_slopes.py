@@ -27,7 +27,7 @@ from distal.runtime.lowered import Lowered
 from distal.runtime.sweeps import ends_of_uniform
 from distal.tape.from_ir import LAST_PASS, PRECISION
 from distal.tape.interval_rules import Ends
-from distal.tape.recording import Recording
+from distal.tape.recording import RecordedFunction
 from distal.tape.tape import TapeError
 
 Doubles: TypeAlias = NDArray[np.float64]
@@ -83,7 +83,7 @@ def added_slope(what: VaryingShape, low: Sequence[float], high: Sequence[float])
     Raises:
         TapeError: No bound is known; the message says why.
     """
-    cells = _Cells(what, len(low))
+    cells = _NumberCells(what, len(low))
     cells.begin(low, high)
     for _ in range(_ROUNDS):
         if not cells.cut():
@@ -96,7 +96,7 @@ def added_slope(what: VaryingShape, low: Sequence[float], high: Sequence[float])
     return float(cells.slopes[worst]) * _MARGIN
 
 
-class _Cells:
+class _NumberCells:
     """Cells of the region, and a bound in each.
 
     Attributes:
@@ -222,7 +222,7 @@ def _clipped(ends: tuple[float, float]) -> Ends:
     return np.asarray(low), np.asarray(high)
 
 
-def _recorded(lowered: Lowered) -> Recording:
+def _recorded(lowered: Lowered) -> RecordedFunction:
     module = run_passes(lowered.module, get_target("llvm"), PRECISION, after=LAST_PASS)
     entry = module.function(module.entry)
     uniforms = {
@@ -231,4 +231,4 @@ def _recorded(lowered: Lowered) -> Recording:
         if u.origin is not Origin.NUMBER
     }
     types = [param.type for param in entry.params]
-    return Recording(module, types, uniforms, buffers_of(module))
+    return RecordedFunction(module, types, uniforms, buffers_of(module))

@@ -74,7 +74,7 @@ def _single(number: float) -> Ends:
     return array, array
 
 
-class Recording:
+class RecordedFunction:
     """The operations of a function.
 
     Args:

@@ -16,7 +16,7 @@ from typing import Any, Final, TypeAlias
 # Called in the window's thread with a result, or with the exception that was raised.
 Done: TypeAlias = "Callable[[Any], None]"
 Job: TypeAlias = "Callable[[threading.Event], Any]"
-Jobs: TypeAlias = "queue.SimpleQueue[tuple[Job, Done] | None]"
+Jobs: TypeAlias = "queue.SimpleQueue[tuple[Job, Done, threading.Event] | None]"
 
 _END: Final = None
 
@@ -38,21 +38,22 @@ class Worker:
 
     def _begin(self) -> None:
         self._jobs: Jobs = queue.SimpleQueue()
-        self._cancel = threading.Event()
+        self._cancel = threading.Event()  # of all jobs that are submitted until it is set
         # A daemon thread, because a compiler cannot be interrupted.
         self._thread = threading.Thread(
-            target=self._run, args=(self._jobs, self._cancel), name="distal-window", daemon=True
+            target=self._run, args=(self._jobs,), name="distal-window", daemon=True
         )
         self._thread.start()
 
     def submit(self, job: Job, done: Done) -> None:
         """Run a job after all earlier jobs. Its argument is the event that asks it to end early."""
         self.waiting += 1
-        self._jobs.put((job, done))
+        self._jobs.put((job, done, self._cancel))
 
     def cancel(self) -> None:
-        """Ask the running job to end early; it may also finish."""
+        """Ask the jobs that run or wait to end early; they may also finish."""
         self._cancel.set()
+        self._cancel = threading.Event()
 
     def abandon(self) -> None:
         """Run the jobs that wait in another thread: the one that runs may never end.
@@ -65,7 +66,8 @@ class Worker:
         self._begin()
         with contextlib.suppress(queue.Empty):
             while True:
-                self._jobs.put(left.get_nowait())
+                work = left.get_nowait()
+                self._jobs.put(work and (*work[:2], self._cancel))
         left.put(_END)
 
     def stop(self, patience_s: float) -> bool:
@@ -76,11 +78,10 @@ class Worker:
         self._thread.join(patience_s)
         return not any(thread.is_alive() for thread in (self._thread, *self._abandoned))
 
-    def _run(self, jobs: Jobs, cancel: threading.Event) -> None:
+    def _run(self, jobs: Jobs) -> None:
         while (work := jobs.get()) is not _END:
-            job, done = work
-            cancel.clear()
-            if self._ended:  # set before ``clear`` above, which would lose the request
+            job, done, cancel = work
+            if self._ended:
                 return
             try:
                 result = job(cancel)
