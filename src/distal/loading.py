@@ -11,9 +11,10 @@ import importlib
 import linecache
 import os
 import sys
+import time
 import types
 from collections.abc import Iterable, Mapping, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
 from weakref import WeakKeyDictionary
@@ -40,12 +41,14 @@ class LoadedFrom:
         files: The file, and the modules in its folder that it imported.
         neighbours: The paths of these modules relative to the folder of the file, with slashes.
         digest: The result of ``digest_of`` for them.
+        began_ns: When loading began, as ``time.time_ns`` counts.
     """
 
     source: str
     files: tuple[Path, ...]
     neighbours: tuple[str, ...]
     digest: str
+    began_ns: int = field(default=0, compare=False)
 
 
 _loaded: WeakKeyDictionary[Any, LoadedFrom] = WeakKeyDictionary()
@@ -79,11 +82,11 @@ def load(path: str | Path, name: str | None = None) -> SceneCode:
     """
     if isinstance(path, str) and name is None:
         path, name = split_source(path)
-    file = file_of(str(path))
+    file, began_ns = file_of(str(path)), time.time_ns()
     text = _read(file)
     module, modules = _run(file, text)
     found = _pick(module, file, name)
-    _record(found, file, text, modules, path, name)
+    _record(found, file, text, modules, path, name, began_ns)
     return found
 
 
@@ -115,21 +118,28 @@ def load_text(
         LoadError: There is no such name, or the text fails when run.
         CompileError: The text is not valid Python.
     """
+    began_ns = time.time_ns()
     module, modules = _run(file, text, given)
     found = _pick(module, file, name)
-    _record(found, file, text, modules, file, name)
+    _record(found, file, text, modules, file, name, began_ns)
     return LoadedFile(found, tuple(_offered(module)[0]))
 
 
 def _record(
-    found: SceneCode, file: Path, text: str, modules: list[Path], path: str | Path, name: str | None
+    found: SceneCode,
+    file: Path,
+    text: str,
+    modules: list[Path],
+    path: str | Path,
+    name: str | None,
+    began_ns: int,
 ) -> None:
     given = str(path).replace(os.sep, "/")  # the same on every system
     source = given if name is None else f"{given}:{name}"
     folder = file.resolve().parent
     neighbours = tuple(path.relative_to(folder).as_posix() for path in modules)
     digest = _digest(text, folder, neighbours)
-    _loaded[found] = LoadedFrom(source, (file, *modules), neighbours, digest)
+    _loaded[found] = LoadedFrom(source, (file, *modules), neighbours, digest, began_ns)
 
 
 def split_source(text: str) -> tuple[str, str | None]:

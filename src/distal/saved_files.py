@@ -23,11 +23,15 @@ Signature: TypeAlias = "tuple[tuple[int, ...] | None, ...]"
 class FileWatcher:
     """Watches a set of files, and of folders whose entries may change."""
 
-    def __init__(self, files: Iterable[Path]) -> None:
+    def __init__(self, files: Iterable[Path], since_ns: int | None = None) -> None:
+        """Watch these files from now on, or from an earlier time on (``time.time_ns``)."""
         self._paths: tuple[Path, ...] = ()
         self._known: Signature = ()
         self._last: Signature = ()
         self.watch(files)
+        if since_ns is not None:
+            # What was saved since then has changed: what it was before is not known.
+            self._known = tuple(s if s is None or s[0] <= since_ns else () for s in self._known)
 
     def watch(self, files: Iterable[Path]) -> None:
         """Watch these files from now on.

@@ -4,6 +4,7 @@ import math
 import os
 import queue
 import threading
+import time
 from pathlib import Path
 from typing import Any
 
@@ -511,6 +512,20 @@ def test_the_worker_keeps_order_tells_errors_and_can_be_left() -> None:
     assert begun.wait(LONG_S)
     assert not worker.stop(0.1)
     stuck.set()
+
+
+def test_what_was_saved_while_the_window_opened_is_seen(tmp_path: Path) -> None:
+    file, other = tmp_path / "scene.py", tmp_path / "parts.py"
+    for path in (file, other):
+        path.write_text("1")
+    began = time.time_ns()
+    os.utime(other, ns=(began - 10**9, began - 10**9))
+    os.utime(file, ns=(began + 10**9, began + 10**9))
+    watch = FileWatcher([file, other], began)
+    assert watch.has_changed()
+    assert not watch.has_changed()
+    assert not FileWatcher([other], began).has_changed()
+    assert not FileWatcher([file]).has_changed()
 
 
 def test_a_job_that_waits_is_cancelled_too() -> None:

@@ -65,6 +65,8 @@ class SceneSource:
         files: The file and the modules that it imported.
         look: The name of a look to show it in; None for its own.
         caustics: Whether photons find the caustics of paths.
+        since_ns: When its loading began (``time.time_ns``): what was saved since then, while the
+            window opened, is loaded again.
     """
 
     path: str
@@ -72,6 +74,7 @@ class SceneSource:
     files: tuple[Path, ...]
     look: str | None = None
     caustics: bool = True
+    since_ns: int | None = None
 
     @property
     def title(self) -> str:
@@ -100,7 +103,7 @@ class Application:
         self._worker = Worker(loop.call_soon_threadsafe)
         self._scheduler = FrameScheduler(renderer, self._worker, self._finished, self._failed)
         self._overlay = Overlay()
-        self._watch = FileWatcher(source.files)
+        self._watch = FileWatcher(source.files, source.since_ns)
         self._has_begun = False
         self._loading: LoadWatch | None = None  # the file that is being loaded
         self._busy_since: float | None = None

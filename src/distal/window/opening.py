@@ -61,7 +61,8 @@ def view(
     """
     check_display()
     known = loaded_from(obj)
-    origin = SceneSource(path, name, known.files if known is not None else (), look, caustics)
+    files, since_ns = ((), None) if known is None else (known.files, known.began_ns)
+    origin = SceneSource(path, name, files, look, caustics, since_ns)
     shown = viewable(obj, options.params, options.time, look).in_mode(None, caustics=caustics)
     shown.in_mode(mode)  # raises if it has no such mode
     if first_view not in shown.views:
