@@ -37,6 +37,9 @@ SEED ?=
 SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers glslang-tools \
 	chromium xvfb xdotool imagemagick
 
+# A worker begins with a part of the files, and so compiles few programs that another compiles too.
+UNITS = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -rs
+
 .PHONY: picture test test-all lint style units system bench site sweep sweep-fields sweep-segments sweep-meshes parity mutate versions clean
 .NOTPARALLEL:
 
@@ -44,10 +47,11 @@ picture: $(VENV)/.setup-run
 	@$(BIN)/distal render example:raymarcher -o picture.png
 	@echo "The picture is $(CURDIR)/picture.png"
 
-# The type checker needs one processor for most of a minute: it runs beside the tests.
+# The type checker needs one processor for most of a minute: it runs beside the tests. These are not
+# another make, which `make -n` would run.
 test: system style web/node_modules/.ready
 	@log=$$(mktemp); $(BIN)/mypy >"$$log" 2>&1 & types=$$!; \
-	$(MAKE) --no-print-directory units; tests=$$?; \
+	$(UNITS); tests=$$?; \
 	wait $$types; types=$$?; echo "$(BIN)/mypy"; cat "$$log"; rm -f "$$log"; \
 	exit $$((tests | types))
 
@@ -64,9 +68,8 @@ style: $(VENV)/.setup-test
 	$(BIN)/lint-imports
 
 # Generated files are proved fresh by tests beside the rest, so that one run names every fault.
-# A worker begins with a part of the files, and so compiles few programs that another compiles too.
 units: $(VENV)/.setup-test web/node_modules/.ready
-	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -rs
+	$(UNITS)
 
 bench: $(VENV)/.setup-test
 	@for f in benchmarks/bench_*.py; do echo "== $$f"; $(BIN)/python "$$f" || exit 1; done

@@ -30,8 +30,11 @@ class FileWatcher:
         self._last: Signature = ()
         self.watch(files)
         if since_ns is not None:
-            # What was saved since then has changed: what it was before is not known.
-            self._known = tuple(s if s is None or s[0] <= since_ns else () for s in self._known)
+            self._expect_saved(since_ns)
+
+    def _expect_saved(self, since_ns: int) -> None:
+        """Forget the states of what was saved since then: what it was before is not known."""
+        self._known = tuple(s if s is None or s[0] <= since_ns else () for s in self._known)
 
     def watch(self, files: Iterable[Path]) -> None:
         """Watch these files from now on.
