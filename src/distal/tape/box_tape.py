@@ -14,9 +14,9 @@ from typing import Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.tape.gradient_rules import GradientRules, TapeStep
+from distal.tape.gradient_rules import GradientRules
 from distal.tape.interval_rules import Ends, interval_of
-from distal.tape.operations import OPERATIONS
+from distal.tape.steps import TapeStep, steps_of
 from distal.tape.tape import Tape
 
 Doubles: TypeAlias = NDArray[np.float64]
@@ -46,12 +46,7 @@ class BoxTape:
     @classmethod
     def of(cls, tape: Tape) -> BoxTape:
         """Return the tape with its constants of 64 bits."""
-        steps = []
-        for number, _, *operands, _ in tape.operations.tolist():
-            row = OPERATIONS[number]
-            constant = float(tape.numbers[operands[0]]) if row.name == "const" else 0.0
-            steps.append(TapeStep(row.name, tuple(operands[: row.operands]), constant))
-        return cls(steps)
+        return cls(steps_of(tape))
 
     def __len__(self) -> int:
         return len(self._steps)

@@ -17,7 +17,8 @@ from typing import Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.tape.operations import ELEMENTARY, NUMBER, OPERATIONS
+from distal.tape.operations import ELEMENTARY
+from distal.tape.steps import Steps, box_of, leaves_of, terms_of
 
 Doubles: TypeAlias = NDArray[np.float64]
 
@@ -184,18 +185,16 @@ class Derivatives:
     smaller than what the intervals allow.
     """
 
-    def __init__(
-        self, rows: Sequence[Sequence[int]], values: Doubles, size: int, axes: Mapping[int, int]
-    ) -> None:
+    def __init__(self, steps: Steps, values: Doubles, size: int, axes: Mapping[int, int]) -> None:
         """Take the values of a tape's operations.
 
         Args:
-            rows: The operations, as a tape has them.
+            steps: The operations.
             values: The intervals of their values, (operations, 2, cells).
             size: The number of axes.
             axes: The axes of the inputs, by operation.
         """
-        self._rows = rows
+        self._steps = steps
         self._values = values
         self._size = size
         self._axes = axes
@@ -221,16 +220,17 @@ class Derivatives:
 
     def _follow(self) -> None:
         with np.errstate(all="ignore"):
-            for index, (number, _, *operands, _) in enumerate(self._rows):
-                row = OPERATIONS[number]
-                found = self._derivative(row.name, operands[: row.operands], index)
+            for index, step in enumerate(self._steps):
+                found = self._derivative(step.name, step.operands, index)
                 interval, length = found
                 of_axes = np.sqrt((_largest(interval) ** 2).sum(axis=0))
                 self._intervals.append(interval)
                 # A bound that is not known is no bound.
                 self._lengths.append(np.fmin(np.where(np.isnan(length), np.inf, length), of_axes))
 
-    def _derivative(self, name: str, operands: list[int], index: int) -> tuple[Doubles, Doubles]:
+    def _derivative(
+        self, name: str, operands: Sequence[int], index: int
+    ) -> tuple[Doubles, Doubles]:
         """Return the intervals of an operation's derivatives, and a bound on their length."""
         shape = (2, self._size, self._values.shape[-1])
         if not operands:
@@ -246,7 +246,7 @@ class Derivatives:
             if name in STEPS:
                 return np.zeros(shape), np.zeros(shape[-1])
             if name in _INVERSE:
-                terms = self._terms(self._clamped(a), _INVERSE[name])
+                terms = terms_of(self._steps, self._clamped(a), _INVERSE[name])
                 if terms is not None:
                     return self._mean(terms)
             factor = factor_of(name, self._values[a], self._values[index])
@@ -310,7 +310,7 @@ class Derivatives:
         inverse = 0.5 * _inverse(self._values[index])
         plain = _times(inverse, self._intervals[a])
         by_rule = _largest(inverse) * self._lengths[a]
-        terms = self._terms(a, "square")
+        terms = terms_of(self._steps, a, "square")
         if terms is None:
             return plain, by_rule
         gram = self._row_sums(terms)
@@ -325,49 +325,17 @@ class Derivatives:
 
         Then the derivative of their sum is that of one of them.
         """
-        number, _, first, limit, *_ = self._rows[inner]
-        if self._rows[outer][0] != NUMBER["sqrt"] or number != NUMBER["min"]:
+        found = box_of(self._steps, outer, inner)
+        if found is None:
             return False
-        terms = self._terms(self._rows[outer][2], "square")
-        if terms is None or not self._is_zero(limit):
-            return False
-        largest = self._leaves(first)
-        for term in terms:
-            name, _, part, floor, *_ = self._rows[term]
-            is_positive_part = name == NUMBER["max"] and self._is_zero(floor)
-            if not self._is_zero(term) and not (is_positive_part and part in largest):
-                return False
-        return True
-
-    def _leaves(self, value: int) -> list[int]:
-        """Return what a value is the largest of."""
-        number, _, a, b, *_ = self._rows[value]
-        return [*self._leaves(a), *self._leaves(b)] if number == NUMBER["max"] else [value]
-
-    def _is_zero(self, value: int) -> bool:
-        """Return whether a value is the constant 0."""
-        return self._rows[value][0] == NUMBER["const"] and not self._values[value].any()
+        largest = leaves_of(self._steps, found[0])
+        return all(self._steps[part].operands[0] in largest for part in found[1])
 
     def _clamped(self, value: int) -> int:
         """Return what a value is the larger one of, beside a constant; else the value."""
-        number, _, a, b, *_ = self._rows[value]
-        is_clamped = number == NUMBER["max"] and self._rows[b][0] == NUMBER["const"]
-        return a if is_clamped else value
-
-    def _terms(self, value: int, name: str) -> list[int] | None:
-        """Return what a value is the sum of functions of; None if it is no such sum.
-
-        Args:
-            value: The value.
-            name: The function: "square", "exp" …
-        """
-        number, _, a, b, *_ = self._rows[value]
-        if number == NUMBER[name]:
-            return [a]
-        if number != NUMBER["add"]:
-            return None
-        left, right = self._terms(a, name), self._terms(b, name)
-        return None if left is None or right is None else left + right
+        step = self._steps[value]
+        is_clamped = step.name == "max" and self._steps[step.operands[1]].name == "const"
+        return step.operands[0] if is_clamped else value
 
     def _row_sums(self, terms: list[int]) -> Doubles:
         """Return the largest row sum of the Gram matrix of some gradients."""

@@ -13,7 +13,6 @@ Analysis" (1983), for functions without derivatives on sets of measure 0.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, Final, TypeAlias
 
 import numpy as np
@@ -21,6 +20,7 @@ import numpy as np
 from distal.ir.intrinsics import INTRINSICS
 from distal.tape.derivative_bounds import angle_factors, factor_of, power_factors
 from distal.tape.interval_rules import Ends, interval_of
+from distal.tape.steps import TapeStep, box_of, leaves_of, terms_of
 
 Derivative: TypeAlias = Ends | None
 Gradient: TypeAlias = tuple[Derivative, Derivative, Derivative]
@@ -32,21 +32,6 @@ _ROUNDING: Final = 1e-12
 # Near 1, the derivatives of arc sines lose their digits.
 _STEEP: Final = 1e3
 _LARGEST_ANGLE: Final = 1e6  # as for the values of sines
-
-
-@dataclass(frozen=True, slots=True)
-class TapeStep:
-    """An operation of a tape.
-
-    Attributes:
-        name: Its name.
-        operands: Its operands: positions of steps before it.
-        number: The value of a constant.
-    """
-
-    name: str
-    operands: tuple[int, ...]
-    number: float = 0.0
 
 
 class GradientRules:
@@ -113,7 +98,7 @@ class GradientRules:
 
     def _root(self, step: TapeStep, result: Ends, inner: Gradient) -> Gradient:
         """Return the gradient of a root; a length has a bounded one where it is 0."""
-        terms = self._squares(step.operands[0])
+        terms = terms_of(self._steps, step.operands[0], "square")
         if terms is None:
             factor = interval_of("div", _number(0.5), result)
             return _scaled(factor, inner)
@@ -126,32 +111,17 @@ class GradientRules:
             total = _each("add", total, _scaled(share, self._known[term]))
         return total
 
-    def _squares(self, i: int) -> list[int] | None:
-        """Return what a step is the sum of squares of; None if it is no such sum."""
-        step = self._steps[i]
-        if step.name == "square":
-            return [step.operands[0]]
-        if step.name != "add":
-            return None
-        first, second = (self._squares(operand) for operand in step.operands)
-        return None if first is None or second is None else first + second
-
     def _of_a_box(self, step: TapeStep) -> Gradient | None:
         """Return the gradient of ``length(max(t, 0)) + min(max(t), 0)``; None for another sum.
 
         One of both terms is 0 everywhere, so their derivatives do not add up.
         """
         for outer, inner in (step.operands, step.operands[::-1]):
-            root, least = self._steps[outer], self._steps[inner]
-            if root.name != "sqrt" or least.name != "min" or not self._is_zero(least.operands[1]):
-                continue
-            squares = self._squares(root.operands[0])
-            if squares is None:
-                continue
-            squares = [term for term in squares if not self._is_zero(term)]
-            if all(self._is_positive_part(term) for term in squares):
+            found = box_of(self._steps, outer, inner)
+            if found is not None:
+                largest, squares = found
                 parts = [self._steps[term].operands[0] for term in squares]
-                return self._outside_or_inside(outer, least.operands[0], squares, parts)
+                return self._outside_or_inside(outer, largest, squares, parts)
         return None
 
     def _outside_or_inside(
@@ -165,7 +135,7 @@ class GradientRules:
             squares: The positive ones of the parts.
             parts: The parts.
         """
-        whole, leaves = self._values[largest], self._leaves(largest)
+        whole, leaves = self._values[largest], leaves_of(self._steps, largest)
         # Where a part is positive, the largest is; so outside, the other term is 0.
         if not all(p in leaves or (self._values[p][1] <= whole[0]).all() for p in parts):
             return None
@@ -181,20 +151,6 @@ class GradientRules:
             shares.append((np.where(alone, 1.0, low), np.where(own, high, 0.0)))
         outside, inside = self._sum(shares, parts), self._known[largest]
         return _either(whole[0] > 0.0, whole[1] <= 0.0, outside, inside)
-
-    def _leaves(self, i: int) -> list[int]:
-        """Return what a step is the largest of."""
-        step = self._steps[i]
-        if step.name != "max":
-            return [i]
-        return [leaf for operand in step.operands for leaf in self._leaves(operand)]
-
-    def _is_zero(self, i: int) -> bool:
-        return self._steps[i].name == "const" and self._steps[i].number == 0.0
-
-    def _is_positive_part(self, i: int) -> bool:
-        step = self._steps[i]
-        return step.name == "max" and self._is_zero(step.operands[1])
 
 
 def _number(value: float) -> Ends:

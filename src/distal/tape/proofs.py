@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from distal.tape.derivative_bounds import JUMPS, NO_RULE, Derivatives, Doubles
 from distal.tape.operations import OPERATIONS
 from distal.tape.runtime import TapeProgram
+from distal.tape.steps import steps_of
 from distal.tape.tape import Tape, TapeError
 
 _CELLS: Final = {2: 48, 3: 14}  # along each side of the region, at first
@@ -145,10 +146,9 @@ class _ProvedCells:
     """
 
     def __init__(self, program: TapeProgram, size: int) -> None:
-        rows = program.tape.operations.tolist()
-        names = [OPERATIONS[row[0]].name for row in rows]
-        self._program = program
-        self._rows = rows, {i: _AXES[n] for i, n in enumerate(names) if _AXES.get(n, size) < size}
+        self._program, self._steps = program, steps_of(program.tape)
+        names = enumerate(step.name for step in self._steps)
+        self._axes = {i: _AXES[name] for i, name in names if _AXES.get(name, size) < size}
         self._size = size
         self.ends: Doubles = np.empty((2, 0, size))
         self.slopes: Doubles = np.empty(0)
@@ -166,8 +166,7 @@ class _ProvedCells:
             # If an end is not finite, nothing is known of the value.
             known: NDArray[np.bool_] = np.logical_and.reduce(np.isfinite(values), axis=1)
             values = np.where(known[:, None], values, np.nan)
-            rows, axes = self._rows
-            below, above = Derivatives(rows, values, self._size, axes).bounds()
+            below, above = Derivatives(self._steps, values, self._size, self._axes).bounds()
             least.append(below)
             slopes.append(above)
             lowest.append(np.where(known[-1], values[-1, 0], -np.inf))

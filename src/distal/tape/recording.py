@@ -1,7 +1,7 @@
 """Record the operations of a function, and bound its derivatives by its inputs.
 
 Input: a module, and values that may be anywhere between two ends: arguments, parameters, the time.
-Output: rows as those of a tape, whose values and derivatives have intervals in many cells at once.
+Output: steps as those of a tape, whose values and derivatives have intervals in many cells at once.
 A tape has the coordinates of a point as inputs and one result; here every argument is an input, and
 there are as many results as the function's has floats.
 """
@@ -19,59 +19,59 @@ from distal.ir.types import Type, component_count
 from distal.tape.derivative_bounds import JUMPS, Derivatives
 from distal.tape.from_ir import PRECISION, followed
 from distal.tape.interval_rules import Ends, interval_of
-from distal.tape.operations import NUMBER, OPERATIONS
 from distal.tape.scalars import Scalar, Scalars, Varying
+from distal.tape.steps import TapeStep
 from distal.tape.tape import TapeError
 
 Doubles: TypeAlias = NDArray[np.float64]
-_Row: TypeAlias = tuple[int, int, int, int]
 
-_CONST: Final = NUMBER["const"]
-_MUL: Final = NUMBER["mul"]
+# A step that is not computed: its ends are given.
+_INPUT: Final = TapeStep("input", ())
 
 
 class _RecordedScalars(Scalars):
-    """Collects rows; equal ones are one value."""
+    """Collects steps; equal ones are one value.
+
+    Attributes:
+        steps: The steps.
+        known: The ends of inputs that are known from the beginning, by step.
+    """
 
     def __init__(self) -> None:
         super().__init__(PRECISION)
-        self.rows: list[_Row] = []
-        self.numbers: list[Ends | None] = []
-        self._known: dict[Any, int] = {}
+        self.steps: list[TapeStep] = []
+        self.known: dict[int, Ends] = {}
+        self._places: dict[Any, int] = {}
 
     def value(self, scalar: Scalar) -> int:
-        """Return the row of a scalar."""
+        """Return the step of a scalar."""
         if isinstance(scalar, Varying):
             return scalar.value
         number = float(scalar)
-        return self._added(("number", repr(number)), (_CONST, 0, 0, 0), _single(number))
+        # Zeros of both signs are equal as keys, and NaN is not equal to itself: so text.
+        return self._added(repr(number), TapeStep("const", (), number))
 
     def operation(self, name: str, *operands: Scalar) -> Varying:
         """Add an operation."""
-        places = [self.value(operand) for operand in operands]
-        number = NUMBER[name]
-        if number == _MUL and places[0] == places[1]:
-            number, places = NUMBER["square"], places[:1]
-        a, b, c = (*places, 0, 0, 0)[:3]
-        row = number, a, b, c
-        return Varying(self._added(row, row, None))
+        places = tuple(self.value(operand) for operand in operands)
+        if name == "mul" and places[0] == places[1]:
+            name, places = "square", places[:1]
+        step = TapeStep(name, places)
+        return Varying(self._added(step, step))
 
     def input(self, ends: Ends | None) -> Varying:
         """Add a value that is not computed: one between two ends, or one given later."""
-        return Varying(self._added(object(), (_CONST, 0, 0, 0), ends))
+        at = self._added(object(), _INPUT)
+        if ends is not None:
+            self.known[at] = ends
+        return Varying(at)
 
-    def _added(self, key: Any, row: _Row, number: Ends | None) -> int:
-        at = self._known.get(key)
+    def _added(self, key: Any, step: TapeStep) -> int:
+        at = self._places.get(key)
         if at is None:
-            at = self._known[key] = len(self.rows)
-            self.rows.append(row)
-            self.numbers.append(number)
+            at = self._places[key] = len(self.steps)
+            self.steps.append(step)
         return at
-
-
-def _single(number: float) -> Ends:
-    array = np.asarray(number, np.float64)
-    return array, array
 
 
 class RecordedFunction:
@@ -84,8 +84,8 @@ class RecordedFunction:
         resources: Buffers by name.
 
     Attributes:
-        inputs: The rows of the components of each parameter.
-        results: The rows of the floats of the result.
+        inputs: The steps of the components of each parameter.
+        results: The steps of the floats of the result.
 
     Raises:
         TapeError: The function has something that cannot be recorded.
@@ -104,28 +104,28 @@ class RecordedFunction:
         found = followed(module, args, known, resources, scalars)
         self.results = [scalars.value(scalar) for scalar in found]
         self.inputs = [[scalar.value for scalar in arg] for arg in args]
-        self._rows, self._numbers = scalars.rows, scalars.numbers
+        self._steps, self._known = scalars.steps, scalars.known
 
     def values(self, inputs: Sequence[Sequence[Ends]]) -> Doubles:
-        """Return the ends of each row in each cell, (rows, 2, cells); NaN where nothing is known.
+        """Return the ends of each step in each cell, (steps, 2, cells); NaN where nothing is known.
 
         Args:
             inputs: The ends of the components of each parameter, (cells,) each.
         """
-        given = {
-            row: ends
-            for rows, parts in zip(self.inputs, inputs, strict=True)
-            for row, ends in zip(rows, parts, strict=True)
-        }
+        given = dict(self._known)
+        for places, parts in zip(self.inputs, inputs, strict=True):
+            given |= zip(places, parts, strict=True)
         count = max((low.size for low, _ in given.values()), default=1)
         held: list[Ends] = []
         with np.errstate(all="ignore"):
-            for i, (number, *operands) in enumerate(self._rows):
-                own = given.get(i, self._numbers[i])
-                row = OPERATIONS[number]
-                if own is None:
-                    own = interval_of(row.name, *(held[k] for k in operands[: row.operands]))
-                held.append(own)
+            for i, step in enumerate(self._steps):
+                if step.name == "const":
+                    number = np.asarray(step.number)
+                    held.append((number, number))
+                else:
+                    own = given.get(i)
+                    operands = (held[k] for k in step.operands)
+                    held.append(interval_of(step.name, *operands) if own is None else own)
         ends = [[np.broadcast_to(end, (count,)) for end in pair] for pair in held]
         return np.array(ends, np.float64)
 
@@ -135,18 +135,17 @@ class RecordedFunction:
         Raises:
             TapeError: It may jump.
         """
-        names = {OPERATIONS[number].name for number, *_ in self._rows}
+        names = {step.name for step in self._steps}
         if jumps := sorted(names & {*JUMPS}):
             raise TapeError(f"it may jump: it uses {jumps[0]}")
 
     def reads(self, parameter: int) -> list[int]:
         """Return which components of a parameter the results depend on."""
         needed = set(self.results)
-        for i in range(len(self._rows) - 1, -1, -1):
+        for i in range(len(self._steps) - 1, -1, -1):
             if i in needed:
-                number, *operands = self._rows[i]
-                needed.update(operands[: OPERATIONS[number].operands])
-        return [axis for axis, row in enumerate(self.inputs[parameter]) if row in needed]
+                needed.update(self._steps[i].operands)
+        return [axis for axis, at in enumerate(self.inputs[parameter]) if at in needed]
 
     def derivatives(self, values: Doubles, parameter: int) -> list[tuple[Doubles, Doubles]]:
         """Return the derivatives of each result by the components of a parameter.
@@ -159,6 +158,5 @@ class RecordedFunction:
             values: Those that ``values`` returned.
             parameter: The position of the parameter.
         """
-        axes = {row: axis for axis, row in enumerate(self.inputs[parameter])}
-        found = Derivatives([(n, 0, *rest) for n, *rest in self._rows], values, len(axes), axes)
-        return found.of(self.results)
+        axes = {at: axis for axis, at in enumerate(self.inputs[parameter])}
+        return Derivatives(self._steps, values, len(axes), axes).of(self.results)
