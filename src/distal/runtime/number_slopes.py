@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import product
 from typing import Any, Final, TypeAlias
 
 import numpy as np
@@ -25,6 +24,7 @@ from distal.ir.nodes import Origin
 from distal.runtime.function_tapes import buffers_of
 from distal.runtime.lowered import Lowered
 from distal.runtime.sweeps import ends_of_uniform
+from distal.tape.cells import grid_of, halves_of
 from distal.tape.from_ir import LAST_PASS, PRECISION
 from distal.tape.interval_rules import Ends
 from distal.tape.recording import RecordedFunction
@@ -113,7 +113,8 @@ class _NumberCells:
             self._shape.refuse_jumps()
         # A point moves no inner shape's value by more than its slope, wherever it is.
         reads = set(self._numbers.reads(0))
-        self._cut = sorted(reads if what.inner else reads | {*self._shape.reads(0)})
+        cut = reads if what.inner else reads | {*self._shape.reads(0)}
+        self._cut = sorted(cut, reverse=True)  # halves along the last axis are neighbours
         self._counts = list(map(len, inputs[1 : len(inputs) - len(what.unknown) - len(what.inner)]))
         self.ends: Doubles = np.empty((2, 0, size))
         self.slopes: Doubles = np.empty(0)
@@ -127,9 +128,7 @@ class _NumberCells:
             else np.array([a, b])
             for axis, (a, b) in enumerate(zip(low, high, strict=True))
         ]
-        starts = np.meshgrid(*(side[:-1] for side in sides), indexing="ij")
-        ends = np.meshgrid(*(side[1:] for side in sides), indexing="ij")
-        self.add(np.stack([np.stack(c, axis=-1).reshape(-1, self._size) for c in (starts, ends)]))
+        self.add(grid_of(sides))
 
     def add(self, cells: Doubles) -> None:
         """Look at more cells."""
@@ -146,18 +145,11 @@ class _NumberCells:
         chosen = order[self.slopes[order] > _ENOUGH * middle]
         if len(chosen) == 0 or not self._cut:
             return False
-        first, last = self.ends[:, chosen]
-        between = (first + last) / 2.0
-        parts = []
-        for halves in product((False, True), repeat=len(self._cut)):
-            begin, end = first.copy(), last.copy()
-            for axis, upper in zip(self._cut, halves, strict=True):
-                (begin if upper else end)[:, axis] = between[:, axis]
-            parts.append(np.stack([begin, end]))
+        halves = halves_of(self.ends[:, chosen], self._cut)
         kept = np.ones(len(self.slopes), bool)
         kept[chosen] = False
         self.ends, self.slopes = self.ends[:, kept], self.slopes[kept]
-        self.add(np.concatenate(parts, axis=1))
+        self.add(halves)
         return True
 
     def _added(self, cells: Doubles) -> Doubles:

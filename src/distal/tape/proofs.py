@@ -18,6 +18,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.tape.cells import grid_of, halves_of
 from distal.tape.derivative_bounds import JUMPS, NO_RULE, Derivatives, Doubles
 from distal.tape.operations import OPERATIONS
 from distal.tape.runtime import TapeProgram
@@ -128,11 +129,8 @@ def _check(tape: Tape) -> None:
 
 def _grid(low: Any, high: Any, count: int) -> Doubles:
     """Return the cells of a region, (2, n, size): ``count`` along each side."""
-    size = len(low)
     sides = [np.linspace(a, b, count + 1) for a, b in zip(low, high, strict=True)]
-    starts = np.meshgrid(*(side[:-1] for side in sides), indexing="ij")
-    ends = np.meshgrid(*(side[1:] for side in sides), indexing="ij")
-    return np.stack([np.stack(c, axis=-1).reshape(-1, size) for c in (starts, ends)])
+    return grid_of(sides)
 
 
 class _ProvedCells:
@@ -203,17 +201,12 @@ class _ProvedCells:
 
     def _halve(self, chosen: NDArray[np.intp]) -> None:
         """Replace cells by their halves along each axis."""
-        first, last = self.ends[:, chosen]
-        middle = (first + last) / 2.0
-        parts = []
-        for number in range(2**self._size):
-            upper = np.array([number >> axis & 1 for axis in range(self._size)], bool)
-            parts.append(np.stack([np.where(upper, middle, first), np.where(upper, last, middle)]))
+        halves = halves_of(self.ends[:, chosen], range(self._size))
         kept = np.ones(len(self.slopes), bool)
         kept[chosen] = False
         self.ends, self.slopes = self.ends[:, kept], self.slopes[kept]
         self.least, self.lowest = self.least[kept], self.lowest[kept]
-        self.add(np.concatenate(parts, axis=1))
+        self.add(halves)
 
     def _box(self) -> tuple[Doubles | None, Doubles | None]:
         inside = self.lowest <= 0.0
