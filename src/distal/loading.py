@@ -83,11 +83,7 @@ def load(path: str | Path, name: str | None = None) -> SceneCode:
     if isinstance(path, str) and name is None:
         path, name = split_source(path)
     file, began_ns = file_of(str(path)), time.time_ns()
-    text = _read(file)
-    module, modules = _run(file, text)
-    found = _pick(module, file, name)
-    _record(found, file, text, modules, path, name, began_ns)
-    return found
+    return _made(file, _read(file), path, name, began_ns)[0]
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,28 +114,37 @@ def load_text(
         LoadError: There is no such name, or the text fails when run.
         CompileError: The text is not valid Python.
     """
-    began_ns = time.time_ns()
-    module, modules = _run(file, text, given)
-    found = _pick(module, file, name)
-    _record(found, file, text, modules, file, name, began_ns)
+    found, module = _made(file, text, file, name, time.time_ns(), given)
     return LoadedFile(found, tuple(_offered(module)[0]))
 
 
-def _record(
-    found: SceneCode,
+def _made(
     file: Path,
     text: str,
-    modules: list[Path],
     path: str | Path,
     name: str | None,
     began_ns: int,
-) -> None:
-    given = str(path).replace(os.sep, "/")  # the same on every system
-    source = given if name is None else f"{given}:{name}"
+    given: Mapping[str, Any] | None = None,
+) -> tuple[SceneCode, types.ModuleType]:
+    """Run a file, and return the object that was asked for, and the file's module.
+
+    Args:
+        file: The file.
+        text: Its text.
+        path: As the caller wrote it.
+        name: As for ``load``.
+        began_ns: When loading began.
+        given: As for ``load_text``.
+    """
+    module, modules = _run(file, text, given)
+    found = _pick(module, file, name)
+    written = str(path).replace(os.sep, "/")  # the same on every system
+    source = written if name is None else f"{written}:{name}"
     folder = file.resolve().parent
     neighbours = tuple(path.relative_to(folder).as_posix() for path in modules)
     digest = _digest(text, folder, neighbours)
     _loaded[found] = LoadedFrom(source, (file, *modules), neighbours, digest, began_ns)
+    return found, module
 
 
 def split_source(text: str) -> tuple[str, str | None]:
