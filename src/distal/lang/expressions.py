@@ -17,6 +17,7 @@ from distal.ir.intrinsics import python_functions
 from distal.ir.nodes import FRAME_TIME, Expr, Uniform
 from distal.ir.printer import print_expression
 from distal.ir.types import FLOAT, Type, Vector
+from distal.ir.walk import nodes_in
 from distal.lang.immutable import Immutable
 from distal.lang.runtime_access import executor, python_expressions
 
@@ -265,6 +266,12 @@ class Expression(Symbolic):
 def uniform_of(parameter: Parameter) -> Expression:
     """Return the value of a parameter as an expression."""
     return Expression(Uniform(parameter.name, parameter.type), (parameter,))
+
+
+def depends_on_time(expression: Expression) -> bool:
+    """Return whether the value of an expression differs from time to time."""
+    nodes = nodes_in(expression.node)
+    return any(isinstance(node, Uniform) and node.name == FRAME_TIME for node in nodes)
 
 
 def is_symbolic(value: object) -> bool:

@@ -15,10 +15,8 @@ from distal.fields.guarantees import ENDLESS, Guarantee, Primitive
 from distal.fields.lift import extrude
 from distal.fields.place import mirrors
 from distal.fields.place import solid as placing
-from distal.ir.nodes import FRAME_TIME, Uniform
-from distal.ir.walk import nodes_in
 from distal.lang.composed import Composed
-from distal.lang.expressions import Expression
+from distal.lang.expressions import Expression, depends_on_time
 from distal.lang.runtime_access import executor
 from distal.packages import PackageError, imported
 from distal.scene.lowering.derived import DistanceOf
@@ -124,12 +122,9 @@ def _moves(root: Node) -> bool:
     for node in root.walk():
         if any(isinstance(v, VaryingNumber) and v.moves for v in node.constants.values()):
             return True
-        for number in node.numbers.values():
-            value = number.value
-            if isinstance(value, Expression) and any(
-                isinstance(e, Uniform) and e.name == FRAME_TIME for e in nodes_in(value.node)
-            ):
-                return True
+        values = (number.value for number in node.numbers.values())
+        if any(isinstance(value, Expression) and depends_on_time(value) for value in values):
+            return True
     return False
 
 

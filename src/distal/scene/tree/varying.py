@@ -16,10 +16,10 @@ from distal.fields.place.within import WITHIN, WITHIN_FLAT
 from distal.frontend import Assembly
 from distal.ir.build import integer
 from distal.ir.build import number as constant_number
-from distal.ir.nodes import FRAME_TIME, Binary, Builtin, Compose, Const, Expr, Uniform
+from distal.ir.nodes import Binary, Builtin, Compose, Const, Expr
 from distal.ir.types import FLOAT, VEC2, VEC3
-from distal.ir.walk import children, nodes_in, rebuild, rewrite
-from distal.lang.expressions import Expression
+from distal.ir.walk import children, rebuild, rewrite
+from distal.lang.expressions import Expression, depends_on_time
 from distal.lang.places import CELL, POINT, at_place, places_in
 from distal.lang.resources import Buffer, TextureValue
 from distal.render.patterns import cell_number
@@ -66,10 +66,7 @@ class VaryingNumber:
     @property
     def moves(self) -> bool:
         """Whether it depends on parameters or time, too."""
-        found = self.expression
-        return bool(found.parameters) or any(
-            isinstance(e, Uniform) and e.name == FRAME_TIME for e in nodes_in(found.node)
-        )
+        return bool(self.expression.parameters) or depends_on_time(self.expression)
 
     def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
         """Emit the number at a place; ``site`` gives the cell and the point."""
