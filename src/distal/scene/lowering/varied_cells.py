@@ -9,7 +9,8 @@ limits. The same intervals check the limits of the numbers.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
@@ -83,28 +84,38 @@ def with_bounds_of_cells(
         )
     around = Node(rule, rule.lies_flat(child.flat), (child,), numbers, constants, place)
     function = BoundsOfVaried(child, varied)
-    bounds, of_numbers = function.swept(np, _cells(around, np))
-    refuse_beyond(varied, of_numbers, f"in the cells of {rule.name}")
-    found = _bounds(bounds, flat=child.flat)
+    swept = function.swept(np, _cells(around, np))
+    refuse_beyond(varied, swept.numbers, f"in the cells of {rule.name}")
+    found = _bounds(swept.bounds, flat=child.flat)
     return Node(IN_CELLS, child.flat, (child,), found, place=child.place)
 
 
 def _cells(around: Node, np: Any) -> Any:
     """Return the cells of a repetition: one row each, or the two ends of all as one row."""
-    low, high = [-math.inf] * 3, [math.inf] * 3
+    low: Sequence[float] = [-math.inf] * 3
+    high: Sequence[float] = [math.inf] * 3
     rule = around.rule
     assert isinstance(rule, Operator)
     if rule.cells is not None:
         ends = executor().sweep(_CellsOf(around), ())
         low = [float(np.min(end)) for end, _ in ends[:3]]
         high = [float(np.max(end)) for _, end in ends[3:]]
-    low = [a if abs(a) < ENDLESS else -math.inf for a in low]
-    high = [b if abs(b) < ENDLESS else math.inf for b in high]
+    low, high = _open_ended(low), _open_ended(high, math.inf)
     sides = [b - a + 1.0 for a, b in zip(low, high, strict=True)]
     if math.prod(sides) <= _MOST_CELLS:
         ranges = [range(round(a), round(b) + 1) for a, b in zip(low, high, strict=True)]
         return np.array(list(product(*ranges)), np.float64)
     return np.array([low]), np.array([high])
+
+
+def _open_ended(ends: Iterable[float], without: float = -math.inf) -> tuple[float, ...]:
+    """Return ends, infinite (``without``) where there is none."""
+    return tuple(end if abs(end) < ENDLESS else without for end in ends)
+
+
+def any_cell(np: Any) -> Any:
+    """Return the two ends of all cells that there are."""
+    return np.full((1, 3), -math.inf), np.full((1, 3), math.inf)
 
 
 def refuse_beyond(
@@ -170,6 +181,37 @@ def _bounded(end: float) -> float:
     return end if abs(end) < UNBOUNDED else math.copysign(UNBOUNDED, end)
 
 
+@dataclass(frozen=True, slots=True)
+class SweptBounds:
+    """What the bounds of a shape and its numbers are between.
+
+    Attributes:
+        bounds: The ends of the components of the packed bounds.
+        numbers: The ends of the components of the numbers.
+        size: The number of axes.
+    """
+
+    bounds: Spans
+    numbers: Spans
+    size: int
+
+    @property
+    def slope(self) -> float:
+        """The largest slope."""
+        return self.bounds[0][1]
+
+    @property
+    def low(self) -> tuple[float, ...]:
+        """The lower corner of a box around all boxes; -inf where it has no end."""
+        return _open_ended(a for a, _ in self.bounds[2 : 2 + self.size])
+
+    @property
+    def high(self) -> tuple[float, ...]:
+        """The upper corner; inf where it has no end."""
+        corner = self.bounds[2 + self.size : 2 + 2 * self.size]
+        return _open_ended((b for _, b in corner), math.inf)
+
+
 class BoundsOfVaried(Composed):
     """The bounds of a shape and its numbers that differ, as a function of the cell and the point.
 
@@ -192,8 +234,8 @@ class BoundsOfVaried(Composed):
         numbers = (each.number.number.type for each in varied)
         self.result: Type = tuple_type((*packed_types(node.flat), *numbers))
 
-    def swept(self, np: Any, *columns: Any) -> tuple[Spans, Spans]:
-        """Return the ends of the bounds, and those of the numbers.
+    def swept(self, np: Any, *columns: Any) -> SweptBounds:
+        """Return what the bounds and the numbers are between.
 
         Args:
             np: NumPy.
@@ -203,7 +245,7 @@ class BoundsOfVaried(Composed):
         ends = executor().sweep(self, (*columns, *random))
         spans = [(float(np.min(low)), float(np.max(high))) for low, high in ends]
         count = sum(map(component_count, packed_types(self._node.flat)))
-        return spans[:count], spans[count:]
+        return SweptBounds(spans[:count], spans[count:], 2 if self._node.flat else 3)
 
     def compose(self, assembly: Assembly) -> str:
         """Add the function to the program, and return its name."""

@@ -27,7 +27,12 @@ from distal.lang.places import CELL, POINT, random_numbers_in
 from distal.lang.runtime_access import executor
 from distal.packages import PackageError, imported
 from distal.scene.lowering.bounds import BoundsComposer
-from distal.scene.lowering.varied_cells import BoundsOfVaried, refuse_beyond
+from distal.scene.lowering.varied_cells import (
+    BoundsOfVaried,
+    SweptBounds,
+    any_cell,
+    refuse_beyond,
+)
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
@@ -88,23 +93,22 @@ def _box(node: Node, varied: Sequence[VariedNumber], np: Any) -> tuple[Corner, C
     """Return the box of a shape, and a bound on the slope within it with constant numbers."""
     size = 2 if node.flat else 3
     function = BoundsOfVaried(node, varied, in_place=True)
-    cells = np.full((1, 3), -math.inf), np.full((1, 3), math.inf)
+
+    def swept(low: Corner, high: Corner) -> SweptBounds:
+        return function.swept(np, any_cell(np), (np.array([low]), np.array([high])))
+
     low, high = (-math.inf,) * size, (math.inf,) * size
     for _ in range(_ROUNDS):
-        bounds, _ = function.swept(np, cells, (np.array([low]), np.array([high])))
-        before = low, high
-        low = tuple(a if abs(a) < ENDLESS else -math.inf for a, _ in bounds[2 : 2 + size])
-        high = tuple(
-            b if abs(b) < ENDLESS else math.inf for _, b in bounds[2 + size : 2 + 2 * size]
-        )
-        if (low, high) == before:
+        found = swept(low, high)
+        if (found.low, found.high) == (low, high):
             break
+        low, high = found.low, found.high
     low, high = _widened(low, high)
-    bounds, of_numbers = function.swept(np, cells, (np.array([low]), np.array([high])))
+    found = swept(low, high)
     in_cells = any(CELL in each.number.uses for each in varied)
     where = "where the shape may be, in any cell" if in_cells else "where the shape may be"
-    refuse_beyond(varied, of_numbers, where, "a wave: sin of distal.lang")
-    return low, high, bounds[0][1]
+    refuse_beyond(varied, found.numbers, where, "a wave: sin of distal.lang")
+    return low, high, found.slope
 
 
 def _widened(low: Corner, high: Corner) -> tuple[Corner, Corner]:
@@ -122,14 +126,10 @@ def _added_slope(
     node: Node, own: Sequence[VaryingNumber], low: Corner, high: Corner, np: Any
 ) -> float:
     """Return by how much the slope grows because numbers change from place to place."""
-    inner = []
-    for child in node.children:
-        of_child = varied_in(child)
-        nowhere = np.full((1, 3), -math.inf), np.full((1, 3), math.inf)
-        found, _ = BoundsOfVaried(child, of_child).swept(np, nowhere)
-        size = 2 if child.flat else 3
-        lows, highs = found[2 : 2 + size], found[2 + size : 2 + 2 * size]
-        inner.append((found[0][1], tuple(a for a, _ in lows), tuple(b for _, b in highs)))
+    children = (
+        BoundsOfVaried(child, varied_in(child)).swept(np, any_cell(np)) for child in node.children
+    )
+    inner = [(child.slope, child.low, child.high) for child in children]
     numbers, shape = NumbersInPlace(node, own), ShapeOfNumbers(node, own)
     known = node.rule.changes if isinstance(node.rule, Operator) else {}
     changes = [known.get(number.name) for number in own]
