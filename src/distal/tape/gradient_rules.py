@@ -201,8 +201,8 @@ def _share(part: Ends, whole: Ends) -> Ends:
     near = ~(whole[0] > 0.0)
     low = np.where(near, np.where(part[0] >= 0.0, 0.0, -1.0), np.maximum(low, -1.0))
     high = np.where(near, np.where(part[1] <= 0.0, 0.0, 1.0), np.minimum(high, 1.0))
-    doubt = 0.0 * (part[0] + part[1] + whole[1])
-    return low + doubt, high + doubt
+    nan_mask = 0.0 * (part[0] + part[1] + whole[1])
+    return low + nan_mask, high + nan_mask
 
 
 def _of_function(

@@ -9,7 +9,7 @@ any point of the lane's box:
   the rounded result of the ends bounds all rounded results. Elementary functions are widened by
   their known errors.
 - If an end is infinite or NaN, nothing is known; the value may be NaN. Every rule whose result
-  could be finite nevertheless adds a *doubt*, which is 0, or NaN if nothing is known of an operand.
+  could be finite nevertheless adds a *NaN mask*: 0, or NaN if nothing is known of an operand.
 
 Source: T. Hickey, Q. Ju, M. H. van Emden, "Interval Arithmetic: from Principles to Implementation",
 Journal of the ACM 48 (2001).
@@ -61,7 +61,7 @@ class _Intervals(TapeLoop):
         self.store(ends[0], address, offset)
         self.store(ends[1], address, _UPPER + offset)
 
-    def doubt(self, *ends: Value) -> Value:
+    def nan_mask(self, *ends: Value) -> Value:
         """Return 0 where all ends are finite, else NaN (or NaN where their sum overflows)."""
         total = ends[0] - ends[1]
         for low, high in zip(ends[2::2], ends[3::2], strict=True):
@@ -69,7 +69,7 @@ class _Intervals(TapeLoop):
         return total * 0.0
 
     def corners(self, values: list[Value]) -> tuple[Value, Value]:
-        """Return the least and the most of four values; NaN is only kept by ``doubt``."""
+        """Return the least and the most of four values; NaN is only kept by ``nan_mask``."""
         p, q, r, s = values
         low = self.least(self.least(p, q), self.least(r, s))
         return low, self.most(self.most(p, q), self.most(r, s))
@@ -120,16 +120,16 @@ class _Intervals(TapeLoop):
         first, second = [], []
         for offset in self.offsets:
             (al, ah), (bl, bh) = self.ends(a, offset), self.ends(b, offset)
-            doubt = self.doubt(al, ah, bl, bh)
+            nan_mask = self.nan_mask(al, ah, bl, bh)
             if name == "min":
                 low, high = self.least(al, bl), self.least(ah, bh)
-                first.append((ah + doubt) < bl)
-                second.append((bh + doubt) < al)
+                first.append((ah + nan_mask) < bl)
+                second.append((bh + nan_mask) < al)
             else:
                 low, high = self.most(al, bl), self.most(ah, bh)
-                first.append((bh + doubt) < al)
-                second.append((ah + doubt) < bl)
-            self.keep((low, high + doubt), target, offset)
+                first.append((bh + nan_mask) < al)
+                second.append((ah + nan_mask) < bl)
+            self.keep((low, high + nan_mask), target, offset)
         self.record([first, second], index)
 
     def _select(self, _: str, reader: Reader, target: Value, index: Value) -> None:
@@ -139,8 +139,8 @@ class _Intervals(TapeLoop):
             low, high = self.ends(a, offset)
             (bl, bh), (cl, ch) = self.ends(b, offset), self.ends(c, offset)
             yes, no = low > 0.5, high < 0.5
-            doubt = self.doubt(bl, bh, cl, ch)
-            either = self.least(bl, cl), self.most(bh, ch) + doubt
+            nan_mask = self.nan_mask(bl, bh, cl, ch)
+            either = self.least(bl, cl), self.most(bh, ch) + nan_mask
             pairs = zip((bl, bh), (cl, ch), either, strict=True)
             chosen = [
                 self.code.select(yes, y, self.code.select(no, n, both)) for y, n, both in pairs
@@ -163,21 +163,21 @@ class _Intervals(TapeLoop):
                 least, most = self.corners(products)
                 # A product is infinite or NaN if a factor is.
                 p, q, r, s = products
-                return least, most + self.doubt(p, q, r, s)
+                return least, most + self.nan_mask(p, q, r, s)
             case "div":
                 return self._quotient(ends)
             case "neg":
                 return -high, -low
             case "abs":
                 least = self.positive(self.most(low, -high))
-                return least, self.most(-low, high) + self.doubt(low, high)
+                return least, self.most(-low, high) + self.nan_mask(low, high)
             case "square":
                 near = self.positive(self.most(low, -high))
                 far = self.most(low * low, high * high)
-                return near * near, far + self.doubt(low, high)
+                return near * near, far + self.nan_mask(low, high)
             case "sqrt":
                 roots = [self.call("sqrt", self.positive(end)) for end in (low, high)]
-                return roots[0], roots[1] + self.doubt(low, high)
+                return roots[0], roots[1] + self.nan_mask(low, high)
             case "less" | "less_equal" | "equal":
                 return self._comparison(name, ends)
             case _:
@@ -188,26 +188,26 @@ class _Intervals(TapeLoop):
         nothing = self.code.literal(float("nan"), self.vector)
         quotients = [x / y for x in (low, high) for y in (least, most)]
         bottom, top = self.corners(quotients)
-        doubt = self.doubt(*ends)
+        nan_mask = self.nan_mask(*ends)
         crosses = (least <= 0.0) & (most >= 0.0)
-        return bottom, self.code.select(crosses, nothing, top + doubt)
+        return bottom, self.code.select(crosses, nothing, top + nan_mask)
 
     def _comparison(self, name: str, ends: list[Value]) -> tuple[Value, Value]:
         """Return 1 to 1 if it always holds, 0 to 0 if it never does, else 0 to 1.
 
-        Comparisons with NaN do not hold, so "never" needs no doubt.
+        Comparisons with NaN do not hold, so "never" needs no NaN mask.
         """
         low, high, least, most = ends
-        doubt = self.doubt(*ends)
+        nan_mask = self.nan_mask(*ends)
         zero = self.code.literal(0.0, self.vector)
         one = self.code.literal(1.0, self.vector)
         if name == "equal":
-            apart = ((high + doubt) < least) | ((most + doubt) < low)
+            apart = ((high + nan_mask) < least) | ((most + nan_mask) < low)
             return zero, self.code.select(apart, 0.0, one)
         if name == "less":
-            always, never = (high + doubt) < least, (low + doubt) >= most
+            always, never = (high + nan_mask) < least, (low + nan_mask) >= most
         else:
-            always, never = (high + doubt) <= least, (low + doubt) > most
+            always, never = (high + nan_mask) <= least, (low + nan_mask) > most
         return self.code.select(always, 1.0, zero), self.code.select(never, 0.0, one)
 
     def _elementary(self, name: str, trend: Trend, operands: list[Value], target: Value) -> None:
@@ -226,7 +226,7 @@ class _Intervals(TapeLoop):
                 for offset in self.offsets:
                     low, high = self.ends(a, offset)
                     nearest = self.positive(self.most(low, -high))
-                    farthest = self.most(-low, high) + self.doubt(low, high)
+                    farthest = self.most(-low, high) + self.nan_mask(low, high)
                     self.keep((nearest, farthest), self._inner, offset)
                 self._at_ends(name, Trend.RISING, self._inner, target, number)
             case Trend.RISING | Trend.FALLING | Trend.BRANCHES:
@@ -242,19 +242,19 @@ class _Intervals(TapeLoop):
         absolute = SMALLEST_VALUE if name in _ONLY_RELATIVE else ABSOLUTE_ERROR
         for offset in self.offsets:
             first, last = self.ends(a, offset)
-            doubt = self.doubt(first, last)
+            nan_mask = self.nan_mask(first, last)
             low, high = self.ends(self._ends, offset)
             if trend is Trend.FALLING:
                 low, high = high, low
             if trend is Trend.BRANCHES:
-                doubt = doubt + self._pole(last - first, low, high)
+                nan_mask = nan_mask + self._pole(last - first, low, high)
                 # Its slope is 1 + tan^2, by which an error of the argument grows.
                 rest = [(end * end + 1.0) * ABSOLUTE_ERROR for end in (low, high)]
-                self.keep((low - rest[0], high + (rest[1] + doubt)), target, offset)
+                self.keep((low - rest[0], high + (rest[1] + nan_mask)), target, offset)
                 continue
             low = low - (self.call("fabs", low) * RELATIVE_ERROR + absolute)
             high = high + (self.call("fabs", high) * RELATIVE_ERROR + absolute)
-            self.keep((low, high + doubt), target, offset)
+            self.keep((low, high + nan_mask), target, offset)
 
     def _pole(self, width: Value, low: Value, high: Value) -> Value:
         """Return NaN where there may be a pole of the tangent between the ends, else 0.
@@ -277,7 +277,7 @@ class _Intervals(TapeLoop):
         for offset in self.offsets:
             values = [self.load(self._inner, place * FLOAT_SLOT + offset) for place in range(4)]
             (al, ah), (bl, bh) = self.ends(a, offset), self.ends(b, offset)
-            doubt = self.doubt(al, ah, bl, bh)
+            nan_mask = self.nan_mask(al, ah, bl, bh)
             low, high = self.corners(values)
             low = low - (self.call("fabs", low) * POWER_ERROR + ABSOLUTE_ERROR)
             high = high + (self.call("fabs", high) * POWER_ERROR + ABSOLUTE_ERROR)
@@ -285,7 +285,7 @@ class _Intervals(TapeLoop):
                 smooth = (bl > 0.0) | (al > 0.0) | (ah < 0.0)
                 low = code.select(smooth, low, code.literal(-_HALF_TURN, self.vector))
                 high = code.select(smooth, high, code.literal(_HALF_TURN, self.vector))
-            self.keep((low, high + doubt), target, offset)
+            self.keep((low, high + nan_mask), target, offset)
 
     def _wave(self, a: Value, target: Value, number: Value) -> None:
         """A function with slope at most 1: the value in the middle, plus and minus the radius."""
@@ -304,7 +304,7 @@ class _Intervals(TapeLoop):
                 far, -1.0, self.most(value - radius, code.literal(-1.0, self.vector))
             )
             most = code.select(far, 1.0, self.least(value + radius, code.literal(1.0, self.vector)))
-            self.keep((least, most + self.doubt(low, high)), target, offset)
+            self.keep((least, most + self.nan_mask(low, high)), target, offset)
 
 
 def interval_code(lanes: Lanes, declarations: set[str]) -> str:

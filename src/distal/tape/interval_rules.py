@@ -178,7 +178,7 @@ def _nothing(like: Any) -> Ends:
     return nothing, nothing
 
 
-def _doubt(*ends: Any) -> Any:
+def _nan_mask(*ends: Any) -> Any:
     """Return NaN where an end is NaN, else 0."""
     found = np.isnan(ends[0])
     for end in ends[1:]:
@@ -199,8 +199,8 @@ def _wave(row: Intrinsic, low: Any, high: Any) -> Ends:
     least, most = _least_and_most([row.meaning(np, low), row.meaning(np, high)])
     least = np.where(contains(peak + math.pi), -1.0, np.maximum(least - _FUNCTION_ERROR, -1.0))
     most = np.where(contains(peak), 1.0, np.minimum(most + _FUNCTION_ERROR, 1.0))
-    doubt = _doubt(low, high)
-    return least + doubt, most + doubt
+    nan_mask = _nan_mask(low, high)
+    return least + nan_mask, most + nan_mask
 
 
 def _same_branch(low: Any, high: Any) -> Any:
@@ -221,8 +221,8 @@ def _power(base: Ends, exponent: Ends) -> Ends:
     low = np.where(near, 0.0, np.maximum(low, 0.0))
     high = np.where(high >= 0.5 * largest_power(64), np.inf, high)
     unknown = near & ~(exponent[0] > 0.0)
-    doubt = np.where(unknown, np.nan, _doubt(*base, *exponent))
-    return low + doubt, high + doubt
+    nan_mask = np.where(unknown, np.nan, _nan_mask(*base, *exponent))
+    return low + nan_mask, high + nan_mask
 
 
 def _angle(y: Ends, x: Ends) -> Ends:
@@ -234,6 +234,6 @@ def _angle(y: Ends, x: Ends) -> Ends:
     low, high = _outwards(
         *_least_and_most([meaning(np, a, b) for a, b in both]), share=_FUNCTION_ERROR
     )
-    doubt = _doubt(*y, *x)
+    nan_mask = _nan_mask(*y, *x)
     half = math.pi * (1.0 + _FUNCTION_ERROR)
-    return np.where(smooth, low, -half) + doubt, np.where(smooth, high, half) + doubt
+    return np.where(smooth, low, -half) + nan_mask, np.where(smooth, high, half) + nan_mask
