@@ -314,9 +314,9 @@ class BaseShape(Composed, Presentable):
         if rule.repeats:
             own = with_bounds_of_cells(own, rule, numbers, constants, place)
         children = (own, *(other.node for other in others))
-        node = with_bounds_of_places(Node(rule, flat, children, numbers, constants, place))
-        check_slope(node)
-        return self._of(node)
+        made = self._of(Node(rule, flat, children, numbers, constants, place))
+        check_slope(made.node)
+        return made
 
     @classmethod
     def _of(cls, node: Node) -> Any:
