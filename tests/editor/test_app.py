@@ -211,8 +211,19 @@ def test_keep_writes_a_slider_and_the_camera(tmp_path):
 
 
 def test_the_camera_is_kept_before_its_guide_is_there(tmp_path):
-    """The program that knows where the camera is comes in a pause; a click needs none."""
+    """The program that knows where the camera is comes in a pause; a click needs none.
+
+    Nor is it lost where the player cannot ask that program yet.
+    """
     with studio(tmp_path) as app:
+        app.page.evaluate(
+            """() => {
+              const { camera } = studio.picture.player;
+              const real = camera.here.bind(camera);
+              let count = 0;
+              camera.here = () => (++count < 4 ? Promise.resolve(null) : real());
+            }"""
+        )
         app.page.evaluate("() => studio.picture.player.hands.drag(0.2, 0.1, false)")
         app.page.get_by_role("button", name="Keep camera").click()
         app.wait("() => !studio.editor.view.state.doc.toString().includes('(1.0, 1.5, 4.0)')")
@@ -237,7 +248,7 @@ def test_a_click_on_the_picture_selects_the_line(tmp_path):
 
 
 def test_an_endless_loop_is_ended_and_typing_goes_on(tmp_path):
-    with studio(tmp_path) as app:
+    with studio(tmp_path, limit=5.0) as app:
         app.page.evaluate("(text) => studio.editor.replace('scene.py', text)", f"{SCENE}(")
         app.wait("() => document.querySelector('.mistakes').childElementCount")
         loop = f"while True: pass\n{SCENE}"

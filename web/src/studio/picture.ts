@@ -20,6 +20,8 @@ export interface PictureEvents {
   clicked(x: number, y: number): void;
   keepParameter(name: string, value: Value): void;
   keepCamera(text: string): void;
+  /** What was asked for does not come, and why. */
+  refused(reason: string): void;
   /** Asks for the program that knows where the camera is; resolves when it is there, or none can be. */
   guide(): Promise<void>;
   drawn(text: string): void;
@@ -36,6 +38,9 @@ export interface PictureEvents {
 /** A press that moves farther is a drag. */
 const CLICK_PX = 4;
 const STEPS = 1000;
+/** So often, with a pause between, it is asked where the camera is before that is given up. */
+const KEEP_TRIES = 20;
+const KEEP_PAUSE_MS = 250;
 const NO_SLIDERS =
   "This scene has no sliders. Drag an underlined number of the code to change it; click the picture to find a shape's line.";
 
@@ -190,13 +195,15 @@ export class Picture {
 
   /** Writes into the code where the camera is. */
   async keepCamera(): Promise<void> {
-    let text = await this.player?.cameraText();
-    if (!text) {
-      // In the first moment after a change nothing knows yet where the camera is.
-      await this.events.guide();
-      text = await this.player?.cameraText();
+    for (let tries = 0; tries < KEEP_TRIES; tries++) {
+      const text = await this.player?.cameraText();
+      if (text) return this.events.keepCamera(text);
+      // In the first moment after a change nothing knows yet where the camera is; where the player itself
+      // has just begun, not even after the answer.
+      if ((this.player?.payload.steering?.guide ?? -1) < 0) await this.events.guide();
+      if (tries) await new Promise((resolve) => setTimeout(resolve, KEEP_PAUSE_MS));
     }
-    if (text) this.events.keepCamera(text);
+    this.events.refused("The camera is not kept: the graphics driver does not say where it is.");
   }
 
   #views(player: Player, { views }: Payload): HTMLElement {

@@ -93,6 +93,7 @@ export class Studio {
         looking.keepsCamera = true;
         void looking.write({ what: "camera", text });
       },
+      refused: (reason) => page.tell(reason, ["Close", () => {}]),
       drawn: (text) => (page.drawn.textContent = text),
       guide: () => looking.guide(this.texts.revision),
       program: (view) => looking.program(view),
