@@ -11,6 +11,7 @@ import distal
 from distal import Box, Scene, Sphere
 from distal.cluster import ClusterError, WorkerPool, pool_of
 from distal.cluster import pool as pools
+from distal.cluster.errors import TaskError
 from distal.devices.base import Cancelled
 from distal.images.picture import Picture, Provenance
 from distal.lang import Frame, Texture2D, fract, image, sample, slider, vec3
@@ -92,6 +93,21 @@ def test_whole_pictures(client):
         levels = pool.picture(each, options).array
         assert levels.dtype == np.float32
         np.testing.assert_array_equal(np.rint(levels * 255.0), levels * 255.0)
+
+
+def test_whole_pictures_of_one_task(client):
+    """Quick frames share a task; one that fails there is rendered alone, and says why."""
+    pool = WorkerPool(client)
+    options = [RenderOptions(size=(80, 60), time=0.1 * i, index=i) for i in range(3)]
+    assert pool.pictures_of_task(tinted, options[0], 40) == 1  # nothing is known
+    alone = [pool.picture(tinted, each).levels for each in options[:3]]
+    assert pool.pictures_of_task(tinted, options[0], 4) == 1  # each worker gets one
+    wrong = [*options[:2], replace(options[2], params={"nobody": 1.0})]
+    *made, failed = pool.pictures(tinted, wrong)
+    for picture, levels in zip(made, alone, strict=False):
+        np.testing.assert_array_equal(picture.levels, levels)
+    assert isinstance(failed, TaskError)
+    assert str(failed).startswith("the picture at 0.2 s failed on a worker: ")
 
 
 def test_progress_and_cancel(client):

@@ -48,14 +48,17 @@ WILD = """
 import os
 from distal.cluster import work
 if not hasattr(work, "real"):  # Dask runs this twice
-    work.real = work.picture
-    def picture(program, digest, data, call):
-        if 40 < call["options"]["params"].get("amount", 0) < 60:
-            call = {**call, "options": {**call["options"], "size": "wild"}}
-        elif call["options"]["index"] == 7:
+    work.real = work.pictures
+    def wild(options):
+        if 40 < options["params"].get("amount", 0) < 60:
+            return {**options, "size": "wild"}
+        if options["index"] == 7:
             os._exit(1)
+        return options
+    def pictures(program, digest, data, call):
+        call = {**call, "options": [wild(each) for each in call["options"]]}
         return work.real(program, digest, data, call)
-    work.picture = picture
+    work.pictures = pictures
 """
 WHY = "failed on a worker: "
 

@@ -19,7 +19,7 @@ from distal.cluster.parts import SentParts
 from distal.cluster.pool import SUBMITTED, WorkerPool, pool_of
 from distal.cluster.programs import Plain, Sent, lowered_as_sent
 from distal.cluster.sizes import PartSizes, Range
-from distal.devices.base import Cancel, Progress, Values, cancel_test
+from distal.devices.base import Cancel, PartError, Progress, Values, cancel_test
 from distal.devices.cpu import ROWS
 from distal.images.picture import Picture
 from distal.lang.composed import Composed
@@ -164,9 +164,18 @@ def kernel(cluster: Any, lowered: Lowered) -> ClusterKernel:
     return ClusterKernel(pool, lowered)
 
 
-def picture(cluster: Any, image: Image | Composed, options: RenderOptions) -> Picture:
-    """Return a whole picture in 8 bits, rendered by one worker of a client or a pool."""
-    return pool_of(cluster).picture(image, options)
+def pictures(
+    cluster: Any, image: Image | Composed, asked: Sequence[RenderOptions]
+) -> list[Picture | PartError]:
+    """Return whole pictures in 8 bits, or why they failed: see ``WorkerPool.pictures``."""
+    return pool_of(cluster).pictures(image, asked)
+
+
+def pictures_of_task(
+    cluster: Any, image: Image | Composed, options: RenderOptions, left: int
+) -> int:
+    """Return how many pictures are rendered together: see ``WorkerPool.pictures_of_task``."""
+    return pool_of(cluster).pictures_of_task(image, options, left)
 
 
 def at_once(cluster: Any) -> int:

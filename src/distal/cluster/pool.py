@@ -24,7 +24,7 @@ from distal.cluster.errors import ClusterError, OtherVersionError, address, expl
 from distal.cluster.programs import Plain, Sent, digest_of, sent
 from distal.cluster.sizes import PartSizes
 from distal.cluster.watch import CONSTANT, Watch
-from distal.devices.base import Cancelled, cancel_test
+from distal.devices.base import Cancelled, PartError, cancel_test
 from distal.devices.features import chosen_level
 from distal.images.picture import Picture
 from distal.lang.composed import Composed
@@ -52,6 +52,8 @@ _OF_THIS_PROCESS: Final = (
 )
 # How tasks are submitted: Dask repeats one that raised an error once, on any worker.
 SUBMITTED: Final[Mapping[str, Any]] = {"pure": False, "retries": 1}
+# The most bytes of pictures, as levels of 8 bits, in one task.
+_MOST_BYTES: Final = 2**25
 # Programs, and programs and data at the workers, that are kept for the next picture.
 _MOST_PROGRAMS: Final = 16
 _MOST_SENT: Final = 128
@@ -139,35 +141,102 @@ class WorkerPool:
     def picture(
         self, image: Image | Composed, options: RenderOptions, *, exact: bool = False
     ) -> Picture:
-        """Render a whole picture on one of the workers.
-
-        Args:
-            image: The picture.
-            options: As for ``PythonExecutor.render``; ``progress`` is not called.
-            exact: Whether the pixels are those of ``render``; otherwise they are rounded to levels
-                of 8 bits, which is a quarter to send.
+        """Render a whole picture on one of the workers; as ``pictures`` otherwise.
 
         Raises:
             Cancelled: ``options.cancel`` stopped the work.
             DeviceError: No worker could render it.
         """
+        [made] = self.pictures(image, [options], exact=exact)
+        if isinstance(made, PartError):
+            raise made
+        return made
+
+    def pictures(
+        self, image: Image | Composed, asked: Sequence[RenderOptions], *, exact: bool = False
+    ) -> list[Picture | PartError]:
+        """Render some whole pictures on one of the workers, one after the other.
+
+        Args:
+            image: The picture.
+            asked: For each, options as for ``PythonExecutor.render``, which differ in numbers and
+                times alone; ``progress`` is not called.
+            exact: Whether the pixels are those of ``render``; otherwise they are rounded to levels
+                of 8 bits, which is a quarter to send.
+
+        Returns:
+            Each picture; why it failed where no worker could render it, not even alone.
+
+        Raises:
+            Cancelled: ``cancel`` of the options stopped the work.
+            ClusterError: The scheduler is lost.
+        """
         self.check()
-        image, options = executor().as_rendered(image, options)
+        both = [executor().as_rendered(image, options) for options in asked]
+        image, options = both[0][0], [each for _, each in both]
+        if len(asked) == 1:
+            return [self._alone(image, options[0], exact=exact)]
+        try:
+            found = self._found(image, options, exact=exact)
+        except PartError:
+            found = [None] * len(asked)
+        return [
+            self._alone(image, each, exact=exact) if of is None else _picture(image, each, of)
+            for each, of in zip(options, found, strict=True)
+        ]
+
+    def _alone(
+        self, image: Image | Composed, options: RenderOptions, *, exact: bool
+    ) -> Picture | PartError:
+        try:
+            [found] = self._found(image, [options], exact=exact)
+        except PartError as error:
+            return error
+        return _picture(image, options, found)
+
+    def _found(
+        self, image: Image | Composed, asked: Sequence[RenderOptions], *, exact: bool
+    ) -> list[Any]:
+        """Return what a worker has found of each picture, as one task."""
         program = self.program_of(image)
+        first, last = asked[0].time, asked[-1].time
         found = self.result(
             lambda: self.client.submit(
-                work.picture,
+                work.pictures,
                 self.constant(program.digest, program.program),
                 program.digest,
                 self.data_of(program),
-                self.call(options=_plain_options(options), exact=exact),
+                self.call(options=[_plain_options(each) for each in asked], exact=exact),
                 **SUBMITTED,
             ),
-            options.cancel,
-            f"the picture at {options.time:g} s",
+            asked[0].cancel,
+            f"the picture at {first:g} s"
+            if len(asked) == 1
+            else f"the pictures from {first:g} to {last:g} s",
         )
-        self.saw_level(found["level"])
-        return _picture(image, options, found)
+        sizes = self._picture_sizes(program, asked[0].size)
+        for each in found:
+            if each is not None:
+                self.saw_level(each["level"])
+                sizes.saw((0, 1), each["seconds"])
+        return list(found)
+
+    def pictures_of_task(self, image: Image | Composed, options: RenderOptions, left: int) -> int:
+        """Return how many of the pictures that are left are worth one task.
+
+        Args:
+            image: The picture.
+            options: As for ``picture``.
+            left: How many are left.
+        """
+        image, options = executor().as_rendered(image, options)
+        sizes = self._picture_sizes(self.program_of(image), options.size)
+        return sizes.of_task(left, self.slots)
+
+    def _picture_sizes(self, program: Sent, size: tuple[int, int]) -> PartSizes:
+        sizes = self.sizes((program.digest, size, "pictures"), 1, 1)
+        sizes.most = max(1, _MOST_BYTES // (4 * size[0] * size[1]))
+        return sizes
 
     def program_of(self, image: Image | Composed) -> Sent:
         """Return what is sent of a picture; kept as long as it is unchanged."""

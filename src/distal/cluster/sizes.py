@@ -16,6 +16,9 @@ TASK_S: Final = 1e-3
 _MOST_COST: Final = 0.05
 # Parts of each worker's share: more of them even out the workers' speeds.
 _OF_EACH: Final = 6
+# Numbers that come one after the other are taken together until a task takes so many times the
+# shortest: what a task costs is hardly seen then, and each worker still ends some every second.
+_TASKS_WORTH: Final = 4
 
 
 def least_seconds(slots: int, task_s: float = TASK_S) -> float:
@@ -40,12 +43,14 @@ class PartSizes:
         unit: Parts are multiples of it.
         seconds: What the parts so far have taken.
         done: The numbers that they had.
+        most: The most numbers of a task that ``of_task`` gives.
     """
 
     least: int
     unit: int = 1
     seconds: float = 0.0
     done: int = 0
+    most: int = 2**62
 
     def ranges(self, count: int, slots: int) -> list[Range]:
         """Divide numbers into parts.
@@ -63,6 +68,20 @@ class PartSizes:
         of_part = max(of_part, min(round(least), -(-count // slots)), 1)
         of_part = -(-of_part // self.unit) * self.unit
         return [(first, min(first + of_part, count)) for first in range(0, count, of_part)]
+
+    def of_task(self, left: int, slots: int) -> int:
+        """Return how many of the numbers that are left, one after the other, the next task gets.
+
+        One while nothing is known. Near the end fewer, so that workers end at the same time.
+
+        Args:
+            left: How many numbers are left.
+            slots: How many tasks the workers do at once.
+        """
+        if not self.done or self.seconds <= 0.0:
+            return 1
+        wanted = _TASKS_WORTH * least_seconds(slots) * self.done / self.seconds
+        return max(1, min(int(wanted), self.most, left // (2 * slots)))
 
     def saw(self, numbers: Range, seconds: float) -> None:
         """Note what a part took."""

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from distal.cluster import tasks
 from distal.cluster.programs import Plain, received
+from distal.devices.base import Cancelled
 from distal.devices.cpu import CpuKernel
 from distal.devices.features import chosen_level
 from distal.lang.render_options import Refinement, RenderOptions
@@ -41,28 +42,44 @@ def constant(content: Any) -> Any:
     return content
 
 
-def picture(program: Plain, digest: str, data: Mapping[str, Any], call: Plain) -> Plain:
-    """Render a whole picture.
+def pictures(
+    program: Plain, digest: str, data: Mapping[str, Any], call: Plain
+) -> list[Plain | None]:
+    """Render whole pictures of one program.
 
     Args:
         program: The program.
         digest: Its hash.
         data: Its data by name.
-        call: ``options``, arguments of ``RenderOptions``; ``exact``, whether the pixels are floats
-            and not levels of 8 bits; what ``tasks.run`` reads.
+        call: ``options`` of each picture, arguments of ``RenderOptions``; ``exact``, whether the
+            pixels are floats and not levels of 8 bits; what ``tasks.run`` reads.
 
     Returns:
-        The pixels, and what is known of them.
+        The pixels of each, what is known of them, and the seconds that they took. None for one of
+        several that failed: it is rendered alone then, which says why.
     """
 
-    def body(stop: Callable[[], bool]) -> Plain:
+    def body(stop: Callable[[], bool]) -> list[Plain | None]:
         image = _program(program, digest, data)
-        return _picture(image, _options(call["options"], stop), call)
+        asked = [_options(each, stop) for each in call["options"]]
+        if len(asked) == 1:
+            return [_picture(image, asked[0], call)]
+        return [_picture_or_none(image, each, call) for each in asked]
 
     return tasks.run(call, body)
 
 
+def _picture_or_none(image: Received, options: RenderOptions, call: Plain) -> Plain | None:
+    try:
+        return _picture(image, options, call)
+    except Cancelled:
+        raise
+    except Exception:
+        return None
+
+
 def _picture(image: Received, options: RenderOptions, call: Plain) -> Plain:
+    begin = time.perf_counter()
     made, exact = executor().render(image, options), call["exact"]
     pixels = made.array if exact else made.levels
     found: Plain = {
@@ -71,6 +88,7 @@ def _picture(image: Received, options: RenderOptions, call: Plain) -> Plain:
         "stats": {k: v for k, v in made.stats.items() if isinstance(v, int | float | str)},
         "lost": dict(made.stats.get("lost", {})),
         "level": chosen_level(None).name,
+        "seconds": time.perf_counter() - begin,
     }
     if exact and made.light is not None:
         found["light"] = np.asarray(made.light)

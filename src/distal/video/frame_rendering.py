@@ -7,11 +7,12 @@ alone, and named in the end. Does not depend on files.
 
 from __future__ import annotations
 
+import itertools
 import threading
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
-from typing import Any, Final, Generic, TypeVar
+from typing import Any, Final, Generic, TypeAlias, TypeVar
 
 from distal.devices.base import PartError
 from distal.diagnostics import DeviceError
@@ -22,6 +23,8 @@ from distal.video.store import Tell
 from distal.video.timing import Timing
 
 Item = TypeVar("Item")
+# A frame's index, what it became, and why it failed.
+Made: TypeAlias = tuple[int, Item | None, PartError | None]
 # Called with (finished frames, all frames, "rendering" or "encoding").
 Progress = Callable[[int, int, str], Any]
 # So many failures in a row have one reason, which the other frames have too.
@@ -94,22 +97,19 @@ class FrameRendering:
             self.tell(f"continues: {done + len(kept)} of {count} frames are there")
         self.has_begun = True
 
-        def made(index: int) -> tuple[int, Item | None, PartError | None]:
-            if index in kept:
-                return index, kept[index](index), None
-            at = self.timing.time(index)
-            try:
-                picture = self.moving.picture(index, at)
-            except PartError as error:
-                return index, None if way.without is None else way.without(index), error
-            if index == 0:
-                self.moving.warn_if_black(picture, at)
-            return index, way.ready(index, picture), None
+        def made(some: Sequence[int]) -> list[Made[Item]]:
+            moments = [(index, self.timing.time(index)) for index in some if index not in kept]
+            pictures = iter(self.moving.pictures(moments) if moments else ())
+            return [self._made(i, None if i in kept else next(pictures), way) for i in some]
 
-        frames = made_ahead(made, indices, at_once or self.moving.at_once, self.stop.set)
+        several = at_once or self.moving.at_once
+        groups = self._groups(indices, alone=at_once == 1)
         in_a_row = 0
-        with taking(way.take, way.workers) as taker, closing(frames):
-            for index, item, error in frames:
+        with (
+            taking(way.take, way.workers) as taker,
+            closing(made_ahead(made, groups, several, self.stop.set)) as frames,
+        ):
+            for index, item, error in itertools.chain.from_iterable(frames):
                 if item is not None:
                     taker.put(item)
                 if error is None:
@@ -121,6 +121,26 @@ class FrameRendering:
                 in_a_row += 1
                 if in_a_row == _MOST_IN_A_ROW < len(indices):
                     raise self.error(f"the last {in_a_row} in a row, so the others were not tried")
+
+    def _groups(self, indices: Sequence[int], *, alone: bool) -> Iterator[Sequence[int]]:
+        """Divide frames into those that are rendered together, as much as is known by then."""
+        first = 0
+        while first < len(indices):
+            count = 1 if alone else self.moving.together(len(indices) - first)
+            yield indices[first : first + count]
+            first += count
+
+    def _made(
+        self, index: int, picture: Picture | PartError | None, way: FrameSteps[Item]
+    ) -> Made[Item]:
+        """Convert a frame; None is one that is kept."""
+        if picture is None:
+            return index, way.again[index](index), None
+        if isinstance(picture, PartError):
+            return index, None if way.without is None else way.without(index), picture
+        if index == 0:
+            self.moving.warn_if_black(picture, self.timing.time(index))
+        return index, way.ready(index, picture), None
 
     def _note(self, index: int, *, is_new: bool) -> None:
         self.failed.pop(index, None)

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Final
 
+from distal.devices.base import PartError
 from distal.images.picture import Picture
 from distal.ir.nodes import Origin
 from distal.lang.chosen_values import checked_values
@@ -100,11 +101,31 @@ class MovingPicture:
             time: Seconds.
             size: Width and height in pixels; None for the picture's own size.
         """
-        options = replace(self.options, size=size or self.size, time=time, index=index)
-        if options.cluster is None:
-            made = executor().render(self._image, options)
-        else:
-            made = cluster_kernels.picture(options.cluster, self._image, options)
+        [made] = self.pictures([(index, time)], size)
+        if isinstance(made, PartError):
+            raise made
+        return made
+
+    def pictures(
+        self, moments: Sequence[tuple[int, float]], size: tuple[int, int] | None = None
+    ) -> list[Picture | PartError]:
+        """Render the pictures at some times, on a cluster by one worker.
+
+        Args:
+            moments: The index of each frame and its time in seconds.
+            size: As for ``picture``.
+
+        Returns:
+            Each picture, or why it failed on a cluster.
+        """
+        size = size or self.size
+        asked = [replace(self.options, size=size, time=t, index=i) for i, t in moments]
+        if self.options.cluster is None:
+            return [self._described(executor().render(self._image, each)) for each in asked]
+        made = cluster_kernels.pictures(self.options.cluster, self._image, asked)
+        return [each if isinstance(each, PartError) else self._described(each) for each in made]
+
+    def _described(self, made: Picture) -> Picture:
         return made.with_provenance(
             view=self._view,
             stage=None if self._scene is None else self._scene.staged,
@@ -125,6 +146,16 @@ class MovingPicture:
             return int(cluster_kernels.at_once(self.options.cluster))
         width, height = self.size
         return 3 if width * height <= MOST_PIXELS_AT_ONCE else 1
+
+    def together(self, left: int) -> int:
+        """Return how many of the frames that are left are best rendered one after the other.
+
+        On a cluster more than one if they are quick: what a task costs is shared by them.
+        """
+        if self.options.cluster is None:
+            return 1
+        cluster = self.options.cluster
+        return int(cluster_kernels.pictures_of_task(cluster, self._image, self.options, left))
 
     def warn_if_black(self, picture: Picture, time: float) -> None:
         """Warn if the first picture is black, as rendering a still picture does."""
