@@ -139,20 +139,17 @@ def _searched(
     np = imported("numpy")
 
     def values(points: Any) -> Any:
-        return executor().call(shape, (points,), {}, params, time, "reference")
+        return executor().call(shape, (points,), {}, params, time, here=True)
 
     inside = _inside_points(np, values, low, high, shape.slope)
     if not len(inside):
         return None
-    ends = []
-    for sign, axis in itertools.product((-1.0, 1.0), range(len(low))):
-        up = np.zeros(len(low))
-        up[axis] = sign
-        first = np.argsort(inside @ -up)[:_STARTS]
-        most = high[axis] if sign > 0.0 else -low[axis]
-        climbed = _climbed(np, values, inside[first], up, most, size, shape.slope)
-        ends.append(sign * climbed)
-    return tuple(ends[: len(low)]), tuple(ends[len(low) :])
+    count = len(low)
+    ups = np.concatenate([-np.eye(count), np.eye(count)])
+    most = np.concatenate([-np.array(low), np.array(high)])
+    starts = [inside[np.argsort(inside @ -up)[:_STARTS]] for up in ups]
+    ends = _climbed(np, values, starts, ups, most, size, shape.slope)
+    return tuple((-ends[:count]).tolist()), tuple(ends[count:].tolist())
 
 
 def _inside_points(
@@ -179,13 +176,13 @@ def _inside_points(
 def _climbed(
     np: Any,
     values: Callable[[Any], Any],
-    starts: Any,
-    up: Any,
-    most: float,
+    starts: Sequence[Any],
+    ups: Any,
+    most: Any,
     size: float,
     slope: float,
-) -> float:
-    """Return the largest height that points reach which stay inside.
+) -> Any:
+    """Return the largest heights that points reach which stay inside, one for each direction.
 
     In each step, points are tried around the best ones, ever nearer to them, and moved up by their
     distance from the surface.
@@ -193,26 +190,33 @@ def _climbed(
     Args:
         np: NumPy.
         values: The field.
-        starts: Points inside.
-        up: The unit direction of the height.
-        most: The height of the box, beyond which nothing is.
+        starts: For each direction, points inside.
+        ups: The directions, of unit length, a row each.
+        most: The height of the box in each, beyond which nothing is.
         size: Size of the shape.
         slope: Its bound on the slope.
     """
     random = np.random.default_rng(0)
-    points, reach = starts, size / 16.0
+    points, rising, reach = list(starts), list(range(len(ups))), size / 16.0
     for _ in range(_STEPS):
-        shifts = random.uniform(-1.0, 1.0, (len(points), _AROUND, len(up))) * reach
-        shifts[:, 0] = 0.0
-        tried = (points[:, None, :] + shifts).reshape(-1, len(up))
-        tried = tried[values(tried) <= 0.0]
+        tried = np.concatenate([np.repeat(points[i], _AROUND, axis=0) for i in rising])
+        of = np.concatenate([np.full(len(points[i]) * _AROUND, i) for i in rising])
+        shifts = random.uniform(-1.0, 1.0, tried.shape) * reach
+        shifts[::_AROUND] = 0.0
+        tried += shifts
+        is_inside = values(tried) <= 0.0
+        tried, of = tried[is_inside], of[is_inside]
         for _ in range(_MOVES):
             depth = -values(tried)
-            tried = tried + (np.maximum(depth, 0.0) / slope)[:, None] * up
+            tried = tried + (np.maximum(depth, 0.0) / slope)[:, None] * ups[of]
             if depth.max(initial=0.0) < 1e-9 * size:
                 break
-        points = tried[np.argsort(tried @ -up)[:_STARTS]]
+        for i in rising:
+            own = tried[of == i]
+            if len(own):  # rounding may put all outside
+                points[i] = own[np.argsort(own @ -ups[i])[:_STARTS]]
         reach *= 0.55
-        if (points[0] @ up) >= most - 0.5 * SAME * size:
+        rising = [i for i in rising if points[i][0] @ ups[i] < most[i] - 0.5 * SAME * size]
+        if not rising:
             break
-    return float((points @ up).max())
+    return np.array([(own @ up).max() for own, up in zip(points, ups, strict=True)])
