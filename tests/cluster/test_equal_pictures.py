@@ -9,7 +9,7 @@ import pytest
 
 import distal
 from distal import Box, Scene, Sphere
-from distal.cluster import ClusterError, WorkerPool, pool_of
+from distal.cluster import ClusterError, WorkerPool, pool_of, whole_pictures
 from distal.cluster import pool as pools
 from distal.cluster.errors import TaskError
 from distal.devices.base import Cancelled
@@ -86,11 +86,11 @@ def test_whole_pictures(client):
     pictures = [tinted, distal.load("example:bricks").program("color", None, encoded=True)[0]]
     for each in pictures:
         options = RenderOptions(size=(80, 60), time=0.5)
-        made = pool.picture(each, options, exact=True)
+        [made] = whole_pictures.pictures(pool, each, [options], exact=True)
         alone = executor().render(each, options)
         np.testing.assert_array_equal(made.array, alone.array)
         assert made.metadata == alone.metadata
-        levels = pool.picture(each, options).array
+        [levels] = [p.array for p in whole_pictures.pictures(pool, each, [options])]
         assert levels.dtype == np.float32
         np.testing.assert_array_equal(np.rint(levels * 255.0), levels * 255.0)
 
@@ -99,11 +99,11 @@ def test_whole_pictures_of_one_task(client):
     """Quick frames share a task; one that fails there is rendered alone, and says why."""
     pool = WorkerPool(client)
     options = [RenderOptions(size=(80, 60), time=0.1 * i, index=i) for i in range(3)]
-    assert pool.pictures_of_task(tinted, options[0], 40) == 1  # nothing is known
-    alone = [pool.picture(tinted, each).levels for each in options[:3]]
-    assert pool.pictures_of_task(tinted, options[0], 4) == 1  # each worker gets one
+    assert whole_pictures.of_task(pool, tinted, options[0], 40) == 1  # nothing is known
+    alone = [whole_pictures.pictures(pool, tinted, [each])[0].levels for each in options]
+    assert whole_pictures.of_task(pool, tinted, options[0], 4) == 1  # each worker gets one
     wrong = [*options[:2], replace(options[2], params={"nobody": 1.0})]
-    *made, failed = pool.pictures(tinted, wrong)
+    *made, failed = whole_pictures.pictures(pool, tinted, wrong)
     for picture, levels in zip(made, alone, strict=False):
         np.testing.assert_array_equal(picture.levels, levels)
     assert isinstance(failed, TaskError)

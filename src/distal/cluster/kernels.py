@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.cluster import work
+from distal.cluster import whole_pictures, work
 from distal.cluster.errors import ClusterError
 from distal.cluster.parts import SentParts
 from distal.cluster.pool import SUBMITTED, WorkerPool, pool_of
@@ -167,15 +167,15 @@ def kernel(cluster: Any, lowered: Lowered) -> ClusterKernel:
 def pictures(
     cluster: Any, image: Image | Composed, asked: Sequence[RenderOptions]
 ) -> list[Picture | PartError]:
-    """Return whole pictures in 8 bits, or why they failed: see ``WorkerPool.pictures``."""
-    return pool_of(cluster).pictures(image, asked)
+    """Return whole pictures in 8 bits, or why they failed: see ``whole_pictures``."""
+    return whole_pictures.pictures(pool_of(cluster), image, asked)
 
 
 def pictures_of_task(
     cluster: Any, image: Image | Composed, options: RenderOptions, left: int
 ) -> int:
-    """Return how many pictures are rendered together: see ``WorkerPool.pictures_of_task``."""
-    return pool_of(cluster).pictures_of_task(image, options, left)
+    """Return how many pictures are rendered together: see ``whole_pictures``."""
+    return whole_pictures.of_task(pool_of(cluster), image, options, left)
 
 
 def at_once(cluster: Any) -> int:

@@ -1,8 +1,8 @@
 """Send work to the workers of a Dask scheduler, and take what they return.
 
-Input: a client; pictures and options. Output: pictures, and kernels whose passes are rendered by
-many workers. Dask decides who does what, repeats the work of workers that ended, and moves data.
-What is added here: the check of versions, a limit of time, and messages of one line.
+Input: a client; tasks. Output: what the tasks return; programs and data at the workers. Dask decides
+who does what, repeats the work of workers that ended, and moves data. What is added here: the check
+of versions, a limit of time, and messages of one line.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ import threading
 import warnings
 from collections.abc import Callable, Hashable, Mapping, MutableMapping, Sequence
 from contextlib import suppress
-from dataclasses import fields, replace
 from typing import Any, Final
 from weakref import WeakKeyDictionary
 
@@ -24,16 +23,13 @@ from distal.cluster.errors import ClusterError, OtherVersionError, address, expl
 from distal.cluster.programs import Plain, Sent, digest_of, sent
 from distal.cluster.sizes import PartSizes
 from distal.cluster.watch import CONSTANT, Watch
-from distal.devices.base import Cancelled, PartError, cancel_test
+from distal.devices.base import Cancelled, cancel_test
 from distal.devices.features import chosen_level
-from distal.images.picture import Picture
 from distal.lang.composed import Composed
 from distal.lang.functions import Image
-from distal.lang.render_options import Cancel, RenderOptions
+from distal.lang.render_options import Cancel
 from distal.lang.runtime_access import executor
 from distal.packages import imported
-from distal.runtime.device_names import AUTO, CPU
-from distal.runtime.uniform_values import chosen_uniforms
 from distal.version import __version__
 
 # The longest time until a request to stop is noticed, in seconds.
@@ -46,14 +42,8 @@ _REACH_S: Final = 1.0
 TIMEOUT_S: Final = 600.0
 # One pool for each client: it checks the workers once, and sends each program once.
 _POOLS: Final[MutableMapping[Any, WorkerPool]] = WeakKeyDictionary()
-# Options of ``RenderOptions`` that workers do not get.
-_OF_THIS_PROCESS: Final = (
-    *("device", "threads", "progress", "cancel", "refinement", "cluster", "history"),
-)
 # How tasks are submitted: Dask repeats one that raised an error once, on any worker.
 SUBMITTED: Final[Mapping[str, Any]] = {"pure": False, "retries": 1}
-# The most bytes of pictures, as levels of 8 bits, in one task.
-_MOST_BYTES: Final = 2**25
 # Programs, and programs and data at the workers, that are kept for the next picture.
 _MOST_PROGRAMS: Final = 16
 _MOST_SENT: Final = 128
@@ -136,107 +126,7 @@ class WorkerPool:
         self._is_direct = all(map(_is_reachable, answers))
         self._checked = True
 
-    # What executors and videos call
-
-    def picture(
-        self, image: Image | Composed, options: RenderOptions, *, exact: bool = False
-    ) -> Picture:
-        """Render a whole picture on one of the workers; as ``pictures`` otherwise.
-
-        Raises:
-            Cancelled: ``options.cancel`` stopped the work.
-            DeviceError: No worker could render it.
-        """
-        [made] = self.pictures(image, [options], exact=exact)
-        if isinstance(made, PartError):
-            raise made
-        return made
-
-    def pictures(
-        self, image: Image | Composed, asked: Sequence[RenderOptions], *, exact: bool = False
-    ) -> list[Picture | PartError]:
-        """Render some whole pictures on one of the workers, one after the other.
-
-        Args:
-            image: The picture.
-            asked: For each, options as for ``PythonExecutor.render``, which differ in numbers and
-                times alone; ``progress`` is not called.
-            exact: Whether the pixels are those of ``render``; otherwise they are rounded to levels
-                of 8 bits, which is a quarter to send.
-
-        Returns:
-            Each picture; why it failed where no worker could render it, not even alone.
-
-        Raises:
-            Cancelled: ``cancel`` of the options stopped the work.
-            ClusterError: The scheduler is lost.
-        """
-        self.check()
-        both = [executor().as_rendered(image, options) for options in asked]
-        image, options = both[0][0], [each for _, each in both]
-        if len(asked) == 1:
-            return [self._alone(image, options[0], exact=exact)]
-        try:
-            found = self._found(image, options, exact=exact)
-        except PartError:
-            found = [None] * len(asked)
-        return [
-            self._alone(image, each, exact=exact) if of is None else _picture(image, each, of)
-            for each, of in zip(options, found, strict=True)
-        ]
-
-    def _alone(
-        self, image: Image | Composed, options: RenderOptions, *, exact: bool
-    ) -> Picture | PartError:
-        try:
-            [found] = self._found(image, [options], exact=exact)
-        except PartError as error:
-            return error
-        return _picture(image, options, found)
-
-    def _found(
-        self, image: Image | Composed, asked: Sequence[RenderOptions], *, exact: bool
-    ) -> list[Any]:
-        """Return what a worker has found of each picture, as one task."""
-        program = self.program_of(image)
-        first, last = asked[0].time, asked[-1].time
-        found = self.result(
-            lambda: self.client.submit(
-                work.pictures,
-                self.constant(program.digest, program.program),
-                program.digest,
-                self.data_of(program),
-                self.call(options=[_plain_options(each) for each in asked], exact=exact),
-                **SUBMITTED,
-            ),
-            asked[0].cancel,
-            f"the picture at {first:g} s"
-            if len(asked) == 1
-            else f"the pictures from {first:g} to {last:g} s",
-        )
-        sizes = self._picture_sizes(program, asked[0].size)
-        for each in found:
-            if each is not None:
-                self.saw_level(each["level"])
-                sizes.saw((0, 1), each["seconds"])
-        return list(found)
-
-    def pictures_of_task(self, image: Image | Composed, options: RenderOptions, left: int) -> int:
-        """Return how many of the pictures that are left are worth one task.
-
-        Args:
-            image: The picture.
-            options: As for ``picture``.
-            left: How many are left.
-        """
-        image, options = executor().as_rendered(image, options)
-        sizes = self._picture_sizes(self.program_of(image), options.size)
-        return sizes.of_task(left, self.slots)
-
-    def _picture_sizes(self, program: Sent, size: tuple[int, int]) -> PartSizes:
-        sizes = self.sizes((program.digest, size, "pictures"), 1, 1)
-        sizes.most = max(1, _MOST_BYTES // (4 * size[0] * size[1]))
-        return sizes
+    # Programs
 
     def program_of(self, image: Image | Composed) -> Sent:
         """Return what is sent of a picture; kept as long as it is unchanged."""
@@ -414,33 +304,3 @@ def _is_reachable(worker: str) -> bool:
             return True
     except (OSError, ValueError):
         return False
-
-
-def _plain_options(options: RenderOptions) -> Plain:
-    """Return the arguments of ``RenderOptions`` without functions of this process."""
-    if options.device not in (CPU, AUTO):
-        raise ClusterError(f"workers render on their CPU, not on '{options.device}'")
-    asked = options.refinement
-    if asked is not None and (asked.finish is not None or asked.film is not None):
-        raise ClusterError("denoise and film are not for whole pictures on workers")
-    plain = _fields_but(options, *_OF_THIS_PROCESS)
-    plain |= {"params": dict(options.params), "settings": dict(options.settings or {})}
-    if asked is not None:
-        plain["refinement"] = _fields_but(asked, "film", "preview", "finish")
-    return plain
-
-
-def _fields_but(given: Any, *names: str) -> Plain:
-    """Return the fields of a dataclass by name, without some."""
-    return {f.name: getattr(given, f.name) for f in fields(given) if f.name not in names}
-
-
-def _picture(image: Image | Composed, options: RenderOptions, found: Mapping[str, Any]) -> Picture:
-    """Return the picture that a worker has rendered, as this process would have."""
-    pixels = found["pixels"]
-    values = chosen_uniforms(executor().parts(image).declared, options)
-    origin = executor().origin(image, replace(options, device=CPU), values, found["samples"])
-    stats = {**found["stats"], "lost": found["lost"]}
-    if pixels.dtype == np.uint8:
-        return Picture.of_levels(pixels, origin, stats)
-    return Picture(pixels, origin, stats, found.get("light"))

@@ -1,0 +1,161 @@
+"""Whole pictures that a worker renders, several quick ones in one task.
+
+Input: a pool, a picture, options. Output: pictures in levels of 8 bits, as films need them, or in
+floats. One of several that fails is rendered once more alone, which says why.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, replace
+from typing import Any, Final
+
+import numpy as np
+
+from distal.cluster import work
+from distal.cluster.errors import ClusterError
+from distal.cluster.pool import SUBMITTED, WorkerPool
+from distal.cluster.programs import Plain, Sent
+from distal.cluster.sizes import PartSizes
+from distal.devices.base import PartError
+from distal.images.picture import Picture
+from distal.lang.composed import Composed
+from distal.lang.functions import Image
+from distal.lang.render_options import RenderOptions
+from distal.lang.runtime_access import executor
+from distal.runtime.device_names import AUTO, CPU
+from distal.runtime.uniform_values import chosen_uniforms
+
+# Options of ``RenderOptions`` that workers do not get.
+_OF_THIS_PROCESS: Final = (
+    *("device", "threads", "progress", "cancel", "refinement", "cluster", "history"),
+)
+# The most bytes of pictures, as levels of 8 bits, in one task.
+_MOST_BYTES: Final = 2**25
+
+
+def pictures(
+    pool: WorkerPool,
+    image: Image | Composed,
+    asked: Sequence[RenderOptions],
+    *,
+    exact: bool = False,
+) -> list[Picture | PartError]:
+    """Render some whole pictures on one of the workers, one after the other.
+
+    Args:
+        pool: The workers.
+        image: The picture.
+        asked: For each, options as for ``PythonExecutor.render``, which differ in numbers and times
+            alone; ``progress`` is not called.
+        exact: Whether the pixels are those of ``render``; otherwise they are rounded to levels of
+            8 bits, which is a quarter to send.
+
+    Returns:
+        Each picture; why it failed where no worker could render it, not even alone.
+
+    Raises:
+        Cancelled: ``cancel`` of the options stopped the work.
+        ClusterError: The scheduler is lost.
+    """
+    pool.check()
+    both = [executor().as_rendered(image, options) for options in asked]
+    image, options = both[0][0], [each for _, each in both]
+    if len(options) == 1:
+        return [_alone(pool, image, options[0], exact=exact)]
+    try:
+        found = _found(pool, image, options, exact=exact)
+    except PartError:
+        found = [None] * len(options)
+    return [
+        _alone(pool, image, each, exact=exact) if of is None else _picture(image, each, of)
+        for each, of in zip(options, found, strict=True)
+    ]
+
+
+def of_task(pool: WorkerPool, image: Image | Composed, options: RenderOptions, left: int) -> int:
+    """Return how many of the pictures that are left are worth one task.
+
+    Args:
+        pool: The workers.
+        image: The picture.
+        options: As for ``pictures``.
+        left: How many are left.
+    """
+    image, options = executor().as_rendered(image, options)
+    return _sizes(pool, pool.program_of(image), options).of_task(left, pool.slots)
+
+
+def _alone(
+    pool: WorkerPool, image: Image | Composed, options: RenderOptions, *, exact: bool
+) -> Picture | PartError:
+    try:
+        [found] = _found(pool, image, [options], exact=exact)
+    except PartError as error:
+        return error
+    return _picture(image, options, found)
+
+
+def _found(
+    pool: WorkerPool, image: Image | Composed, asked: Sequence[RenderOptions], *, exact: bool
+) -> list[Any]:
+    """Return what a worker has found of each picture, as one task."""
+    program = pool.program_of(image)
+    first, last = asked[0], asked[-1]
+    found = pool.result(
+        lambda: pool.client.submit(
+            work.pictures,
+            pool.constant(program.digest, program.program),
+            program.digest,
+            pool.data_of(program),
+            pool.call(options=[_plain_options(each) for each in asked], exact=exact),
+            **SUBMITTED,
+        ),
+        first.cancel,
+        f"the picture at {first.time:g} s"
+        if len(asked) == 1
+        else f"the pictures from {first.time:g} to {last.time:g} s",
+    )
+    sizes = _sizes(pool, program, first)
+    for each in found:
+        if each is not None:
+            pool.saw_level(each["level"])
+            sizes.saw((0, 1), each["seconds"])
+    return list(found)
+
+
+def _sizes(pool: WorkerPool, program: Sent, options: RenderOptions) -> PartSizes:
+    width, height = options.size
+    sizes = pool.sizes((program.digest, options.size, "pictures"), 1, 1)
+    sizes.most = max(1, _MOST_BYTES // (4 * width * height))
+    return sizes
+
+
+def _plain_options(options: RenderOptions) -> Plain:
+    """Return the arguments of ``RenderOptions`` without functions of this process."""
+    if options.device not in (CPU, AUTO):
+        raise ClusterError(f"workers render on their CPU, not on '{options.device}'")
+    asked = options.refinement
+    if asked is not None and (asked.finish is not None or asked.film is not None):
+        raise ClusterError("denoise and film are not for whole pictures on workers")
+    plain = _fields_but(options, *_OF_THIS_PROCESS)
+    plain |= {"params": dict(options.params), "settings": dict(options.settings or {})}
+    if asked is not None:
+        plain["refinement"] = _fields_but(asked, "film", "preview", "finish")
+    return plain
+
+
+def _fields_but(given: Any, *names: str) -> Plain:
+    """Return the fields of a dataclass by name, without some."""
+    return {f.name: getattr(given, f.name) for f in fields(given) if f.name not in names}
+
+
+def _picture(image: Image | Composed, options: RenderOptions, found: Mapping[str, Any]) -> Picture:
+    """Return the picture that a worker has rendered, as this process would have."""
+    pixels = found["pixels"]
+    values = chosen_uniforms(executor().parts(image).declared, options)
+    origin = executor().origin(image, replace(options, device=CPU), values, found["samples"])
+    stats = {**found["stats"], "lost": found["lost"]}
+    if pixels.dtype == np.uint8:
+        return Picture.of_levels(pixels, origin, stats)
+    return Picture(pixels, origin, stats, found.get("light"))
