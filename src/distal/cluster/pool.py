@@ -1,6 +1,6 @@
 """Send work to the workers of a Dask scheduler, and take what they return.
 
-Input: a client; tasks. Output: what the tasks return; programs and data at the workers. Dask decides
+Input: a client; tasks. Output: what tasks return; programs and data at the workers. Dask decides
 who does what, repeats the work of workers that ended, and moves data. What is added here: the check
 of versions, a limit of time, and messages of one line.
 """
