@@ -12,7 +12,7 @@ import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
-from typing import Any, Final, Generic, TypeAlias, TypeVar
+from typing import Any, Final, Generic, TypeVar
 
 from distal.devices.base import PartError
 from distal.diagnostics import DeviceError
@@ -23,8 +23,6 @@ from distal.video.store import Tell
 from distal.video.timing import Timing
 
 Item = TypeVar("Item")
-# A frame's index, what it became, and why it failed.
-Made: TypeAlias = tuple[int, Item | None, PartError | None]
 # Called with (finished frames, all frames, "rendering" or "encoding").
 Progress = Callable[[int, int, str], Any]
 # So many failures in a row have one reason, which the other frames have too.
@@ -32,6 +30,21 @@ _MOST_IN_A_ROW: Final = 8
 # Failed frames whose reasons a message gives, and that it names.
 _MOST_EXPLAINED: Final = 3
 _MOST_NAMED: Final = 10
+
+
+@dataclass(frozen=True, slots=True)
+class MadeFrame(Generic[Item]):
+    """What a frame became.
+
+    Attributes:
+        index: The frame.
+        item: What was made of it; None: nothing.
+        error: Why it failed; None if it did not.
+    """
+
+    index: int
+    item: Item | None
+    error: PartError | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +110,7 @@ class FrameRendering:
             self.tell(f"continues: {done + len(kept)} of {count} frames are there")
         self.has_begun = True
 
-        def made(some: Sequence[int]) -> list[Made[Item]]:
+        def made(some: Sequence[int]) -> list[MadeFrame[Item]]:
             moments = [(index, self.timing.time(index)) for index in some if index not in kept]
             pictures = iter(self.moving.pictures(moments) if moments else ())
             return [self._made(i, None if i in kept else next(pictures), way) for i in some]
@@ -109,15 +122,15 @@ class FrameRendering:
             taking(way.take, way.workers) as taker,
             closing(made_ahead(made, groups, several, self.stop.set)) as frames,
         ):
-            for index, item, error in itertools.chain.from_iterable(frames):
-                if item is not None:
-                    taker.put(item)
-                if error is None:
+            for frame in itertools.chain.from_iterable(frames):
+                if frame.item is not None:
+                    taker.put(frame.item)
+                if frame.error is None:
                     done, in_a_row = done + 1, 0
-                    self._note(index, is_new=index not in kept)
+                    self._note(frame.index, is_new=frame.index not in kept)
                     self.progress(done, count, "rendering")
                     continue
-                self.failed[index] = error
+                self.failed[frame.index] = frame.error
                 in_a_row += 1
                 if in_a_row == _MOST_IN_A_ROW < len(indices):
                     raise self.error(f"the last {in_a_row} in a row, so the others were not tried")
@@ -132,15 +145,15 @@ class FrameRendering:
 
     def _made(
         self, index: int, picture: Picture | PartError | None, way: FrameSteps[Item]
-    ) -> Made[Item]:
+    ) -> MadeFrame[Item]:
         """Convert a frame; None is one that is kept."""
         if picture is None:
-            return index, way.again[index](index), None
+            return MadeFrame(index, way.again[index](index))
         if isinstance(picture, PartError):
-            return index, None if way.without is None else way.without(index), picture
+            return MadeFrame(index, None if way.without is None else way.without(index), picture)
         if index == 0:
             self.moving.warn_if_black(picture, self.timing.time(index))
-        return index, way.ready(index, picture), None
+        return MadeFrame(index, way.ready(index, picture))
 
     def _note(self, index: int, *, is_new: bool) -> None:
         self.failed.pop(index, None)
