@@ -33,6 +33,21 @@ video(distal.load(sys.argv[1]), sys.argv[2], duration=9, fps=20, size=(96, 64), 
 """
 
 
+PICTURES = MovingPicture.pictures
+
+
+def break_frame(monkeypatch, broken, pause=0.0):
+    """Let a frame fail as if its scene did, after a pause in seconds."""
+
+    def pictures(self, moments, size=None):
+        if broken in [index for index, _ in moments]:
+            time.sleep(pause)
+            raise distal.LoadError("the author's message")
+        return PICTURES(self, moments, size)
+
+    monkeypatch.setattr(MovingPicture, "pictures", pictures)
+
+
 def wait_for(seen, process):
     end = time.monotonic() + 60.0
     while not seen():
@@ -118,14 +133,8 @@ def test_a_failure_before_anything_is_whole_leaves_nothing(moving, tmp_path):
 
 
 def test_a_scene_that_fails_in_the_middle_keeps_the_pieces(moving, tmp_path, monkeypatch):
-    whole, told = MovingPicture.picture, []
-
-    def picture(self, index, at, size=None):
-        if index == 50:
-            raise distal.LoadError("the author's message")
-        return whole(self, index, at, size)
-
-    monkeypatch.setattr(MovingPicture, "picture", picture)
+    told = []
+    break_frame(monkeypatch, 50)
     out = tmp_path / "out.mp4"
     with pytest.raises(distal.LoadError, match="the author's message"):
         video(moving, out, **WISHES, tell=told.append)
@@ -140,15 +149,8 @@ def test_a_scene_that_fails_in_the_middle_keeps_the_pieces(moving, tmp_path, mon
 def test_frames_of_a_slow_segment_are_kept(moving, tmp_path, monkeypatch, quality):
     monkeypatch.setattr(encoding, "KEEP_AFTER_S", 0.0)
     wishes = {**WISHES, "quality": quality}
-    whole, told = MovingPicture.picture, []
-
-    def picture(self, index, at, size=None):
-        if index == 70:
-            time.sleep(0.3)  # the frames before it are written
-            raise distal.LoadError("the author's message")
-        return whole(self, index, at, size)
-
-    monkeypatch.setattr(MovingPicture, "picture", picture)
+    told = []
+    break_frame(monkeypatch, 70, pause=0.3)  # the frames before it are written
     out = tmp_path / "out.mp4"
     with pytest.raises(distal.LoadError, match="the author's message"):
         video(moving, out, **wishes, tell=told.append)
@@ -159,7 +161,7 @@ def test_frames_of_a_slow_segment_are_kept(moving, tmp_path, monkeypatch, qualit
     kept = 40 + len(singles)
     assert told == [f"{kept} of 180 frames are kept in {folder}; continue with the same command"]
 
-    monkeypatch.setattr(MovingPicture, "picture", whole)
+    monkeypatch.setattr(MovingPicture, "pictures", PICTURES)
     (folder / singles[3]).write_bytes(b"")  # a damaged one is rendered again
     told.clear()
     assert video(moving, out, **wishes, tell=told.append).rendered == 181 - kept
@@ -209,15 +211,9 @@ def test_a_full_disk_is_one_line(moving, tmp_path, suffix):
 
 @pytest.mark.parametrize("damage", ["", "half"])
 def test_a_damaged_piece_is_made_again(moving, tmp_path, monkeypatch, damage):
-    out, whole = tmp_path / "out.mp4", MovingPicture.picture
-
-    def picture(self, index, at, size=None):
-        if index == 130:
-            raise distal.LoadError("broken off")
-        return whole(self, index, at, size)
-
-    monkeypatch.setattr(MovingPicture, "picture", picture)
-    with pytest.raises(distal.LoadError):
+    out = tmp_path / "out.mp4"
+    break_frame(monkeypatch, 130)
+    with pytest.raises(distal.LoadError, match="the author's message"):
         video(moving, out, **WISHES)
     monkeypatch.undo()
     piece = tmp_path / ".out.mp4.distal" / "000040-000079.mp4"
