@@ -96,18 +96,19 @@ def test_whole_pictures(client):
 
 
 def test_whole_pictures_of_one_task(client):
-    """Quick frames share a task; one that fails there is rendered alone, and says why."""
+    """Quick frames share a task; those that fail there are rendered alone, and say why."""
     pool = WorkerPool(client)
     options = [RenderOptions(size=(80, 60), time=0.1 * i, index=i) for i in range(3)]
     assert whole_pictures.of_task(pool, tinted, options[0], 40) == 1  # nothing is known
     alone = [whole_pictures.pictures(pool, tinted, [each])[0].levels for each in options]
     assert whole_pictures.of_task(pool, tinted, options[0], 4) == 1  # each worker gets one
-    wrong = [*options[:2], replace(options[2], params={"nobody": 1.0})]
-    *made, failed = whole_pictures.pictures(pool, tinted, wrong)
-    for picture, levels in zip(made, alone, strict=False):
+    made = whole_pictures.pictures(pool, tinted, options)
+    for picture, levels in zip(made, alone, strict=True):
         np.testing.assert_array_equal(picture.levels, levels)
-    assert isinstance(failed, TaskError)
-    assert str(failed).startswith("the picture at 0.2 s failed on a worker: ")
+    wrong = [replace(each, params={"nobody": 1.0}) for each in options]
+    for failed, each in zip(whole_pictures.pictures(pool, tinted, wrong), wrong, strict=True):
+        assert isinstance(failed, TaskError)
+        assert str(failed).startswith(f"the picture at {each.time:g} s failed on a worker: ")
 
 
 def test_progress_and_cancel(client):

@@ -48,17 +48,14 @@ WILD = """
 import os
 from distal.cluster import work
 if not hasattr(work, "real"):  # Dask runs this twice
-    work.real = work.pictures
-    def wild(options):
+    work.real = work._options
+    def wild(options, stop):
         if 40 < options["params"].get("amount", 0) < 60:
-            return {**options, "size": "wild"}
+            options = {**options, "size": "wild"}
         if options["index"] == 7:
             os._exit(1)
-        return options
-    def pictures(program, digest, data, call):
-        call = {**call, "options": [wild(each) for each in call["options"]]}
-        return work.real(program, digest, data, call)
-    work.pictures = pictures
+        return work.real(options, stop)
+    work._options = wild
 """
 WHY = "failed on a worker: "
 

@@ -17,7 +17,7 @@ from distal.cli.application import application
 from distal.editor.commands import export_arguments, render_arguments, video_arguments
 from distal.editor.local import render_choices
 from distal.editor.local.files import SceneFiles
-from distal.editor.local.renders import RenderLimits, placed
+from distal.editor.local.renders import RenderLimits, RenderQueue, placed
 from distal.editor.local.server import StudioServer
 from distal.editor.messages import ExportRequest, RenderRequest, parsed
 from distal.images.picture_files import read
@@ -148,6 +148,21 @@ def test_a_picture_is_the_one_of_its_command(server, tmp_path, monkeypatch):
     assert found.steering == tuple(MOVED.values())
     assert found.parameters == {"size": 0.55, "tint": [0.1, 0.5, 0.25]}
     assert found.transparent and found.time == 0.5
+
+
+def test_a_picture_can_be_fetched_when_it_is_told(tmp_path):
+    queue, seen, is_told = RenderQueue(tmp_path, RenderLimits()), [], threading.Event()
+
+    def tell(message):
+        if message.kind == "answer":
+            _, _, folder, token = message.result.address.split("/")
+            seen.append(queue.result(folder, token))
+            is_told.set()
+
+    queue.add("a tab", parsed(rendering(1)), tell)
+    assert is_told.wait(ANSWER_S)
+    queue.close()
+    assert seen[0] is not None and seen[0].startswith(b"\x89PNG")
 
 
 def test_a_film_is_beside_the_scene_under_a_free_name(server, tmp_path, socket, monkeypatch):

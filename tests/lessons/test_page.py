@@ -120,7 +120,7 @@ def test_a_goal_is_measured_while_time_plays(pages):
     try:
         with offline_page(pages[9], **DESK) as watched:
             watched.page.wait_for_function(
-                "() => document.querySelector('.picture [data-distal]')?.distal.playing"
+                "() => document.querySelector('.picture [data-distal]')?.distal?.playing"
                 " && Number(document.querySelector('.goal').dataset.difference) > 0.03",
                 timeout=STILL_MS,
             )

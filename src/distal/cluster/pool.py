@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import socket
 import threading
+import time
 import warnings
 from collections.abc import Callable, Hashable, Mapping, MutableMapping, Sequence
 from contextlib import suppress
+from queue import SimpleQueue
 from typing import Any, Final
 from weakref import WeakKeyDictionary
 
@@ -38,6 +40,8 @@ _LOOK_S: Final = 0.1
 _JOIN_S: Final = 10.0
 # How long a worker of this network may take to accept a connection, in seconds.
 _REACH_S: Final = 1.0
+# For how long an answer of the scheduler on its workers is good, in seconds.
+_SLOTS_S: Final = 1.0
 # A task that takes longer is given to another worker, once.
 TIMEOUT_S: Final = 600.0
 # One pool for each client: it checks the workers once, and sends each program once.
@@ -83,10 +87,18 @@ class WorkerPool:
         self._refused: set[str] = set()
         self._is_direct = False
         self._checked = False
+        self._slots, self._slots_until = 1, 0.0
 
     @property
     def slots(self) -> int:
-        """How many tasks the workers do at the same time; 1 while there are none."""
+        """How many tasks the workers do at the same time, a second ago; 1 while there are none."""
+        now = time.monotonic()
+        if now >= self._slots_until:
+            self._slots = _aside(self._asked_slots)
+            self._slots_until = now + _SLOTS_S
+        return self._slots
+
+    def _asked_slots(self) -> int:
         try:
             return max(1, int(sum(self.client.nthreads().values())))
         except Exception:
@@ -290,6 +302,13 @@ def _begun(future: Any) -> tuple[Any, threading.Event]:
     ended = threading.Event()
     future.add_done_callback(lambda _: ended.set())
     return future, ended
+
+
+def _aside(ask: Callable[[], int]) -> int:
+    """Return an answer of another thread: ctrl-C while Dask itself waits prints a traceback."""
+    answers: SimpleQueue[int] = SimpleQueue()
+    threading.Thread(target=lambda: answers.put(ask()), daemon=True).start()
+    return answers.get()
 
 
 def _other_version(worker: str, version: str) -> str:

@@ -30,6 +30,8 @@ from distal.runtime.uniform_values import chosen_uniforms
 _OF_THIS_PROCESS: Final = (
     *("device", "threads", "progress", "cancel", "refinement", "cluster", "history"),
 )
+# Options that the pictures of one task do not have in common.
+_OF_EACH: Final = ("time", "index")
 # The most bytes of pictures, as levels of 8 bits, in one task.
 _MOST_BYTES: Final = 2**25
 
@@ -46,8 +48,8 @@ def pictures(
     Args:
         pool: The workers.
         image: The picture.
-        asked: For each, options as for ``PythonExecutor.render``, which differ in numbers and times
-            alone; ``progress`` is not called.
+        asked: For each, options as for ``PythonExecutor.render``, which differ in ``time`` and
+            ``index`` alone; ``progress`` is not called.
         exact: Whether the pixels are those of ``render``; otherwise they are rounded to levels of
             8 bits, which is a quarter to send.
 
@@ -108,7 +110,7 @@ def _found(
             pool.constant(program.digest, program.program),
             program.digest,
             pool.data_of(program),
-            pool.call(options=[_plain_options(each) for each in asked], exact=exact),
+            pool.call(**_plain_options(asked), exact=exact),
             **SUBMITTED,
         ),
         first.cancel,
@@ -131,18 +133,23 @@ def _sizes(pool: WorkerPool, program: Sent, options: RenderOptions) -> PartSizes
     return sizes
 
 
-def _plain_options(options: RenderOptions) -> Plain:
-    """Return the arguments of ``RenderOptions`` without functions of this process."""
-    if options.device not in (CPU, AUTO):
-        raise ClusterError(f"workers render on their CPU, not on '{options.device}'")
-    asked = options.refinement
-    if asked is not None and (asked.finish is not None or asked.film is not None):
+def _plain_options(asked: Sequence[RenderOptions]) -> Plain:
+    """Return what pictures have in common and what each has, without functions of this process.
+
+    Dask keeps its last thousand messages: what all pictures have is there once in each.
+    """
+    first = asked[0]
+    if first.device not in (CPU, AUTO):
+        raise ClusterError(f"workers render on their CPU, not on '{first.device}'")
+    refinement = first.refinement
+    if refinement is not None and (refinement.finish is not None or refinement.film is not None):
         raise ClusterError("denoise and film are not for whole pictures on workers")
-    plain = _fields_but(options, *_OF_THIS_PROCESS)
-    plain |= {"params": dict(options.params), "settings": dict(options.settings or {})}
-    if asked is not None:
-        plain["refinement"] = _fields_but(asked, "film", "preview", "finish")
-    return plain
+    plain = _fields_but(first, *_OF_THIS_PROCESS, *_OF_EACH)
+    plain |= {"params": dict(first.params), "settings": dict(first.settings or {})}
+    if refinement is not None:
+        plain["refinement"] = _fields_but(refinement, "film", "preview", "finish")
+    of_each = {name: [getattr(options, name) for options in asked] for name in _OF_EACH}
+    return {"options": plain, "of_each": of_each}
 
 
 def _fields_but(given: Any, *names: str) -> Plain:

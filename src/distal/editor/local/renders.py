@@ -17,6 +17,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -120,8 +121,8 @@ class RenderJob:
         """Tell that it is not made."""
         self._tell(Dropped(**self.request.numbers))
 
-    def run(self) -> ScratchFolder | None:
-        """Render; return the folder of a picture that the browser has to fetch, or None."""
+    def run(self, keep: Callable[[ScratchFolder], None]) -> None:
+        """Render and tell the result; ``keep`` gets the folder of a picture to be fetched."""
         number = self.request.numbers
         place: ScratchFolder | None = None
         result: Rendered | None = None
@@ -137,11 +138,12 @@ class RenderJob:
         except Exception as error:  # the renders of the others go on
             text = f"this cannot be rendered ({type(error).__name__}: {error})"[:_LONGEST_REASON]
             answer = Mistakes(**number, mistakes=(Mistake(severity="error", message=text),))
-        is_kept = result is not None and result.address is not None
-        if place is not None and not is_kept:
+        # Before it is told: the browser fetches it at once.
+        if place is not None and result is not None and result.address is not None:
+            keep(place)
+        elif place is not None:
             place.remove()
         self._tell(Dropped(**number) if self._is_cancelled else answer)
-        return place if is_kept else None
 
     def _made(self, place: Path) -> Rendered | None:
         """Return the result, None if it was cancelled; a picture stays in the folder.
@@ -384,17 +386,17 @@ class RenderQueue:
                 if not self._jobs:
                     return
                 job = self._jobs[0]
-            place = job.run()
+            job.run(partial(self._keep, job))
             with self._lock:
                 self._jobs.remove(job)
-                if place is not None and job.is_unwanted:
-                    place.remove()
-                elif place is not None:
-                    self._keep(job.owner, place)
 
-    def _keep(self, owner: object, place: ScratchFolder) -> None:
-        self._kept.append((owner, place))
-        of_owner = [kept for kept in self._kept if kept[0] is owner]
-        for kept in of_owner[:-_MOST_KEPT]:
-            kept[1].remove()
-            self._kept.remove(kept)
+    def _keep(self, job: RenderJob, place: ScratchFolder) -> None:
+        with self._lock:
+            if job.is_unwanted:
+                place.remove()
+                return
+            self._kept.append((job.owner, place))
+            of_owner = [kept for kept in self._kept if kept[0] is job.owner]
+            for kept in of_owner[:-_MOST_KEPT]:
+                kept[1].remove()
+                self._kept.remove(kept)
