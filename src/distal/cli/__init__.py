@@ -7,10 +7,13 @@ after ctrl-C. Contains no algorithms.
 
 from __future__ import annotations
 
+import _thread
 import importlib
 import io
 import os
+import signal
 import sys
+import threading
 import warnings
 
 from distal.lang.notices import receive_notices
@@ -54,6 +57,21 @@ def _open_what_is_closed() -> None:
         sys.stderr = open(2, "w", closefd=False)  # noqa: SIM115 (for good)
 
 
+def _unraisable(unraisable: sys.UnraisableHookArgs) -> None:
+    """Interrupt again where ctrl-C came in the middle of a finalizer, which would ignore it."""
+    if isinstance(unraisable.exc_value, KeyboardInterrupt):
+        threading.Timer(0.01, _interrupt).start()
+    else:
+        sys.__unraisablehook__(unraisable)
+
+
+def _interrupt() -> None:
+    if sys.platform == "win32":
+        _thread.interrupt_main()
+    else:  # this one also wakes a main thread that waits
+        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+
+
 def _is_scene(argument: str) -> bool:
     """Return whether the first argument is a scene and no command."""
     file, _, name = argument.rpartition(":")
@@ -72,6 +90,7 @@ def main() -> None:
         name = wanted if wanted in COMMANDS and wanted not in SHORT else "application"
         module = importlib.import_module(f"distal.cli.{name}")
 
+        sys.unraisablehook = _unraisable
         warnings.showwarning = _show_warning
         receive_notices(_show_notice)
         module.application()

@@ -31,11 +31,35 @@ load_watch.load_watched = lambda path, name, say: distal.Scene(distal.Sphere(1.0
 main()
 """
 
+# Ctrl-C while the garbage collector runs a finalizer: Python ignores what is raised there.
+LOST = SLOW_SCENE.replace(
+    "    time.sleep(60)",
+    """    import weakref
+    thing = type("Thing", (), {})()
+    weakref.finalize(thing, signal.raise_signal, signal.SIGINT)
+    del thing
+    time.sleep(60)""",
+)
+
 SMALL = (sys.executable, "-m", "distal.cli", "render", "example:melting", "-o", "a.png", "--stats")
 
 
 def environment():
     return {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+
+
+def test_ctrl_c_in_a_finalizer_is_not_lost(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-c", LOST, "render", "s.py", "-o", "a.png"],
+        cwd=tmp_path,
+        env=environment(),
+        capture_output=True,
+        text=True,
+        timeout=50,
+    )
+    assert done.returncode == 130
+    assert done.stdout == "rendering\n"
+    assert "Traceback" not in done.stderr
 
 
 def test_ctrl_c_exits_130_without_traceback_or_partial_file(tmp_path):

@@ -122,7 +122,7 @@ class RenderJob:
         self._tell(Dropped(**self.request.numbers))
 
     def run(self, keep: Callable[[ScratchFolder], None]) -> None:
-        """Render and tell the result; ``keep`` gets the folder of a picture to be fetched."""
+        """Render and tell the result; ``keep`` gets the folder of a picture that a tab takes."""
         number = self.request.numbers
         place: ScratchFolder | None = None
         result: Rendered | None = None
@@ -138,7 +138,7 @@ class RenderJob:
         except Exception as error:  # the renders of the others go on
             text = f"this cannot be rendered ({type(error).__name__}: {error})"[:_LONGEST_REASON]
             answer = Mistakes(**number, mistakes=(Mistake(severity="error", message=text),))
-        # Before it is told: the browser fetches it at once.
+        # Before the answer is sent: the browser asks for it at once.
         if place is not None and result is not None and result.address is not None:
             keep(place)
         elif place is not None:
