@@ -8,7 +8,6 @@ standard library alone.
 
 from __future__ import annotations
 
-import _thread
 import contextlib
 import linecache
 import math
@@ -25,6 +24,7 @@ from typing import Final
 
 from distal import loading
 from distal.diagnostics import Diagnostic, Span
+from distal.interrupting import interrupt_main
 from distal.loading import SceneCode, file_of, load, split_source
 from distal.saved_files import FileWatcher
 
@@ -146,10 +146,8 @@ class LoadWatch:
 
                 kind = ctypes.py_object(SavedAgain)
                 ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(self._thread), kind)
-            elif hasattr(signal, "pthread_kill"):  # ends a call that waits, too
-                signal.pthread_kill(self._thread, signal.SIGINT)
             else:
-                _thread.interrupt_main()
+                interrupt_main()
 
     def _end_process(self, interrupted_at: float) -> None:
         """End the process if the author's code has caught the exception of ctrl-C."""

@@ -9,7 +9,7 @@ import pytest
 
 import distal
 from distal import Box, Scene, Sphere
-from distal.cluster import ClusterError, WorkerPool, pool_of, whole_pictures
+from distal.cluster import ClusterError, WorkerPool, pool_of, whole_pictures, work
 from distal.cluster import pool as pools
 from distal.cluster.errors import TaskError
 from distal.devices.base import Cancelled
@@ -95,6 +95,21 @@ def test_whole_pictures(client):
         np.testing.assert_array_equal(np.rint(levels * 255.0), levels * 255.0)
 
 
+def break_third():
+    """Let the picture with index 2 fail on a worker, after the others of its task are begun."""
+
+    def picture(image, options, call):
+        if options.index == 2:
+            raise ValueError("the third")
+        return work.picture(image, options, call)
+
+    work.picture, work._picture = work._picture, picture
+
+
+def repair():
+    work._picture = work.picture
+
+
 def test_whole_pictures_of_one_task(client):
     """Quick frames share a task; those that fail there are rendered alone, and say why."""
     pool = WorkerPool(client)
@@ -105,6 +120,16 @@ def test_whole_pictures_of_one_task(client):
     made = whole_pictures.pictures(pool, tinted, options)
     for picture, levels in zip(made, alone, strict=True):
         np.testing.assert_array_equal(picture.levels, levels)
+    client.run(break_third)
+    try:
+        *made, failed = whole_pictures.pictures(pool, tinted, options)
+    finally:
+        client.run(repair)
+    for picture, levels in zip(made, alone[:2], strict=True):
+        np.testing.assert_array_equal(picture.levels, levels)
+    assert isinstance(failed, TaskError)
+    assert str(failed).startswith("the picture at 0.2 s failed on a worker: ")
+    assert "the third" in str(failed)
     wrong = [replace(each, params={"nobody": 1.0}) for each in options]
     for failed, each in zip(whole_pictures.pictures(pool, tinted, wrong), wrong, strict=True):
         assert isinstance(failed, TaskError)

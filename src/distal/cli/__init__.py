@@ -7,15 +7,14 @@ after ctrl-C. Contains no algorithms.
 
 from __future__ import annotations
 
-import _thread
 import importlib
 import io
 import os
-import signal
 import sys
 import threading
 import warnings
 
+from distal.interrupting import interrupt_main
 from distal.lang.notices import receive_notices
 
 # The commands, as --help lists them: first those that new users need.
@@ -60,16 +59,9 @@ def _open_what_is_closed() -> None:
 def _unraisable(unraisable: sys.UnraisableHookArgs) -> None:
     """Interrupt again where ctrl-C came in the middle of a finalizer, which would ignore it."""
     if isinstance(unraisable.exc_value, KeyboardInterrupt):
-        threading.Timer(0.01, _interrupt).start()
+        threading.Timer(0.01, interrupt_main).start()
     else:
         sys.__unraisablehook__(unraisable)
-
-
-def _interrupt() -> None:
-    if sys.platform == "win32":
-        _thread.interrupt_main()
-    else:  # this one also wakes a main thread that waits
-        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
 
 
 def _is_scene(argument: str) -> bool:

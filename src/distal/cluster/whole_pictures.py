@@ -30,8 +30,6 @@ from distal.runtime.uniform_values import chosen_uniforms
 _OF_THIS_PROCESS: Final = (
     *("device", "threads", "progress", "cancel", "refinement", "cluster", "history"),
 )
-# Options that the pictures of one task do not have in common.
-_OF_EACH: Final = ("time", "index")
 # The most bytes of pictures, as levels of 8 bits, in one task.
 _MOST_BYTES: Final = 2**25
 
@@ -144,12 +142,11 @@ def _plain_options(asked: Sequence[RenderOptions]) -> Plain:
     refinement = first.refinement
     if refinement is not None and (refinement.finish is not None or refinement.film is not None):
         raise ClusterError("denoise and film are not for whole pictures on workers")
-    plain = _fields_but(first, *_OF_THIS_PROCESS, *_OF_EACH)
+    plain = _fields_but(first, *_OF_THIS_PROCESS, "time", "index")
     plain |= {"params": dict(first.params), "settings": dict(first.settings or {})}
     if refinement is not None:
         plain["refinement"] = _fields_but(refinement, "film", "preview", "finish")
-    of_each = {name: [getattr(options, name) for options in asked] for name in _OF_EACH}
-    return {"options": plain, "of_each": of_each}
+    return {"options": plain, "moments": [(each.time, each.index) for each in asked]}
 
 
 def _fields_but(given: Any, *names: str) -> Plain:

@@ -51,9 +51,9 @@ def pictures(
         program: The program.
         digest: Its hash.
         data: Its data by name.
-        call: ``options``, arguments of ``RenderOptions`` that all pictures have; ``of_each``, by
-            name those of each picture; ``exact``, whether the pixels are floats and not levels of 8
-            bits; what ``tasks.run`` reads.
+        call: ``options``, arguments of ``RenderOptions`` that all pictures have;
+            ``moments``, the time and index of each; ``exact``, whether the pixels are floats and
+            not levels of 8 bits; what ``tasks.run`` reads.
 
     Returns:
         The pixels of each, what is known of them, and the seconds that they took. None for one of
@@ -62,9 +62,10 @@ def pictures(
 
     def body(stop: Callable[[], bool]) -> list[Plain | None]:
         image = _program(program, digest, data)
-        names, values = call["of_each"].keys(), zip(*call["of_each"].values(), strict=True)
-        of_each = [dict(zip(names, each, strict=True)) for each in values]
-        asked = [_options({**call["options"], **each}, stop) for each in of_each]
+        asked = [
+            _options({**call["options"], "time": at, "index": index}, stop)
+            for at, index in call["moments"]
+        ]
         if len(asked) == 1:
             return [_picture(image, asked[0], call)]
         return [_picture_or_none(image, each, call) for each in asked]
