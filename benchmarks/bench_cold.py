@@ -22,6 +22,7 @@ from typing import Any
 CASES: dict[str, tuple[str, int, float | None, float | None]] = {
     "one ball": ("equal", 1, None, None),
     "10,000 parts of 3 kinds": ("parts", 10_000, 0.5, 2.0),
+    "10,000 parts, default look": ("look", 10_000, None, None),
     "10,000 moving parts": ("moving", 10_000, None, None),
     "the catalogue, 53 kinds": ("catalogue", 0, None, 1.5),
     "200 different parts": ("different", 200, None, 6.0),
@@ -72,15 +73,11 @@ size = (640, 480)
 if kind == "catalogue":
     scene = distal.load("example:catalogue")
     objects = perf_counter() - clock, process_time() - cores
-elif kind in ("parts", "moving"):
+elif kind in ("parts", "moving", "look"):
     whole = union(many(time if kind == "moving" else None))
     objects = perf_counter() - clock, process_time() - cores
-    scene = Scene(
-        whole | Plane(),
-        lights=DistantLight((1, 2, 1.5), angle=0.01),
-        camera=Camera((3, 3, 4), target=(0, 0, 0)),
-        ambient_occlusion=0.0,
-    )
+    lights = {} if kind == "look" else {"lights": DistantLight((1, 2, 1.5), angle=0.01)}
+    scene = Scene(whole | Plane(), camera=Camera((3, 3, 4), target=(0, 0, 0)), **lights)
 else:
     whole = one(0)
     for i in range(1, count):

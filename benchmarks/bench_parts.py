@@ -1,8 +1,9 @@
 """How a scene's cost grows with the number of its parts: objects, first picture, frame, memory.
 
 The parts (boxes, spheres and rings of many colors) stand on a square grid, so that the same share
-of the rays hits them whatever their number is. One sun with shadows, 640x480, one sample, two
-threads. Each count is measured in a fresh process with an empty kernel cache.
+of the rays hits them whatever their number is. One sun with shadows, then the default lights
+(``look``), 640x480, one sample, two threads. Each count is measured in a fresh process with an
+empty kernel cache.
 
 With ``--moving``, each part rises and falls and turns by expressions of the time. The same parts
 that stand still are drawn in turn with them, and the time to compute the boxes of a picture and to
@@ -26,8 +27,14 @@ from pathlib import Path
 from PIL import Image, ImageDraw
 
 COUNTS = (100, 1000, 10_000, 100_000)
-COLUMNS = ("objects", "cold", "frame", "memory")
-COLORS = {"objects": "#2a9d8f", "cold": "#e76f51", "frame": "#264653", "memory": "#b08900"}
+COLORS = {
+    "objects": "#2a9d8f",
+    "cold": "#e76f51",
+    "frame": "#264653",
+    "look": "#7b2cbf",
+    "memory": "#b08900",
+}
+COLUMNS = tuple(COLORS)
 
 MEASURED = """
 import json, random, resource, sys
@@ -52,17 +59,23 @@ scene = Scene(
     whole | Plane(),
     lights=DistantLight((1, 2, 1.5), angle=0.01),
     camera=Camera((3, 3, 4), target=(0, 0, 0)),
-    ambient_occlusion=0.0,
 )
-scene.render(size=(640, 480), samples=1, device=device)
-cold = perf_counter() - begin
-frames = []
-for _ in range(5):
+
+
+def frame(scene):
     begin = perf_counter()
     scene.render(size=(640, 480), samples=1, device=device)
-    frames.append(perf_counter() - begin)
+    return perf_counter() - begin
+
+
+frame(scene)
+cold = perf_counter() - begin
+frames = [frame(scene) for _ in range(5)]
+look = Scene(whole | Plane(), camera=Camera((3, 3, 4), target=(0, 0, 0)))
+looks = [frame(look) for _ in range(6)]
 memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-print(json.dumps({"objects": objects, "cold": cold, "frame": min(frames), "memory": memory}))
+print(json.dumps({"objects": objects, "cold": cold, "frame": min(frames), "look": min(looks),
+    "memory": memory}))
 """
 
 MOVING = """
@@ -104,9 +117,10 @@ result = {"objects": perf_counter() - begin}
 lights = DistantLight((1, 2, 1.5), angle=0.01)
 camera = Camera((3, 3, 4), target=(0, 0, 0))
 frame = {"size": (640, 480), "samples": 1, "device": device, "time": 0.7}
-scenes = {}
+scenes = {"look": Scene(moving | Plane(), camera=camera)}
+scenes["look"].render(**frame)
 for name, whole in (("still", union(parts(0.7))), ("moving", moving)):
-    scenes[name] = Scene(whole | Plane(), lights=lights, camera=camera, ambient_occlusion=0.0)
+    scenes[name] = Scene(whole | Plane(), lights=lights, camera=camera)
     begin = perf_counter()
     scenes[name].render(**frame)
     result["cold"] = perf_counter() - begin
@@ -182,19 +196,22 @@ def main() -> None:
     parser.add_argument("--moving", action="store_true")
     options = parser.parse_args()
     if options.moving:
-        print("  parts   objects      cold     still    moving     refit")
+        print("  parts   objects      cold     still    moving      look     refit")
         for count in options.counts:
             row = measured(count, options.device, MOVING)
             seconds = f"{row['objects']:8.2f} s{row['cold']:8.2f} s"
-            frames = "".join(f"{1000 * row[n]:7.1f} ms" for n in ("still", "moving", "refit"))
+            frames = "".join(
+                f"{1000 * row[n]:7.1f} ms" for n in ("still", "moving", "look", "refit")
+            )
             print(f"{count:7,}{seconds}{frames}", flush=True)
         return
-    print("  parts   objects      cold     frame   memory")
+    print("  parts   objects      cold     frame      look   memory")
     rows: dict[int, dict[str, float]] = {}
     for count in options.counts:
         row = rows[count] = measured(count, options.device)
-        seconds = f"{row['objects']:8.2f} s{row['cold']:8.2f} s{1000 * row['frame']:7.1f} ms"
-        print(f"{count:7,}{seconds}{row['memory']:6.0f} MB", flush=True)
+        seconds = f"{row['objects']:8.2f} s{row['cold']:8.2f} s"
+        frames = "".join(f"{1000 * row[n]:7.1f} ms" for n in ("frame", "look"))
+        print(f"{count:7,}{seconds}{frames}{row['memory']:6.0f} MB", flush=True)
     if len(rows) > 1:
         grown = ", ".join(f"{name} {exponent(rows, name):.2f}" for name in COLUMNS)
         print(f"exponents between the last two: {grown}")

@@ -1,8 +1,9 @@
 """How the cost of a smooth union grows with its members: grid, first picture, frame, memory.
 
 Balls of many colors fill a cube, at equal density whatever their number is, above a floor. One sun
-with shadows, 640x480, one sample, two threads. Each count is measured in a fresh process with an
-empty kernel cache. Times are those of the processor, so that other programs matter less.
+with shadows, then the default lights (``look``), 640x480, one sample, two threads. Each count is
+measured in a fresh process with an empty kernel cache. Times are those of the processor, so that
+other programs matter less.
 
     python benchmarks/bench_smooth_union.py [--counts 50 200 1000] [--linear] [--plot growth.png]
 """
@@ -21,7 +22,7 @@ from bench_parts import exponent, plot
 
 COUNTS = (50, 200, 1000, 5000)
 COLORS = {"grid": "#2a9d8f", "cold": "#e76f51", "frame": "#264653", "megabytes": "#b08900"}
-COLUMNS = ("grid", "cold", "frame", "wall", "memory", "megabytes", "longest", "mean")
+COLUMNS = ("grid", "cold", "frame", "look", "wall", "memory", "megabytes", "longest", "mean")
 
 MEASURED = """
 import json, resource, sys
@@ -47,7 +48,6 @@ scene = Scene(
     shape | Plane(y=-1.3),
     lights=DistantLight((1, 2, 1.5), angle=0.01),
     camera=Camera((2, 2, 4), target=(0, 0, 0)),
-    ambient_occlusion=0.0,
     acceleration=accelerated,
 )
 scene.render(size=(640, 480), samples=1)
@@ -58,9 +58,15 @@ for _ in range(7):
     scene.render(size=(640, 480), samples=1)
     frames.append(process_time() - start)
     walls.append(perf_counter() - wall)
+look = Scene(shape | Plane(y=-1.3), camera=scene.camera, acceleration=accelerated)
+looks = []
+for _ in range(5):
+    start = process_time()
+    look.render(size=(640, 480), samples=1)
+    looks.append(process_time() - start)
 made = found[0].grid if found else None
 print(json.dumps({
-    "grid": grid, "cold": cold, "frame": min(frames), "wall": min(walls),
+    "grid": grid, "cold": cold, "frame": min(frames), "look": min(looks), "wall": min(walls),
     "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
     "megabytes": made.bytes / 1e6 if made else 0.0,
     "longest": made.longest if made else count, "mean": made.mean if made else count,

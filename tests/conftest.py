@@ -1,15 +1,14 @@
 """What every test runs under."""
 
-import atexit
 import gc
 import os
-import shutil
 import signal
-import tempfile
+from pathlib import Path
 
+import pytest
 from hypothesis import settings
 
-from tests.case_samples import (  # noqa: F401 (hooks)
+from tests.selection import (  # noqa: F401 (hooks)
     all_cases,
     pytest_collection_modifyitems,
     pytest_configure,
@@ -23,10 +22,35 @@ from tests.case_samples import (  # noqa: F401 (hooks)
 IS_EACH_VERIFIED = all_cases() or bool(os.environ.get("DISTAL_RANDOM_PROGRAMS"))
 os.environ.setdefault("DISTAL_VERIFY", "1" if IS_EACH_VERIFIED else "sample")
 
-# The person's own cache stays untouched; workers inherit the folder of the process that made it.
+# The own cache of the person stays untouched. That of the tests is kept: its keys are of contents,
+# so that another run, checkout and environment find what an equal compiler has made.
 if "DISTAL_CACHE_DIR" not in os.environ:
-    os.environ["DISTAL_CACHE_DIR"] = tempfile.mkdtemp(prefix="distal-tests-")
-    atexit.register(shutil.rmtree, os.environ["DISTAL_CACHE_DIR"], ignore_errors=True)
+    base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    os.environ["DISTAL_CACHE_DIR"] = str(Path(base) / "distal-tests")
+os.environ.setdefault("DISTAL_CACHE_MIB", "1024")
+
+# LLVM generates code in half of the time without optimization; what compares machine code with
+# other devices, to the bit or closely, gets that of the package.
+IS_OPTIMIZED = all_cases() or "DISTAL_LLVM_LEVEL" in os.environ
+OPTIMIZED = (
+    "devices",
+    "parity",
+    "tape",
+    "pictures",
+    "originals",
+    "cluster",
+    "unit/devices",
+    "unit/llvm",
+)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Choose LLVM's level before any fixture compiles."""
+    if not IS_OPTIMIZED:
+        folder = os.path.relpath(item.path, Path(__file__).parent).replace(os.sep, "/")
+        os.environ["DISTAL_LLVM_LEVEL"] = "2" if folder.startswith(OPTIMIZED) else "0"
+
 
 # Mesa's drivers in software translate each shader with LLVM. Without its optimizer the largest one
 # is ready in half the time. ``make sweep`` and ``make parity`` keep the optimizer.

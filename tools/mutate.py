@@ -5,9 +5,8 @@
 Input: globs below ``src``, how many mutations, a seed. Output: a line for each
 mutation, counts for each package, and the survivors that ``tests/mutation/survivors.toml`` does
 not accept, as entries to put there once their reason is known. Fails when there is one, and when
-an entry is stale; names entries whose mutation is killed now. Which tests run what is recorded
-first (about half an hour of processor time for all of them); later only tests whose file is new or
-changed are.
+an entry is stale; names entries whose mutation is killed now. Which tests run what is in the record
+(``make record``).
 """
 
 from __future__ import annotations
@@ -29,7 +28,6 @@ sys.path[:0] = [str(ROOT)]
 
 from tools.mutation.operators import Mutation, mutations, parses  # noqa: E402
 from tools.mutation.project import Project  # noqa: E402
-from tools.mutation.recording import recorded  # noqa: E402
 from tools.mutation.running import (  # noqa: E402
     KILLED,
     SURVIVED,
@@ -40,6 +38,7 @@ from tools.mutation.running import (  # noqa: E402
 )
 from tools.mutation.selection import Selection  # noqa: E402
 from tools.mutation.survivors import Accepted, accepted, entry_text, stale  # noqa: E402
+from tools.record.rows import load  # noqa: E402
 
 MODULES: Final = ("distal/fields", "distal/render", "distal/passes/fold*", "distal/scene")
 # Tests of meaning: golden texts and error texts notice any change, and so say nothing.
@@ -68,7 +67,8 @@ def main() -> int:
     os.environ["DISTAL_ALL_CASES"] = "1"  # a survivor is one that no case of a sampled test notices
     options = _options()
     root = options.root.resolve()
-    project = Project(root, root / "src", tuple(options.tests), tuple(options.preload))
+    paths = (str(root), *options.paths)
+    project = Project(root, root / "src", tuple(options.tests), tuple(options.preload), paths)
     entries = accepted(options.survivors)
     old = stale(project, entries)
     if options.count <= 0:
@@ -77,10 +77,7 @@ def main() -> int:
     print(f"{len(chosen)} of {total} mutations, SEED={options.seed}", flush=True)
     for name in project.preload:
         importlib.import_module(name)
-    if options.record:
-        options.map.unlink(missing_ok=True)
-    tests = recorded(project, options.map, complete=not options.keep_record)
-    selection = Selection(project, tests, options.seconds)
+    selection = Selection(project, load(options.map), project.tests, options.seconds)
     keys = {entry.key for entry in entries}
     outcomes = _run_all(project, chosen, selection, keys, options)
     survivors = [o for o in outcomes if o.verdict in (SURVIVED, UNTESTED)]
@@ -103,9 +100,8 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=None, help="which ones; drawn when not given")
     parser.add_argument("--seconds", type=float, default=30.0, help="of tests for a mutation")
     parser.add_argument("--minutes", type=float, default=0.0, help="stop drawing after these")
-    parser.add_argument("--record", action="store_true", help="record every test anew")
-    parser.add_argument("--keep-record", action="store_true", help="record nothing")
-    parser.add_argument("--map", type=Path, default=None, help="where the record is kept")
+    parser.add_argument("--map", type=Path, default=None, help="where the record is")
+    parser.add_argument("--paths", nargs="*", default=(), help="what tests import besides")
     parser.add_argument("--root", type=Path, default=ROOT, help="another project")
     parser.add_argument("--tests", nargs="+", default=TESTS)
     parser.add_argument("--preload", nargs="*", default=PRELOAD)
@@ -113,7 +109,7 @@ def _options() -> argparse.Namespace:
     options = parser.parse_args()
     options.seed = secrets.randbelow(10**6) if options.seed is None else options.seed
     options.survivors = options.survivors or options.root / "tests/mutation/survivors.toml"
-    options.map = options.map or options.root / "build/mutation/record.jsonl"
+    options.map = options.map or options.root / "tests/record/rows.xz"
     return options
 
 

@@ -24,6 +24,7 @@ from typing import Final
 
 from distal import loading
 from distal.diagnostics import Diagnostic, Span
+from distal.forking import new_lock
 from distal.interrupting import interrupt_main
 from distal.loading import SceneCode, file_of, load, split_source
 from distal.saved_files import FileWatcher
@@ -81,7 +82,7 @@ class LoadWatch:
         self._is_wanted_to_end = False
         self._interrupted_at: float | None = None
         self._is_main = False
-        self._lock = threading.Lock()
+        self._lock = new_lock()
         self._before: object = None
 
     def __enter__(self) -> LoadWatch:

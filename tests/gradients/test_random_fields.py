@@ -24,10 +24,10 @@ from distal.devices.cache import Cache
 from distal.frontend import lower
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.types import Kind, kind_of
-from tests.case_samples import all_cases
 from tests.gradients.differences import Slopes, differences
 from tests.gradients.fields import Field, make_field
 from tests.gradients.running import Doubles, on_reference, points_of, scope_of
+from tests.selection import all_cases
 
 FIELDS = int(os.environ.get("DISTAL_GRADIENT_FIELDS", "64"))
 COMPILED = 3 if all_cases() else 12

@@ -12,6 +12,7 @@ import pytest
 from tools.mutation.operators import mutations, parses
 from tools.mutation.project import Index, Project
 from tools.mutation.survivors import accepted, entry_text, stale
+from tools.record.rows import merged
 
 ROOT = Path(__file__).parents[2]
 LIST = ROOT / "tests/mutation/survivors.toml"
@@ -76,14 +77,22 @@ def small(tmp_path_factory):
     (package / "__init__.py").touch()
     (package / "made.py").write_text(SOURCE)
     (root / "tests/test_made.py").write_text(TESTS)
-    paths = f'pythonpath = ["src", {str(ROOT / "src")!r}]'
-    (root / "pyproject.toml").write_text(f"[tool.pytest.ini_options]\n{paths}\n")
+    (root / "pyproject.toml").write_text("[tool.pytest.ini_options]\n")
+    ran = {
+        "test_covered": ["covered"],
+        "test_scene_code": ["run_in_vain", "scene_code_in_vain", "scene_code"],
+    }
+    rows = {
+        f"tests/test_made.py::{test}": (0.1, {f"small/made.py:{name}" for name in names})
+        for test, names in ran.items()
+    }
+    merged(rows, {}, None).save(root / "tests/record/rows.xz")
     return root
 
 
 def run(root, *words):
     command = [sys.executable, ROOT / "tools/mutate.py", "--root", root, "--seed", "1", *words]
-    given = ("--tests", "tests", "--preload", "numpy", "llvmlite.binding")
+    given = ("--tests", "tests", "--preload", "numpy", "--paths", str(ROOT / "src"))
     answer = subprocess.run([*command, *given], capture_output=True, text=True, timeout=300)
     return answer.returncode, answer.stdout + answer.stderr
 

@@ -23,9 +23,9 @@ from distal import (
     metal,
     plastic,
 )
-from distal.frontend.lowering import recipes
 from distal.lang import func, select
 from distal.render import path_lights, paths
+from distal.session import SESSION
 from tests.paths.test_integrator import estimate
 
 
@@ -90,9 +90,9 @@ def test_each_strategy_alone_finds_the_same_light(monkeypatch, name, material):
         with monkeypatch.context() as patched:
             patched.setattr(path_lights, "power_share", of_lights)
             patched.setattr(paths, "power_share", of_scattering)
-            recipes.forget()
+            SESSION.fresh()
             found[strategy] = light_of(name, MATERIALS[material])
-        recipes.forget()
+        SESSION.fresh()
     both, sigma = found.pop("both")
     assert both.min() > 0.05
     for strategy, (mean, error) in found.items():

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from distal import AmbientLight, Box, Camera, Plane, Scene, Shape, Sphere
+import distal
+from distal import AmbientLight, Box, Camera, DistantLight, Plane, Scene, Shape, Sphere
 from distal.lang import func, length, max, min, normalize, vec3
 from distal.lang.runtime_access import executor
 from distal.render import shade
@@ -143,3 +144,10 @@ def test_a_safer_slope_does_not_change_occlusion():
         error = np.abs(safer - pictures[0])
         assert np.percentile(error, 98.0) < 0.01
         assert np.sqrt((error**2).mean()) < 0.02
+
+
+@pytest.mark.parametrize("ambient", [True, False])
+def test_occlusion_is_not_computed_where_there_is_no_ambient_light(ambient):
+    lights = [DistantLight((0.3, 0.8, 0.5)), *[AmbientLight(0.3)] * ambient]
+    text = distal.compile(Scene(Sphere(1.0) | Plane(y=-1.0), lights=lights)).text
+    assert ("ambient_occlusion_union" in text) is ambient

@@ -7,11 +7,13 @@ that a line belongs to. Knows nothing of mutations or of running.
 from __future__ import annotations
 
 import ast
+from collections import defaultdict
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
 MODULE_LEVEL = "<module>"
+_DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Import, ast.ImportFrom)
 
 
 @dataclass(frozen=True)
@@ -23,12 +25,14 @@ class Project:
         source: The folder that holds the packages.
         tests: Test files and folders, relative to the root.
         preload: Modules imported once, before the fork; none of them may import the source.
+        paths: Further folders that tests import from.
     """
 
     root: Path
     source: Path
     tests: tuple[str, ...]
     preload: tuple[str, ...] = ()
+    paths: tuple[str, ...] = ()
     _indexes: dict[str, Index] = field(default_factory=dict, compare=False, repr=False)
 
     def files(self, pattern: str) -> list[Path]:
@@ -49,6 +53,55 @@ class Project:
         if name not in self._indexes:
             self._indexes[name] = Index((self.source / name).read_text("utf-8"))
         return self._indexes[name]
+
+    @cached_property
+    def mentions(self) -> dict[str, list[str]]:
+        """The functions of the whole source that mention a name: "file:qualified name"."""
+        found: dict[str, list[str]] = defaultdict(list)
+        for path in sorted(self.source.rglob("*.py")):
+            file = self.name(path)
+            for function, names in self.index(file).names.items():
+                for name in names:
+                    found[name].append(f"{file}:{function}")
+        return found
+
+    @cached_property
+    def _statements(self) -> dict[str, list[tuple[str, ast.stmt]]]:
+        """The module-level statements of the whole source that mention a name."""
+        found: dict[str, list[tuple[str, ast.stmt]]] = defaultdict(list)
+        for path in sorted(self.source.rglob("*.py")):
+            file = self.name(path)
+            for statement in self.index(file).tree.body:
+                if not isinstance(statement, _DEFINITIONS):
+                    for name in mentioned(statement):
+                        found[name].append((file, statement))
+        return found
+
+    def importers(self, function: str) -> set[str]:
+        """The functions that depend on a function which runs while a module is imported."""
+        name = function.rpartition(".")[2]
+        users = set(self.mentions.get(name, ()))
+        return users.union(*(self.users(*each) for each in self._statements.get(name, ())))
+
+    def users(self, file: str, statement: ast.stmt) -> set[str]:
+        """The functions that a module-level statement is about: "file:qualified name".
+
+        They mention what it defines, or it mentions them, as a table or a registration does. Of a
+        class they are its methods, too.
+        """
+        users = {f"{file}:{name}" for name in mentioned(statement)}
+        users.update(key for name in _defined(statement) for key in self.mentions.get(name, []))
+        if isinstance(statement, ast.ClassDef):
+            start = f"{statement.name}."
+            users |= {f"{file}:{n}" for n in self.index(file).functions if n.startswith(start)}
+        return users
+
+
+def _defined(statement: ast.stmt) -> set[str]:
+    if isinstance(statement, ast.ClassDef):
+        return {statement.name}
+    stored = (n for n in ast.walk(statement) if isinstance(n, ast.Name))
+    return {n.id for n in stored if isinstance(n.ctx, ast.Store)}
 
 
 def _python(path: Path) -> list[Path]:

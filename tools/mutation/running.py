@@ -1,36 +1,29 @@
 """One mutation, one process: forked where pytest and the heavy packages are imported already.
 
-Input: a mutation and its tests. Output: whether a test failed, and which. The
-child imports the project anew, with the mutated text in place of the file's: as code, and as what
-``linecache`` gives those who read the source of functions. Nothing is written to the source.
+Input: a mutation and its tests. Output: whether a test failed, and which. The child and the
+processes that it starts import a copy of the source with the mutated text; the source itself stays
+as it is.
 
-The kernel cache is a folder of the child's own. Its key names the lowered scene and the compiler's
-files on disk; a mutated pass changes neither.
+The kernel cache is a folder of the child's own. Its key names the compiler's files, and so a
+mutated compiler makes its own kernels; a mutation of scene code changes the module that is hashed.
 """
 
 from __future__ import annotations
 
-import importlib.abc
-import importlib.machinery
-import importlib.util
-import linecache
 import os
 import resource
 import shutil
 import signal
-import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import CodeType, ModuleType
 
 import pytest
 
 from tools.mutation.operators import Mutation
 from tools.mutation.project import Project
-from tools.mutation.recording import Test
 
 KILLED, SURVIVED, TIMED_OUT, UNTESTED = "killed", "survived", "timed out", "no test"
 MEMORY_BYTES = 16 * 2**30  # of addresses: a mutated size must not take the machine with it
@@ -56,8 +49,14 @@ class Outcome:
     seconds: float = 0.0
 
 
-def run(project: Project, mutation: Mutation, tests: Sequence[Test]) -> Outcome:
-    """Run tests with a mutation in place, until one fails."""
+def run(project: Project, mutation: Mutation, tests: Mapping[str, float]) -> Outcome:
+    """Run tests with a mutation in place, until one fails.
+
+    Args:
+        project: What is mutated.
+        mutation: The mutation.
+        tests: Names in order, each with the processor time that it takes.
+    """
     if not tests:
         return Outcome(mutation, UNTESTED)
     begin = time.monotonic()
@@ -66,7 +65,7 @@ def run(project: Project, mutation: Mutation, tests: Sequence[Test]) -> Outcome:
         child = os.fork()
         if child == 0:
             _child(project, mutation, tests, folder)
-        limit = _WAITING_S + 10.0 * sum(test.seconds for test in tests)
+        limit = _WAITING_S + 10.0 * sum(tests.values())
         in_time, code = _wait(child, begin + limit)
         said = folder / "failed"
         by = said.read_text("utf-8") if said.exists() else ""
@@ -90,11 +89,11 @@ def _wait(child: int, until: float) -> tuple[bool, int]:
     return False, 0
 
 
-def _limit(test: Test) -> float:
-    return 5.0 + 10.0 * test.seconds
+def _limit(seconds: float) -> float:
+    return 5.0 + 10.0 * seconds
 
 
-def _child(project: Project, mutation: Mutation, tests: Sequence[Test], folder: Path) -> None:
+def _child(project: Project, mutation: Mutation, tests: Mapping[str, float], folder: Path) -> None:
     code = 3
     try:
         os.setpgid(0, 0)
@@ -106,9 +105,11 @@ def _child(project: Project, mutation: Mutation, tests: Sequence[Test], folder: 
         os.dup2(log, 2)
         os.environ["DISTAL_CACHE_DIR"] = str(folder / "kernels")
         os.environ["HYPOTHESIS_STORAGE_DIRECTORY"] = str(folder / "hypothesis")
-        install(project, mutation)
-        files = list(dict.fromkeys(test.id.partition("::")[0] for test in tests))
-        words = ["-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", *files]
+        source = str(mutated_copy(project, mutation, folder))
+        os.environ["PYTHONPATH"] = os.pathsep.join([source, *project.paths])
+        files = list(dict.fromkeys(name.partition("::")[0] for name in tests))
+        first = f"pythonpath={' '.join([source, *project.paths])}"
+        words = ["-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", "-o", first, *files]
         code = int(pytest.main(words, plugins=[_Chooser(tests, folder / "failed")]))
     finally:
         os._exit(code)
@@ -117,8 +118,8 @@ def _child(project: Project, mutation: Mutation, tests: Sequence[Test], folder: 
 class _Chooser:
     """A pytest plugin: the chosen tests in their order, each with a time limit."""
 
-    def __init__(self, tests: Sequence[Test], said: Path) -> None:
-        self.tests = {test.id: test for test in tests}
+    def __init__(self, tests: Mapping[str, float], said: Path) -> None:
+        self.tests = tests
         self.said = said
 
     @pytest.hookimpl(trylast=True)
@@ -150,38 +151,12 @@ class _Chooser:
             self.said.write_text(f"{report.nodeid} (collection)", encoding="utf-8")
 
 
-def install(project: Project, mutation: Mutation) -> None:
-    """Let this process import the mutated text instead of the file's."""
-    path = str(project.source / mutation.file)
+def mutated_copy(project: Project, mutation: Mutation, folder: Path) -> Path:
+    """Copy the source into a folder, with the mutation; return where it is."""
+    made = folder / "src"
+    shutil.copytree(
+        project.source, made, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info")
+    )
     text = mutation.applied(project.index(mutation.file).text)
-    lines = text.splitlines(keepends=True)
-    linecache.cache[path] = (len(text), None, lines, path)  # None: not compared with the disk
-    sys.meta_path.insert(0, _Finder(project.module(mutation.file), path, text))
-
-
-class _Finder(importlib.abc.MetaPathFinder):
-    def __init__(self, module: str, path: str, text: str) -> None:
-        self.module, self.path, self.text = module, path, text
-
-    def find_spec(
-        self, name: str, path: Sequence[str] | None, target: ModuleType | None = None
-    ) -> importlib.machinery.ModuleSpec | None:
-        """Of the one module."""
-        if name != self.module:
-            return None
-        loader = _Loader(name, self.path, self.text)
-        return importlib.util.spec_from_file_location(name, self.path, loader=loader)
-
-
-class _Loader(importlib.machinery.SourceFileLoader):
-    def __init__(self, name: str, path: str, text: str) -> None:
-        super().__init__(name, path)
-        self.text = text
-
-    def get_code(self, fullname: str) -> CodeType:
-        """From the text: compiled code on disk is the file's."""
-        return compile(self.text, self.path, "exec", dont_inherit=True)
-
-    def get_source(self, fullname: str) -> str:
-        """The mutated text."""
-        return self.text
+    (made / mutation.file).write_text(text, "utf-8")
+    return made

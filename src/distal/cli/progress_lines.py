@@ -10,12 +10,12 @@ from __future__ import annotations
 import json
 import os
 import sys
-import threading
 import time
 from types import TracebackType
 from typing import IO, Final, Self
 
 from distal.cli.messages import say
+from distal.forking import new_lock
 from distal.lang.progress_lines import COMPILING, KEY, RENDERING
 
 JSON: Final = "json"
@@ -42,7 +42,7 @@ class _ProgressWriter:
 
     def __init__(self) -> None:
         self._stream = _own_stdout()
-        self._lock = threading.Lock()
+        self._lock = new_lock()
         self._stage = COMPILING
         self._last = 0.0
 

@@ -27,6 +27,7 @@ from distal.cluster.sizes import PartSizes
 from distal.cluster.watch import CONSTANT, Watch
 from distal.devices.base import Cancelled, cancel_test
 from distal.devices.features import chosen_level
+from distal.forking import new_lock
 from distal.lang.composed import Composed
 from distal.lang.functions import Image
 from distal.lang.render_options import Cancel
@@ -78,7 +79,7 @@ class WorkerPool:
         self._timeout = timeout
         self._tell = tell or (lambda words: warnings.warn(words, stacklevel=3))
         self.watch = Watch(client, timeout, self._tell)
-        self._lock = threading.Lock()
+        self._lock = new_lock()
         self._sent: dict[str, Any] = {}  # futures of constants, by their names
         self._programs: dict[int, tuple[Any, Sent, Any]] = {}
         self._sizes: dict[Hashable, PartSizes] = {}

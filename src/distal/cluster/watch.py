@@ -7,13 +7,13 @@ task that takes too long by itself (``limits``), so a worker hangs if it does no
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any, Final
 
 from distal.cluster.errors import ClusterError, TaskError, address, explained, lost
+from distal.forking import new_lock
 
 # The longest time between two looks, in seconds.
 _EVERY_S: Final = 5.0
@@ -35,7 +35,7 @@ class Watch:
     def __init__(self, client: Any, timeout: float, tell: Callable[[str], None]) -> None:
         self._client, self._timeout, self._tell = client, timeout, tell
         self._limit = timeout + GRACE_S
-        self._lock = threading.Lock()
+        self._lock = new_lock()
         self._tasks: dict[str, str] = {}
         self._tried: dict[str, list[str]] = {}
         self._given_up: dict[str, str] = {}

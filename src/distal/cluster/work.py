@@ -6,7 +6,6 @@ received, and their kernels, are kept in the worker's process.
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable, Mapping
 from typing import Any, Final, cast
@@ -19,6 +18,7 @@ from distal.cluster.programs import Plain, received
 from distal.devices.base import Cancelled
 from distal.devices.cpu import CpuKernel
 from distal.devices.features import chosen_level
+from distal.forking import new_lock
 from distal.lang.render_options import Refinement, RenderOptions
 from distal.lang.runtime_access import executor
 from distal.runtime.device_names import CPU
@@ -29,7 +29,7 @@ from distal.version import __version__
 # Programs kept in a process; a sweep or a study has one program with many numbers.
 _MOST_KEPT: Final = 16
 _kept: dict[str, Received] = {}
-_lock: Final = threading.Lock()
+_lock: Final = new_lock()
 
 
 def about() -> dict[str, str]:

@@ -14,6 +14,7 @@ from typing import Final
 
 from distal.backends import emit, get_target, target_names
 from distal.backends.base import Artifact
+from distal.compiler.kept_texts import kept_text
 from distal.compiler.prelude_library import PreludeLibrary
 from distal.diagnostics import CompileError
 from distal.frontend import lower
@@ -131,7 +132,9 @@ def compile(obj: Func | Composed, target: str = "glsl-es300", after: str | None 
         raise ValueError(f"there is no target '{target}'; targets: {', '.join(COMPILE_TARGETS)}")
     description = get_target(target)
     module = lower(obj, table_from=TEXT_TABLE_FROM if description.buffers else None)
-    return emit(run_passes(module, description), description)
+    return kept_text(
+        module, description, lambda: emit(run_passes(module, description), description)
+    )
 
 
 __all__ = ["Artifact", "CompileError", "compile", "run_passes"]

@@ -16,12 +16,12 @@ import os
 import subprocess
 import sys
 import tempfile
-import threading
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
 from distal.diagnostics import LONGEST_MESSAGE, DeviceError, printable
+from distal.forking import after_fork, new_lock
 from distal.packages import PackageError, loading, raised_in
 
 _ANSWER_TIMEOUT_S: Final = 30  # a driver may compile its internal shaders at its first start
@@ -116,6 +116,8 @@ def resolve(device: str) -> Resolved:
     if device != "auto":
         name, _, adapter = device.partition(":")
         return Resolved(name, adapter or None, "as requested")
+    if _is_forked:
+        return Resolved("cpu", None, _FORKED)
     if importlib.util.find_spec("wgpu") is None:
         return Resolved("cpu", None, "wgpu is not installed")
     found, complaint = listed_in_subprocess()
@@ -215,12 +217,37 @@ def _handles() -> list[Any]:
         raise DeviceError(f"wgpu cannot list the GPUs: {_short(error)}; or --device cpu") from error
 
 
+_FORKED: Final = (
+    "a GPU cannot be used in a forked process whose parent has used it: start the process by"
+    ' "spawn" or "forkserver", or --device cpu'
+)
+_is_forked = False  # from a process that has loaded the drivers
+
+
+def _forked() -> None:
+    global _is_forked
+    _is_forked |= "wgpu" in sys.modules
+    _OPEN.clear()
+
+
+def require_unforked() -> None:
+    """Refuse a GPU in a fork of a process that has used it.
+
+    Raises:
+        DeviceError: This process is one.
+    """
+    if _is_forked:
+        raise DeviceError(_FORKED)
+
+
 def wgpu_module() -> Any:
     """Import wgpu, and keep its warnings off the terminal.
 
     Raises:
-        DeviceError: It is not installed, or cannot be loaded.
+        DeviceError: It is not installed, or cannot be loaded, or this process is a fork of one that
+            has used it.
     """
+    require_unforked()
     try:
         with loading("wgpu"):
             module = importlib.import_module("wgpu")
@@ -268,7 +295,7 @@ class Gpu:
     def __init__(self, adapter: Adapter, handle: Any) -> None:
         self.adapter = adapter
         self.wgpu = wgpu_module()
-        self.lock = threading.RLock()
+        self.lock = new_lock()
         self.is_lost = False
         self.filters_floats = "float32-filterable" in handle.features
         limits = {name: handle.limits[name] for name in _LIMITS if name in handle.limits}
@@ -326,7 +353,8 @@ class Gpu:
 
 
 _OPEN: dict[int, Gpu] = {}
-_OPENING = threading.RLock()
+after_fork(_forked)
+_OPENING = new_lock()
 
 
 def opened(adapter: Adapter) -> Gpu:

@@ -28,6 +28,7 @@ except ImportError:  # Windows, where kernels are not stored (no O_NOFOLLOW)
     fcntl = None  # type: ignore[assignment]
 
 FOLDER_VARIABLE: Final = "DISTAL_CACHE_DIR"
+LIMIT_VARIABLE: Final = "DISTAL_CACHE_MIB"
 OFF: Final = "off"
 SIZE_LIMIT: Final = 256 * 2**20  # bytes; above it, the least recently used kernels are removed
 # A process reads the sizes of all kernels at its first store, and again after it has stored this
@@ -66,6 +67,20 @@ def default_folder() -> Path | None:
     return (Path(base) if os.path.isabs(base) else home / ".cache") / "distal"
 
 
+def size_limit() -> int:
+    """Return the largest size of the user's folder in bytes; ``DISTAL_CACHE_MIB`` sets it.
+
+    Raises:
+        ValueError: It is not a whole number.
+    """
+    limit = os.environ.get(LIMIT_VARIABLE)
+    if not limit:
+        return SIZE_LIMIT
+    if not limit.isdecimal():
+        raise ValueError(f"{LIMIT_VARIABLE} is a whole number of MiB: '{limit}'")
+    return int(limit) * 2**20
+
+
 class Cache:
     """A folder of kernels.
 
@@ -74,9 +89,9 @@ class Cache:
         limit: The maximum size, in bytes; each process may pass it by ``_SHARE_BETWEEN_SCANS``.
     """
 
-    def __init__(self, folder: Path | None, limit: int = SIZE_LIMIT) -> None:
+    def __init__(self, folder: Path | None, limit: int | None = None) -> None:
         self.folder = folder
-        self.limit = limit
+        self.limit = size_limit() if limit is None else limit
 
     def load(self, key: str) -> bytes | None:
         """Return the bytes stored under a key; None if they are missing or damaged."""

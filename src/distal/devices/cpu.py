@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import importlib
 import json
-import struct
 import time
 from collections.abc import Callable, Mapping, Sequence
-from itertools import accumulate, pairwise
 from typing import Any, Final
 
 import numpy as np
@@ -34,9 +32,9 @@ from distal.devices import cpu_memory, threads
 from distal.devices.base import Cancel, Progress, Values
 from distal.devices.cache import Cache, default_folder
 from distal.devices.executable import Executable
-from distal.devices.features import chosen_level
+from distal.devices.features import CpuLevel, chosen_level
 from distal.devices.jit import compile_objects
-from distal.devices.kernel_key import kernel_key
+from distal.devices.kernel_key import kernel_key, object_key
 from distal.devices.pool import PICTURES
 from distal.devices.resources import load
 from distal.ir.collection import paused_collection
@@ -76,15 +74,15 @@ def prepare(
     level = chosen_level(features)
     cache = Cache(default_folder()) if cache is None else cache
     key = kernel_key(level, precision, print_identity(module))
-    kernel = _loaded(cache.load(key))
+    kernel = _loaded(cache.load(key), cache)
     hit = kernel is not None
     if kernel is None:
         passes = passes or importlib.import_module("distal.compiler.driver").run_passes
         shaped, lanes = passes(module, TARGET, precision), level.lanes(precision)
         with paused_collection():
             texts, interface = emit_modules(shaped, lanes, most=threads.usable_threads())
-        kernel = compile_objects(texts, level), {**interface, "lanes": lanes.count}
-        cache.store(key, _stored(*kernel))
+        kernel = _objects(texts, level, cache), {**interface, "lanes": lanes.count}
+        cache.store(key, _stored([object_key(level, t) for t in texts], kernel[1]))
     code, interface = kernel
     lanes = interface["lanes"]
     stats = {
@@ -102,18 +100,30 @@ def prepare(
 # Kernels as bytes of the cache
 
 
-def _stored(code: Sequence[bytes], interface: dict[str, Any]) -> bytes:
-    header = json.dumps({**interface, "object_sizes": [len(each) for each in code]}).encode()
-    return struct.pack("<I", len(header)) + header + b"".join(code)
+def _objects(texts: Sequence[str], level: CpuLevel, cache: Cache) -> Sequence[bytes]:
+    """Return the object file of each LLVM text; compile those that the cache does not have."""
+    keys = [object_key(level, text) for text in texts]
+    known = {key: found for key in keys if (found := cache.load(key)) is not None}
+    missing = {k: t for k, t in zip(keys, texts, strict=True) if k not in known}
+    if missing:
+        for key, code in zip(missing, compile_objects(list(missing.values()), level), strict=True):
+            cache.store(key, code)
+            known[key] = code
+    return [known[key] for key in keys]
 
 
-def _loaded(data: bytes | None) -> tuple[Sequence[bytes], dict[str, Any]] | None:
+def _stored(objects: Sequence[str], interface: dict[str, Any]) -> bytes:
+    """Return a kernel's bytes: its interface, and the keys of its object files."""
+    return json.dumps({**interface, "objects": list(objects)}).encode()
+
+
+def _loaded(data: bytes | None, cache: Cache) -> tuple[Sequence[bytes], dict[str, Any]] | None:
     if data is None:
         return None
-    (size,) = struct.unpack_from("<I", data)
-    interface = json.loads(data[4 : 4 + size])
-    ends = list(accumulate(interface["object_sizes"], initial=4 + size))
-    return [data[a:b] for a, b in pairwise(ends)], interface
+    interface = json.loads(data)
+    code = [cache.load(key) for key in interface["objects"]]
+    found = [each for each in code if each is not None]
+    return (found, interface) if len(found) == len(code) else None
 
 
 # Kernels as callable functions

@@ -7,7 +7,6 @@ measured time. A lost GPU raises a ``DeviceError``; the next run opens it again.
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -23,12 +22,13 @@ from distal.backends.llvm.layout import kinds_in, shape_of
 from distal.backends.wgsl.functions import leaf_count
 from distal.compiler.driver import run_passes
 from distal.devices import cpu_memory
-from distal.devices.adapters import Adapter, Gpu, chosen, opened
+from distal.devices.adapters import Adapter, Gpu, chosen, opened, require_unforked
 from distal.devices.base import Cancel, Cancelled, DeviceError, Progress, Values, cancel_test
 from distal.devices.driver_errors import rough_names, uses_rough
 from distal.devices.gpu_program import LARGEST_DISPATCH, GpuProgram
 from distal.devices.pool import PICTURES
 from distal.devices.tiles import Tile, TileSizer, tiles
+from distal.forking import new_lock
 from distal.ir.nodes import EntryKind, Module
 from distal.ir.target import Target
 from distal.ir.types import VEC4
@@ -126,7 +126,7 @@ class GpuKernel:
         self._result = entry.result
         leaves = max(sum(map(leaf_count, self._params)), leaf_count(self._result))
         self._point_bytes = _PIXEL_BYTES if self._is_image else 4 * max(1, leaves)
-        self._lock = threading.RLock()
+        self._lock = new_lock()
         self._program: GpuProgram | None = None
         self._ready()
 
@@ -136,6 +136,7 @@ class GpuKernel:
         return self._ready()
 
     def _ready(self) -> GpuProgram:
+        require_unforked()
         if self._program is None or self._program.gpu.is_lost:
             gpu = self._open()
             with gpu.commands("compiling"):

@@ -19,9 +19,11 @@ from typing import Any, Final
 
 from distal.devices.features import CpuLevel, level_named
 from distal.devices.features import machine as architecture_here
+from distal.devices.kernel_key import optimization
 from distal.devices.memory_limit import is_limited, require
 from distal.devices.threads import start_threads
 from distal.diagnostics import printable
+from distal.forking import kept_free
 from distal.packages import loading
 
 _APART: Final = "from distal.devices.jit import _serve; _serve()"
@@ -35,6 +37,7 @@ def llvm_binding() -> Any:
         llvm = importlib.import_module("llvmlite.binding")
         assert llvm.ffi.lib is not None  # loads the library itself
         require(_LLVM_BYTES, "LLVM")
+        kept_free(llvm.ffi.lib._lock._lock)  # llvmlite's own
         llvm.initialize_native_target()
         llvm.initialize_native_asmprinter()
     return llvm
@@ -154,7 +157,7 @@ def _compiled(text: str, level: CpuLevel, assembly: bool) -> Any:
     # macOS reserves x18; on other systems, one register less of thirty does not matter.
     features = "+reserve-x18" if level.architecture == "aarch64" else ""
     machine = llvm.Target.from_triple(triple).create_target_machine(
-        cpu=level.cpu, features=features, opt=2, codemodel="jitdefault"
+        cpu=level.cpu, features=features, opt=optimization(), codemodel="jitdefault"
     )
     # A context of its own: several threads compile at the same time.
     module = llvm.parse_assembly(text, llvm.create_context())

@@ -11,6 +11,8 @@ import hashlib
 import importlib.util
 import os
 import sys
+from collections.abc import Sequence
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Final
@@ -24,6 +26,7 @@ _COMPILER: Final = (
     *("ir", "passes", "backends/llvm", "devices", "frontend", "lang/prelude"),
     *("backends/base.py", "compiler", "tape"),
 )
+LEVEL_VARIABLE: Final = "DISTAL_LLVM_LEVEL"
 _VERSION_FILE: Final = "_version.py"
 _LIBRARIES: Final = ("libllvmlite.so", "libllvmlite.dylib", "llvmlite.dll")
 
@@ -40,6 +43,7 @@ def kernel_key(level: CpuLevel, precision: int, *compiled: str) -> str:
         compiled,
         level,
         precision,
+        optimization(),
         sys.platform,
         __version__,
         compiler_sources(),
@@ -52,12 +56,18 @@ def kernel_key(level: CpuLevel, precision: int, *compiled: str) -> str:
 def compiler_sources() -> str:
     """Return a fingerprint of the compiler's files: a changed compiler does not use old kernels."""
     root = Path(__file__).parent.parent
-    rows: list[tuple[str, int, int]] = []
-    for name in _COMPILER:
-        for file in _python_files(root / name):
-            info = os.stat(file)
-            rows.append((os.path.relpath(file, root), info.st_size, info.st_mtime_ns))
-    return hashlib.sha256(repr(sorted(rows)).encode()).hexdigest()
+    return contents_of(root, sorted(f for name in _COMPILER for f in _python_files(root / name)))
+
+
+def contents_of(root: Path, files: Sequence[str]) -> str:
+    """Return a hash of the names and contents of files: the same in another checkout."""
+    found = hashlib.sha256()
+    for file in files:
+        with open(file, "rb") as opened:
+            text = opened.read()
+        found.update(f"{os.path.relpath(file, root)} {len(text)}\n".encode())
+        found.update(text)
+    return found.hexdigest()
 
 
 def _python_files(place: Path) -> list[str]:
@@ -71,11 +81,59 @@ def _python_files(place: Path) -> list[str]:
     ]
 
 
+def _recorded(package: Path, file: str, size: int) -> str:
+    """Return the hash of a package's file from its wheel's record; "" if there is none."""
+    for record in package.parent.glob(f"{package.name}-*.dist-info/RECORD"):
+        with suppress(OSError):
+            for line in record.read_text("utf-8", "replace").splitlines():
+                name, _, rest = line.partition(",")
+                digest, _, recorded_size = rest.partition(",")
+                if name == file and digest and recorded_size == str(size):
+                    return digest
+    return ""
+
+
+def object_key(level: CpuLevel, text: str) -> str:
+    """Return the cache key of an object file: a changed compiler may write the same LLVM text."""
+    parts = ("object", text, level, optimization(), sys.platform, llvm_fingerprint())
+    return hashlib.sha256(repr(parts).encode()).hexdigest()
+
+
+def text_key(target: str, *compiled: str) -> str:
+    """Return the cache key of a program's text for a target."""
+    parts = ("text", compiled, target, __version__, text_sources())
+    return hashlib.sha256(repr(parts).encode()).hexdigest()
+
+
+@cache
+def text_sources() -> str:
+    """Return a fingerprint of all files that write texts."""
+    root = Path(__file__).parent.parent
+    names = (*_COMPILER, "backends")
+    return contents_of(root, sorted({f for name in names for f in _python_files(root / name)}))
+
+
+def optimization() -> int:
+    """Return LLVM's level of code generation: 2 unless ``DISTAL_LLVM_LEVEL`` names one.
+
+    Raises:
+        ValueError: It is not a level.
+    """
+    level = os.environ.get(LEVEL_VARIABLE) or "2"
+    if level not in ("0", "1", "2", "3"):
+        raise ValueError(
+            f"{LEVEL_VARIABLE} is a level of LLVM's code generation, 0 to 3: '{level}'"
+        )
+    return int(level)
+
+
 @cache
 def llvm_fingerprint() -> tuple[object, ...]:
     """Return a fingerprint of the installed LLVM without loading it: its version and its library.
 
-    Sizes and times alone are not enough: some installers give every file the same time.
+    A wheel's record has the library's hash: another environment with the same LLVM has the same
+    one. Without a record it is the library's size and time, which alone are not enough: some
+    installers give every file the same time.
     """
     spec = importlib.util.find_spec("llvmlite")
     if spec is None or spec.origin is None:
@@ -91,5 +149,6 @@ def llvm_fingerprint() -> tuple[object, ...]:
             info = os.stat(folder / "binding" / library)
         except OSError:
             continue
-        found.append((library, info.st_size, info.st_mtime_ns))
+        recorded = _recorded(folder, f"llvmlite/binding/{library}", info.st_size)
+        found.append((library, info.st_size, recorded or info.st_mtime_ns))
     return tuple(found)

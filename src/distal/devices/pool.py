@@ -11,11 +11,12 @@ import errno
 import math
 import mmap
 import os
-import threading
 import weakref
 
 import numpy as np
 from numpy.typing import NDArray
+
+from distal.forking import new_lock
 
 _KEPT_BYTES = 64 * 2**20  # small compared with a rendering process; enough for several pictures
 _SMALLEST = 2**16  # bytes; for smaller arrays the allocator is as fast
@@ -53,7 +54,7 @@ class Pool:
         self._free: dict[int, list[mmap.mmap]] = {}
         self._bytes = 0
         # An array can be deleted anywhere, even inside ``take``, so the lock must be reentrant.
-        self._lock = threading.RLock()
+        self._lock = new_lock()
 
     def take(self, shape: tuple[int, ...]) -> NDArray[np.float32]:
         """Return an array with undefined content."""

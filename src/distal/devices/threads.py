@@ -17,10 +17,11 @@ from typing import Any, Final
 from numpy.typing import NDArray
 
 from distal.devices.base import Cancel, Cancelled, Progress, cancel_test
+from distal.forking import new_lock
 
 _WATCH_S: Final = 0.02  # longest delay of a request to stop
 _STACK_BYTES: Final = 16 * 2**20  # twice the LLVM backend's limit for arrays
-_STARTING: Final = threading.Lock()  # the stack size is a setting of the whole process
+_STARTING: Final = new_lock()  # the stack size is a setting of the whole process
 
 
 def usable_threads() -> int:

@@ -52,6 +52,7 @@ from distal.editor.messages import (
 )
 from distal.editor.scene_folder import link_beside
 from distal.export.payload import FORMAT
+from distal.forking import new_lock
 from distal.packages import explained, is_installed
 from distal.version import __version__
 
@@ -250,7 +251,7 @@ def main() -> None:
     os.dup2(nothing, 0)
     os.dup2(2, 1)
 
-    lock = threading.Lock()
+    lock = new_lock()
 
     def send(message: Any) -> None:
         with lock:  # a thread tells where the author's code is

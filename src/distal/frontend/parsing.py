@@ -8,13 +8,14 @@ in one shared counter (gh-106905): if two threads parse at the same time, one so
 from __future__ import annotations
 
 import ast
-import threading
 from functools import lru_cache
 from typing import Any, Final
 
+from distal.forking import new_lock
+
 TREES_KEPT: Final = 512
 
-_PARSING: Final = threading.Lock()
+_PARSING: Final = new_lock()
 
 
 def parse(text: str, **options: Any) -> Any:

@@ -31,6 +31,7 @@ from distal.lang.parameter_values import LARGEST_FLOAT
 from distal.lang.parameters import Parameter
 from distal.lang.resources import Buffer, TextureValue
 from distal.lang.values import VALUE_CLASSES, MatrixValue, VectorValue
+from distal.session import SESSION
 
 _BINARY: Final[dict[str, ast.operator]] = {
     "+": ast.Add(),
@@ -65,7 +66,7 @@ _HINTS: Final = {"write float(...) around the int": "an int divided by 1 is a fl
 # In a function the front end splits deeper expressions into locals. Here there are no locals, and
 # the passes recurse through the expression and its surroundings. This is half the measured limit.
 DEEPEST: Final = 100
-_depths: Final[WeakKeyDictionary[Expr, int]] = WeakKeyDictionary()
+_depths: Final[WeakKeyDictionary[Expr, int]] = SESSION.keep("depths", WeakKeyDictionary())
 
 # The rules need a syntax node for their messages; here there is none.
 _NOWHERE: Final = ast.Call(ast.Name("expression"), [], [])

@@ -7,6 +7,8 @@ it is created, by the identities of its children.
 
 from __future__ import annotations
 
+# The step in C that ``weakref.WeakValueDictionary`` makes: remove a key if its reference is dead.
+from _weakref import _remove_dead_weakref as _remove_dead  # type: ignore[attr-defined]
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from typing import Any, ClassVar, Self, TypeVar, cast, dataclass_transform
@@ -27,9 +29,9 @@ _TABLE: dict[Any, _Reference] = {}
 
 
 def _forget(reference: _Reference) -> None:
-    # A new node may have been stored under the key between the death of the old one and this call.
-    if _TABLE.get(reference.key) is reference:
-        del _TABLE[reference.key]
+    # A new node may have been stored under the key between the death of the old one and this call:
+    # one step, so that no other thread can store it between a look and the removal.
+    _remove_dead(_TABLE, reference.key)
 
 
 class Interned:
@@ -63,8 +65,14 @@ class Interned:
                 set_field(found, value)
             if cls._set_span is not None:
                 cls._set_span(found, span)
-            reference = _TABLE[key] = _Reference(found, _forget)
-            reference.key = key
+            mine = _Reference(found, _forget)
+            mine.key = key
+            # Threads may make one node at the same time: all of them return the one in the table.
+            while (reference := _TABLE.setdefault(key, mine)) is not mine:
+                other: Self | None = reference()
+                if other is not None:
+                    return other
+                _remove_dead(_TABLE, key)
         return found
 
 

@@ -10,10 +10,10 @@ import itertools
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from types import FunctionType
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from distal.at_once import cached_property
 from distal.ir.limits import FRAME_SECONDS
 from distal.lang.live_textures import LastFrame
 from distal.lang.presentable import Presentable

@@ -7,11 +7,11 @@ real modules.
 
 from __future__ import annotations
 
-from functools import cache
 from typing import TYPE_CHECKING, cast
 
 from distal.lang.lazy_module import LazyModule
 from distal.packages import is_installed
+from distal.session import SESSION
 
 if TYPE_CHECKING:
     from distal.cluster import kernels as cluster_kernels
@@ -49,12 +49,18 @@ else:
     widget = LazyModule("distal.notebook.widget")
 
 
-@cache
 def executor() -> PythonExecutor:
     """Return the executor of this process, created on the first call.
 
     Without NumPy it is that of the standard library, which refuses whatever needs arrays.
     """
+    return _EXECUTOR.get("") or _EXECUTOR.setdefault("", _new_executor())
+
+
+_EXECUTOR: dict[str, PythonExecutor] = SESSION.keep("executor", {})
+
+
+def _new_executor() -> PythonExecutor:
     if not is_installed("numpy"):
         return cast("PythonExecutor", standard_executor.StandardExecutor())
     return runtime_executor.PythonExecutor()

@@ -6,13 +6,13 @@ triangle, in 64 bits. Does not depend on topology.
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from distal.forking import new_lock
 from distal.frontend import Assembly
 from distal.ir.nodes import Param, Read, Return
 from distal.ir.types import Type
@@ -68,7 +68,7 @@ class FieldKernels:
     params: Mapping[str, Any]
     time: float
     rows: int = 0
-    _lock: threading.Lock = field(default_factory=threading.Lock)
+    _lock: Any = field(default_factory=new_lock)
 
     def call(self, function: Func, *columns: Any, types: Sequence[tuple[str, Type]]) -> Any:
         """Return the values of a function for many rows.

@@ -6,7 +6,6 @@ keyboard, by the names of its textures. Keeps the frames of the last few picture
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.forking import new_lock
 from distal.lang.functions import Image
 from distal.lang.render_options import RenderOptions
 from distal.runtime.frame_history import (
@@ -40,7 +40,7 @@ class EarlierFrames:
     def __init__(self, executor: PythonExecutor) -> None:
         self._executor = executor
         self._histories: dict[tuple[Any, ...], FrameHistory] = {}
-        self._lock = threading.Lock()
+        self._lock = new_lock()
 
     def numbered(self, run: Parts, options: RenderOptions) -> RenderOptions:
         """Return the options with the number of the frame."""

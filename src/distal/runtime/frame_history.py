@@ -6,7 +6,6 @@ reads in one frame. Frames are computed in order, from the first one or from one
 
 from __future__ import annotations
 
-import threading
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -15,6 +14,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.forking import new_lock
 from distal.lang.functions import Image
 from distal.lang.live_textures import Keyboard, LastFrame, LiveTexture, SoundFile
 from distal.lang.render_options import RenderOptions
@@ -39,7 +39,7 @@ class FrameHistory:
     """
 
     frames: OrderedDict[int, dict[Image, Texels]] = field(default_factory=OrderedDict)
-    lock: threading.RLock = field(default_factory=threading.RLock)
+    lock: Any = field(default_factory=new_lock)
 
     def at(self, read: ImagesRead, options: RenderOptions, render: Render) -> dict[Image, Texels]:
         """Return the texels that the picture reads in the frame ``options.index``.

@@ -5,13 +5,13 @@ Input: functions of a point, and values of their uniforms. Output: tapes that ar
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 from weakref import WeakKeyDictionary
 
+from distal.at_once import AtOnce
 from distal.backends import get_target
 from distal.compiler.driver import run_passes
 from distal.devices.resources import load
@@ -31,12 +31,12 @@ from distal.tape.tape import Tape, TapeError
 Ready: TypeAlias = Callable[[], Tape]
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class _Known:
-    """What is kept of one function.
+    """What is kept of one function; replaced as a whole.
 
     Attributes:
-        lowered: The function.
+        lowered: The function; None if its tape needs no compilation.
         module: The module after the passes for tapes; the reason if it has none.
         uniforms: The uniforms of the tape.
         program: The tape of these uniforms.
@@ -45,7 +45,7 @@ class _Known:
     lowered: Lowered | None
     module: Module | TapeError | None
     uniforms: Mapping[str, Any]
-    program: TapeProgram | None = None
+    program: TapeProgram | None
 
 
 class FunctionTapes:
@@ -53,16 +53,21 @@ class FunctionTapes:
 
     def __init__(self) -> None:
         self._known: WeakKeyDictionary[Any, _Known] = WeakKeyDictionary()
-        self._lock = threading.RLock()
+        self._at_once = AtOnce()
 
     def ready(self, function: Composed, tape: Ready) -> TapeProgram:
         """Return the tape of a function that has one without compilation."""
-        with self._lock:
+
+        def found() -> TapeProgram | None:
             known = self._known.get(function)
-            if known is None or known.program is None:
-                known = self._known[function] = _Known(None, None, {}, TapeProgram(tape()))
-            assert known.program is not None
-            return known.program
+            return None if known is None else known.program
+
+        def made() -> TapeProgram:
+            program = TapeProgram(tape())
+            self._known[function] = _Known(None, None, {}, program)
+            return program
+
+        return self._at_once.result(function, found, made)
 
     def program(
         self, function: Composed, lowered: Lowered, uniforms: Mapping[str, Any]
@@ -77,29 +82,37 @@ class FunctionTapes:
         Raises:
             TapeError: The function cannot be a tape.
         """
-        with self._lock:
+
+        def found() -> TapeProgram | None:
             known = self._known.get(function)
             if known is None or known.lowered is not lowered:
-                known = self._known[function] = _Known(lowered, None, {})
+                return None
             if isinstance(known.module, TapeError):
                 raise known.module
-            if known.program is None or known.uniforms != uniforms:
-                try:
-                    known.program = TapeProgram(_tape(known, uniforms))
-                except TapeError as error:
-                    known.module = error
-                    raise
-                known.uniforms = dict(uniforms)
-            return known.program
+            return known.program if known.uniforms == uniforms else None
+
+        def made() -> TapeProgram:
+            known = self._known.get(function)
+            module = known.module if known is not None and known.lowered is lowered else None
+            try:
+                module = module or _module_of(lowered)
+                assert isinstance(module, Module)
+                program = TapeProgram(_tape(module, uniforms))
+            except TapeError as error:
+                self._known[function] = _Known(lowered, error, {}, None)
+                raise
+            self._known[function] = _Known(lowered, module, dict(uniforms), program)
+            return program
+
+        return self._at_once.result(function, found, made)
 
 
-def _tape(known: _Known, uniforms: Mapping[str, Any], precision: int = 32) -> Tape:
-    assert known.lowered is not None
-    if known.module is None:
-        target = get_target("llvm")
-        known.module = run_passes(known.lowered.module, target, PRECISION, after=LAST_PASS)
-    assert isinstance(known.module, Module)
-    return tape_of(known.module, uniforms, buffers_of(known.module), precision)
+def _module_of(lowered: Lowered) -> Module:
+    return run_passes(lowered.module, get_target("llvm"), PRECISION, after=LAST_PASS)
+
+
+def _tape(module: Module, uniforms: Mapping[str, Any], precision: int = 32) -> Tape:
+    return tape_of(module, uniforms, buffers_of(module), precision)
 
 
 def buffers_of(module: Module) -> dict[str, Any]:
@@ -190,8 +203,8 @@ def tape_for(
     if params is None:
         if any(uniform.origin is not Origin.NUMBER for uniform in lowered.module.uniforms):
             raise TapeError("it depends on parameters or the time")
-        return _tape(_Known(lowered, None, {}), {}, precision)
-    return _tape(_Known(lowered, None, {}), uniforms_of(lowered, params, time)[0], precision)
+        return _tape(_module_of(lowered), {}, precision)
+    return _tape(_module_of(lowered), uniforms_of(lowered, params, time)[0], precision)
 
 
 def uniforms_of(

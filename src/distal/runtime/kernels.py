@@ -6,11 +6,13 @@ functions with equal digests. Does not depend on pictures or values.
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from distal.at_once import AtOnce
 from distal.devices.base import Kernel
+from distal.devices.kernel_key import optimization
+from distal.forking import new_lock
 from distal.ir.nodes import Module
 from distal.lang.lazy_module import LazyModule
 from distal.runtime.device_names import AUTO, CPU, DEVICE_NAMES, GPU, GPU_FRAGMENT, REFERENCE
@@ -47,8 +49,9 @@ class KernelCache:
     """
 
     def __init__(self) -> None:
-        self._kernels: dict[tuple[str, str, int], Kernel] = {}
-        self._lock = threading.RLock()
+        self._kernels: dict[tuple[str, str, int, int], Kernel] = {}
+        self._at_once = AtOnce()
+        self._lock = new_lock()  # never held while a kernel is compiled
 
     def __len__(self) -> int:
         return len(self._kernels)
@@ -69,15 +72,24 @@ class KernelCache:
         if name not in DEVICES or (adapter and not name.startswith("gpu")):
             known = ", ".join(DEVICE_NAMES)
             raise ValueError(f"there is no device '{device}'; devices: {known}")
-        key = (lowered.digest, device, precision)
-        with self._lock:
-            kernel = self._kernels.pop(key, None)
-            if kernel is None:
-                kernel = DEVICES[name](lowered.module, precision, adapter or None)
-            self._kernels[key] = kernel  # the most recently used kernel is last
-            if len(self._kernels) > KERNELS_KEPT:
-                self._kernels.pop(next(iter(self._kernels)), None)
+        key = (lowered.digest, device, precision, optimization())
+
+        def found() -> Kernel | None:
+            with self._lock:
+                kernel = self._kernels.pop(key, None)
+                if kernel is not None:
+                    self._kernels[key] = kernel  # the most recently used kernel is last
+                return kernel
+
+        def made() -> Kernel:
+            kernel = DEVICES[name](lowered.module, precision, adapter or None)
+            with self._lock:
+                self._kernels[key] = kernel
+                while len(self._kernels) > KERNELS_KEPT:
+                    self._kernels.pop(next(iter(self._kernels)), None)
             return kernel
+
+        return self._at_once.result(key, found, made)
 
 
 def automatic_device() -> str:

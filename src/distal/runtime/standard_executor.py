@@ -7,12 +7,12 @@ alone, so that a compiler in a browser knows as much of a scene as a page needs.
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 from weakref import WeakKeyDictionary
 
+from distal.at_once import AtOnce
 from distal.backends import get_target
 from distal.compiler.constant_functions import evaluate
 from distal.compiler.driver import run_passes
@@ -28,7 +28,7 @@ from distal.lang.parameters import Parameter
 from distal.lang.places import places_in
 from distal.lang.render_options import checked_time
 from distal.lang.values import VALUE_CLASSES
-from distal.packages import imported
+from distal.packages import imported, is_installed
 from distal.passes.numbers import constant
 from distal.runtime.images_read import ImagesRead, images_read
 from distal.runtime.lowered import Lowered, Types
@@ -65,7 +65,7 @@ class StandardExecutor:
     """
 
     def __init__(self) -> None:
-        self._lock = threading.RLock()  # frames of a video are rendered by several threads
+        self._at_once = AtOnce()
         self._lowered: WeakKeyDictionary[Any, dict[Types, Lowered]] = WeakKeyDictionary()
         self._together: WeakKeyDictionary[Any, Parts] = WeakKeyDictionary()
 
@@ -142,25 +142,24 @@ class StandardExecutor:
 
         def __getattr__(self, name: str) -> Any:
             # What only the executor with arrays can do.
-            if not name.startswith("_"):
+            if not name.startswith("_") and not is_installed("numpy"):
                 _needs_arrays()
             raise AttributeError(f"an executor has no '{name}'", name=name, obj=self)
 
     def parts(self, function: Func | Composed) -> Parts:
         """Return the functions to run for an image or function; cached while they are unchanged."""
-        with self._lock:
-            first = self.lower(function, None)
-            display = function.display if isinstance(function, Composed) else None
-            parts = (first,) if display is None else (first, self.lower(display, (VEC4,)))
-            read = images_read(
-                first.resources.values(), lambda image: self.lower(image, None).resources.values()
-            )
-            frames = tuple(self.lower(image, None) for image in read.all)
-            known = self._together.get(function)
-            if known is None or (known.parts, known.frames) != (parts, frames):
-                declared = DeclaredUniforms([p.module for p in (*parts, *frames)])
-                known = self._together[function] = Parts(parts, declared, read, frames)
-            return known
+        first = self.lower(function, None)
+        display = function.display if isinstance(function, Composed) else None
+        parts = (first,) if display is None else (first, self.lower(display, (VEC4,)))
+        read = images_read(
+            first.resources.values(), lambda image: self.lower(image, None).resources.values()
+        )
+        frames = tuple(self.lower(image, None) for image in read.all)
+        known = self._together.get(function)
+        if known is None or (known.parts, known.frames) != (parts, frames):
+            declared = DeclaredUniforms([p.module for p in (*parts, *frames)])
+            known = self._together[function] = Parts(parts, declared, read, frames)
+        return known
 
     def lower(self, function: Func | Composed | LangFunction, types: Types) -> Lowered:
         """Lower the function; the result is cached while the captured constants are unchanged."""
@@ -168,12 +167,17 @@ class StandardExecutor:
             return Lowered.of(function, types)
         if isinstance(function, Received):
             return function.lowered
-        with self._lock:
-            known = self._lowered.setdefault(function, {})
+        known = self._lowered.setdefault(function, {})
+
+        def found() -> Lowered | None:
             lowered = known.get(types)
-            if lowered is None or not lowered.captured.is_fresh():
-                lowered = known[types] = Lowered.of(function, types)
+            return lowered if lowered is not None and lowered.captured.is_fresh() else None
+
+        def made() -> Lowered:
+            lowered = known[types] = Lowered.of(function, types)
             return lowered
+
+        return self._at_once.result((function, types), found, made)
 
 
 class ValueOf(Composed):

@@ -6,11 +6,11 @@ Input: composed functions, plain values, ``RenderOptions``. Output: pictures, he
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from distal.at_once import cached_property
 from distal.images.picture import Picture
 from distal.lang.composed import Composed
 from distal.lang.lazy_module import LazyModule

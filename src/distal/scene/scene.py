@@ -8,11 +8,11 @@ that encodes light for display. The cheapest renderer that supports all material
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
+from distal.at_once import cached_property
 from distal.fields.guarantees import Limit
 from distal.frontend import Assembly
 from distal.ir.collection import paused_collection

@@ -24,6 +24,7 @@ import numpy as np
 
 from distal.devices.base import PartError, cancel_test
 from distal.diagnostics import DeviceError
+from distal.forking import new_lock
 from distal.images.atomic_files import SaveError, check_destination, replacement
 from distal.images.picture import Picture
 from distal.images.png import encode_levels
@@ -237,7 +238,7 @@ class _Sweep:
         if others may be the reason they are tried again alone, and come a second time.
         """
         every = list(combinations(self.axes))
-        count, lock = len(every), threading.Lock()
+        count, lock = len(every), new_lock()
         first = {i: known.get(i) or self._moving(every[i]) for i in indices[:1]}
 
         def made(index: int) -> tuple[int, Picture | None, dict[str, Any]]:

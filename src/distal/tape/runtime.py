@@ -7,7 +7,6 @@ once for a machine and then comes from the cache; it does not depend on the tape
 from __future__ import annotations
 
 import math
-import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -24,6 +23,7 @@ from distal.devices.features import CpuLevel, chosen_level
 from distal.devices.jit import compile_object
 from distal.devices.kernel_key import kernel_key
 from distal.devices.pool import PICTURES
+from distal.forking import new_lock
 from distal.tape.layout import (
     ALLOCATE,
     CELLS,
@@ -115,7 +115,7 @@ class TapeProgram:
         constants = tape.constants if len(tape.constants) else np.zeros(1, np.float32)
         self._constants = np.ascontiguousarray(constants, np.float32)
         self._memory: NDArray[np.uint8] = np.empty(0, np.uint8)
-        self._lock = threading.Lock()
+        self._lock = new_lock()
         self.slots = self._allocate()
         offsets, self._bytes = workspace(len(tape), self.slots)
         self._offsets = np.array(list(offsets.values()), np.int64)

@@ -13,9 +13,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache
 from typing import Any, Final, NoReturn
 
+from distal.at_once import cached_property
 from distal.diagnostics import CompileError, Diagnostic, Span, printable
 from distal.frontend.problems import did_you_mean
 from distal.ir.nodes import BinaryOp, CompareOp, UnaryOp

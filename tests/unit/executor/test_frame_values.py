@@ -61,4 +61,4 @@ def test_kernels_of_long_ago_are_dropped(monkeypatch):
         lowered = executor.lower(plain(shade), None)
         executor.kernels.kernel(lowered, "reference", 32)
     assert len(executor.kernels) == 2
-    assert (lowered.digest, "reference", 32) in executor.kernels._kernels
+    assert (lowered.digest, "reference", 32) in {key[:3] for key in executor.kernels._kernels}

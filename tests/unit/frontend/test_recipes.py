@@ -4,9 +4,10 @@ import pytest
 
 from distal import Box, Scene, Shape, Sphere, load
 from distal.frontend import lower
-from distal.frontend.lowering import recipes, scene_calls
+from distal.frontend.lowering import scene_calls
 from distal.ir.printer import print_module
 from distal.lang import func, length, struct, vec3
+from distal.session import SESSION
 
 SCENES = ("raymarcher_objects", "city", "wine", "still_life", "bunny")
 
@@ -16,7 +17,7 @@ def text_of(obj) -> str:
 
 
 def fresh(obj) -> str:
-    recipes.forget()
+    SESSION.fresh()
     return text_of(obj)
 
 
@@ -25,7 +26,7 @@ def test_a_scene_is_the_same_whatever_was_lowered_before(name):
     scene = load(f"example:{name}")
     expected = fresh(scene)
     assert text_of(scene) == expected
-    recipes.forget()
+    SESSION.fresh()
     for other in SCENES:
         if other != name:
             lower(load(f"example:{other}"))
@@ -64,6 +65,6 @@ def test_a_name_that_the_author_took_is_not_taken_again(own):
     mine = Shape.from_function(own, slope=1.0, bounds=((-1, -1, -1), (1, 1, 1)))
     scene = Scene(mine.union(Box(0.4), Sphere(0.3)))
     expected = fresh(scene)
-    recipes.forget()
+    SESSION.fresh()
     lower(Scene(Box(0.4).union(Sphere(0.3), Sphere(0.2))))
     assert text_of(scene) == expected

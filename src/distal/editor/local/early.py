@@ -14,6 +14,7 @@ from typing import Final
 from distal.editor.local.files import SceneFiles
 from distal.editor.local.process import WorkerProcess
 from distal.editor.messages import LookRequest, encoded
+from distal.forking import new_lock
 
 EARLY_ID: Final = 0  # of the request that no app has made
 
@@ -33,7 +34,7 @@ class EarlyWorker:
         limit: float,
         start: Callable[..., WorkerProcess] = WorkerProcess,
     ) -> None:
-        self._lock = threading.Lock()
+        self._lock = new_lock()
         self._lines: list[str] = []
         self._received: Callable[[str], None] | None = None
         self._on_end: Callable[[str], None] | None = None

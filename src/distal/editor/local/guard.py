@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import hmac
 import secrets
-import threading
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
+
+from distal.forking import new_lock
 
 HOST = "127.0.0.1"
 
@@ -28,7 +29,7 @@ class Guard:
         self._cookie = f"distal_{port}"  # cookies of one host are shared by its ports
         self._key: str | None = secrets.token_urlsafe(24)
         self._secret = secrets.token_urlsafe(32)
-        self._lock = threading.Lock()
+        self._lock = new_lock()
 
     @property
     def origin(self) -> str:

@@ -11,7 +11,6 @@ import json
 import queue
 import secrets
 import sys
-import threading
 import time
 from pathlib import Path
 from typing import Any, Final
@@ -19,6 +18,7 @@ from typing import Any, Final
 from distal.editor.local.process import ChildProcess
 from distal.editor.local.scratch import LESSON, ScratchFolder
 from distal.editor.local.serving import NOT_FOUND, HttpReply, LocalServer
+from distal.forking import new_lock
 
 MAKING_S: Final = 120.0
 _LOOK_S: Final = 0.3
@@ -46,7 +46,7 @@ class LessonServer(LocalServer):
         self._count = 0
         self._text = "The page is made …"
         self._process: ChildProcess | None = None
-        self._process_lock = threading.Lock()
+        self._process_lock = new_lock()
         super().__init__(port)
 
     def serve(self) -> None:

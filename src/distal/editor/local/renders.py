@@ -38,6 +38,7 @@ from distal.editor.messages import (
     RenderRequest,
 )
 from distal.editor.scene_folder import check_name, encoded_text, link_beside
+from distal.forking import new_lock
 from distal.images.atomic_files import SaveError, replacement
 from distal.lang.lazy_module import LazyModule
 from distal.lang.progress_lines import KEY, LOADING, STAGES
@@ -93,7 +94,7 @@ class RenderJob:
     ) -> None:
         self.owner, self.request = owner, request
         self._beside, self._limits, self._tell = beside, limits, tell
-        self._lock = threading.Lock()
+        self._lock = new_lock()
         self._process: ChildProcess | None = None
         self._over = threading.Event()
         self._is_cancelled = False

@@ -16,6 +16,7 @@ from urllib.parse import urlsplit
 from distal.editor.local.guard import HOST, Guard
 from distal.editor.local.scratch import sweep
 from distal.editor.messages import LONGEST_MESSAGE
+from distal.forking import new_lock
 from distal.packages import imported
 
 MOST_TABS: Final = 8
@@ -73,7 +74,7 @@ class LocalServer(ABC):
         self._headers = imported("websockets.datastructures").Headers
         self._closed: type[Exception] = imported("websockets.exceptions").ConnectionClosed
         self._tabs: dict[Any, Any] = {}
-        self._lock = threading.Lock()
+        self._lock = new_lock()
         self._over = threading.Event()
         sweep()
         self._server = imported("websockets.sync.server").serve(

@@ -38,6 +38,7 @@ from distal.editor.messages import (
     encoded,
     parsed,
 )
+from distal.forking import new_lock
 from distal.images.atomic_files import SaveError
 
 # Seconds that the author's code has, and that a compilation, a check or an export has after it.
@@ -73,7 +74,7 @@ class StudioTab:
     ) -> None:
         self._files, self._send, self._limit, self._start = files, send, limit, start
         self._on_saved, self._renders = saved, renders
-        self._lock = threading.RLock()
+        self._lock = new_lock()
         self._waiting: dict[int, int] = {}  # the revision by id, in the order of arrival
         self._ends = 0.0
         self._has_run = False  # the author's code, for the first request that waits

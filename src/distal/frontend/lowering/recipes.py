@@ -16,6 +16,7 @@ from distal.frontend.lowering.instances import Instance
 from distal.ir.nodes import Function
 from distal.ir.types import Type
 from distal.lang.functions import Overload, is_fixed
+from distal.session import SESSION
 
 if TYPE_CHECKING:
     from distal.frontend.lowering.compilation import Compilation
@@ -65,7 +66,9 @@ class Recipe:
     result: Type
 
 
-_recipes: OrderedDict[tuple[Overload, tuple[Type, ...]], Recipe] = OrderedDict()
+_recipes: OrderedDict[tuple[Overload, tuple[Type, ...]], Recipe] = SESSION.keep(
+    "recipes", OrderedDict()
+)
 
 
 def repeated(
@@ -121,8 +124,3 @@ def keep(
     _recipes[overload, types] = Recipe(steps, instance.source_name, instance.result)
     if len(_recipes) > RECIPES_KEPT:
         _recipes.popitem(last=False)
-
-
-def forget() -> None:
-    """Forget all recipes, as after a function of the library was replaced in a test."""
-    _recipes.clear()

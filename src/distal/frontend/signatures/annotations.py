@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import collections.abc
 import dataclasses
+import threading
 import typing
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -161,7 +162,14 @@ def evaluate(text: str, names: Mapping[str, Any], module: Mapping[str, Any]) -> 
         raise AnnotationError(f"'{text}' is not a type of scene code ({error})") from None
 
 
-_STRUCTS_IN_PROGRESS: list[type] = []
+class _InProgress(threading.local):
+    """The structs whose fields this thread reads, outermost first."""
+
+    def __init__(self) -> None:
+        self.structs: list[type] = []
+
+
+_IN_PROGRESS = _InProgress()
 
 
 def struct_type(cls: type) -> Struct:
@@ -173,14 +181,15 @@ def struct_type(cls: type) -> Struct:
     known = vars(cls).get("__distal_struct_type__")
     if isinstance(known, Struct):
         return known
-    if cls in _STRUCTS_IN_PROGRESS:
+    in_progress = _IN_PROGRESS.structs
+    if cls in in_progress:
         raise AnnotationError(f"the struct '{cls.__name__}' contains itself")
     names: StructNames = vars(cls)["__distal_struct__"]
-    _STRUCTS_IN_PROGRESS.append(cls)
+    in_progress.append(cls)
     try:
         fields = tuple(_field(cls, f, names) for f in dataclasses.fields(cls))
     finally:
-        _STRUCTS_IN_PROGRESS.pop()
+        in_progress.pop()
     if not fields:
         raise AnnotationError(f"the struct '{cls.__name__}' has no fields")
     owner = cls if METHODS in vars(cls) else None

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from types import FunctionType
 from typing import Any, Final
 from weakref import WeakKeyDictionary
 
+from distal.at_once import cached_property
 from distal.diagnostics import CompileError, Diagnostic, Span
 from distal.frontend.name_lookup import NameLookup, names_of
 from distal.frontend.parsing import TREES_KEPT
@@ -22,6 +23,7 @@ from distal.frontend.source import SourceMap, parse_definition
 from distal.lang.annotations import ArrayAnnotation
 from distal.lang.functions import Overload, is_fixed
 from distal.lang.source import capture
+from distal.session import SESSION
 
 MISSING: Final = object()
 
@@ -82,8 +84,10 @@ def _scopes_of(node: ast.FunctionDef) -> ScopeAnalysis:
     return analyse_scopes(node.body, {a.arg for a in all_parameters(node.args)})
 
 
-_definitions: WeakKeyDictionary[Overload, Definition] = WeakKeyDictionary()
-_fixed: dict[Overload, FunctionSignature] = {}
+_definitions: WeakKeyDictionary[Overload, Definition] = SESSION.keep(
+    "definitions", WeakKeyDictionary()
+)
+_fixed: dict[Overload, FunctionSignature] = SESSION.keep("signatures", {})
 
 
 def definition_of(overload: Overload) -> Definition:
@@ -94,7 +98,7 @@ def definition_of(overload: Overload) -> Definition:
     """
     found = _definitions.get(overload)
     if found is None:
-        found = _definitions[overload] = Definition(overload)
+        found = _definitions.setdefault(overload, Definition(overload))
     return found
 
 
@@ -178,7 +182,7 @@ def read_signature(overload: Overload) -> FunctionSignature:
     if known is None:
         known = _read(overload)
         if is_fixed(overload) and not known.problems:
-            _fixed[overload] = known
+            known = _fixed.setdefault(overload, known)
     return known
 
 

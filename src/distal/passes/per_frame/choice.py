@@ -22,6 +22,7 @@ class Picking:
 
     def __init__(self, function: Function, costs: Costs) -> None:
         self._costs = costs
+        self.has_picked = False  # whether ``calls`` has met an expression that is picked
         reads: Counter[str] = Counter()
         lets: set[str] = set()
         for stmt in statements_in(function.body):
@@ -69,6 +70,7 @@ class Picking:
                 continue
             seen.add(e)
             if self.picks(e, here):
+                self.has_picked = True
                 continue
             if isinstance(e, Call):
                 yield e

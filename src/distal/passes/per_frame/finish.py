@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from distal.ir.contents import contents
 from distal.ir.nodes import Call, Expr, Function, Let, Module, PerFrame, Read, Stmt
 from distal.ir.walk import (
     map_expressions,
@@ -18,6 +19,7 @@ from distal.ir.walk import (
     per_frame_reads,
     per_frame_reads_in,
     rewrite,
+    roots_in,
     substitute,
 )
 from distal.passes.fold.fold import fold_function
@@ -65,6 +67,7 @@ def _without_unread_params(
 ) -> tuple[Function, ...]:
     """Fold each function, and remove unread parameters and the arguments passed to them."""
     kept: dict[str, list[int]] = {}
+    shortened: set[str] = set()
     result: list[Function] = []
     memo: dict[Expr, Expr] = {}
 
@@ -75,16 +78,22 @@ def _without_unread_params(
         return Call(e.function, args, e.type, span=e.span)
 
     for function in functions:
-        body = map_expressions(function.body, lambda e: rewrite(e, shorter, memo))
-        function = fold_function(replace(function, body=body), precision)
+        called = {name for e in roots_in(function.body) for name in contents(e).called}
+        if not called.isdisjoint(shortened):
+            body = map_expressions(function.body, lambda e: rewrite(e, shorter, memo))
+            function = replace(function, body=body)
+        function = fold_function(function, precision)
         read = names_read(function.body)
         kept[function.name] = [
             i
             for i, param in enumerate(function.params)
             if param.name in read or function.name == entry
         ]
-        params = tuple(function.params[i] for i in kept[function.name])
-        result.append(replace(function, params=params))
+        if len(kept[function.name]) < len(function.params):
+            shortened.add(function.name)
+            params = tuple(function.params[i] for i in kept[function.name])
+            function = replace(function, params=params)
+        result.append(function)
     return tuple(result)
 
 
@@ -186,6 +195,12 @@ def _named(module: Module, hints: Mapping[str, str | None]) -> Module:
     def block(body: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
         return tuple(map(statement, body))
 
-    functions = tuple(replace(f, body=block(f.body)) for f in module.functions)
+    def has_marks(function: Function) -> bool:
+        inside = map(contents, roots_in(function.body))
+        return any(not final.keys().isdisjoint((*c.frames, *c.reads)) for c in inside)
+
+    functions = tuple(
+        replace(f, body=block(f.body)) if has_marks(f) else f for f in module.functions
+    )
     frame = tuple((final[name], rewrite(value, change, memo)) for name, value in module.frame)
     return replace(module, functions=functions, frame=frame)

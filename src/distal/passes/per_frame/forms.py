@@ -80,6 +80,7 @@ class Forming:
     def __init__(self, precision: int, callable: frozenset[str]) -> None:
         self._rules = Rules(ConstantArithmetic(precision), {}, frozenset())
         self._callable = callable
+        self.precision = precision
 
     def simplified(self, e: Expr) -> Expr:
         """Fold the root node of the expression."""

@@ -25,10 +25,11 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from distal.ir.contents import contents
+from distal.ir.kept import kept
 from distal.ir.nodes import Call, Construct, Expr, Field, Function, Module, Param, Read, Uniform
 from distal.ir.target import FramePlace
 from distal.ir.types import Struct, Type
-from distal.ir.walk import children, rebuild
+from distal.ir.walk import children, rebuild, roots_in
 from distal.passes.context import Context
 from distal.passes.cost import Costs, function_costs
 from distal.passes.naming import FreshNames, local_names
@@ -87,13 +88,57 @@ def _may_travel(type: Type) -> bool:
     return is_carried(type) or is_exploded(type)
 
 
+@dataclass(frozen=True, slots=True)
+class _Learned:
+    """What the pass finds in a function.
+
+    Attributes:
+        calls: The calls that stay in pixel code: callee, rate, the forms of its arguments.
+        picks: Whether anything in it is computed once per frame.
+    """
+
+    calls: tuple[tuple[str, int, tuple[Expr | None, ...]], ...]
+    picks: bool
+
+
+@kept
+def _learn(
+    function: Function,
+    params: tuple[tuple[str, Expr], ...],
+    costs: tuple[tuple[str, int], ...],
+    callable: frozenset[str],
+    precision: int,
+) -> _Learned:
+    """Find the calls in a function that pixels make, and whether it has per-frame work.
+
+    Args:
+        function: The function.
+        params: The forms of its parameters.
+        costs: The costs of the functions that it, or a form, calls.
+        callable: Those of them that may run once per frame.
+        precision: As for ``Forming``.
+    """
+    picking = Picking(function, Costs(dict(costs)))
+    found: list[tuple[str, int, tuple[Expr | None, ...]]] = []
+
+    def visit(e: Expr, here: Here) -> Expr:
+        for call in picking.calls(e, here):
+            found.append((call.function, here.rate, tuple(here.form(a) for a in call.args)))
+        return e
+
+    FlowWalk(function, dict(params), Forming(precision, callable), visit).run()
+    return _Learned(tuple(found), picking.has_picked)
+
+
 class _Hoisting:
     """Runs the pass on one module: callers first to collect, callees first to rewrite."""
 
     def __init__(self, module: Module, context: Context) -> None:
         self._module = module
         self.costs = Costs(function_costs(module.functions))
-        self.forming = Forming(context.precision, hoistable_calls(module.functions))
+        self._hoistable = hoistable_calls(module.functions)
+        self.forming = Forming(context.precision, self._hoistable)
+        self._learned: dict[str, _Learned] = {}
         self.expansion = Expansion(module.functions, self.forming, self.costs)
         self.frame_values = FrameValues(self.costs, self.expansion.names)
         self.keeps_constants = not context.target.inline
@@ -115,28 +160,53 @@ class _Hoisting:
         for function in reversed(self._module.functions):
             if function.name in self.calls:
                 self._learn(function)
-        return tuple(
-            _Rewriting(self, f).function() for f in self._module.functions if f.name in self.calls
-        )
+        return tuple(self._rewritten(f) for f in self._module.functions if f.name in self.calls)
+
+    def _rewritten(self, function: Function) -> Function:
+        """Return a function without its per-frame work; most functions of the library have none."""
+        learned = self.learned(function)
+        is_plain = not learned.picks and not any(self.calls[c].added for c, _, _ in learned.calls)
+        if is_plain and not any(
+            self._is_replaced(n, e) for n, e in self.forms_of(function).items()
+        ):
+            return function
+        return _Rewriting(self, function).function()
+
+    def _is_replaced(self, name: str, form: Expr) -> bool:
+        """Whether reads of a parameter with this form become something else."""
+        if isinstance(form, Read) and form.name == name:
+            return False
+        return is_carried(form.type) and not (self.keeps_constants and not _leaves(form, Uniform))
 
     def _learn(self, function: Function) -> None:
         """Record the arguments of the calls that stay in a function's pixel code."""
-        picking = self.picking(function)
         heat = self.calls[function.name].rate
+        learned = self.learned(function)
+        for callee, rate, args in learned.calls:
+            known = self.calls.setdefault(callee, _Calls([[] for _ in args]))
+            known.rate += heat * rate
+            for i, form in enumerate(args):
+                forms = known.args[i]
+                if form is None or forms is None:
+                    known.args[i] = None
+                else:
+                    forms.append(form)
 
-        def visit(e: Expr, here: Here) -> Expr:
-            for call in picking.calls(e, here):
-                known = self.calls.setdefault(call.function, _Calls([[] for _ in call.args]))
-                known.rate += heat * here.rate
-                for i, arg in enumerate(call.args):
-                    form, forms = here.form(arg), known.args[i]
-                    if form is None or forms is None:
-                        known.args[i] = None
-                    else:
-                        forms.append(form)
-            return e
-
-        FlowWalk(function, self.forms_of(function), self.forming, visit).run()
+    def learned(self, function: Function) -> _Learned:
+        """Return what the pass finds in a function, which it may have found in another program."""
+        found = self._learned.get(function.name)
+        if found is None:
+            forms = tuple(self.forms_of(function).items())
+            asked = dict.fromkeys(
+                name
+                for e in (*roots_in(function.body), *(form for _, form in forms))
+                for name in contents(e).callees
+            )
+            calls = tuple((n, self.costs.calls[n]) for n in asked if n in self.costs.calls)
+            callable = frozenset(n for n in asked if n in self._hoistable)
+            found = _learn(function, forms, calls, callable, self.forming.precision)
+            self._learned[function.name] = found
+        return found
 
     def forms_of(self, function: Function) -> dict[str, Expr]:
         """Return the forms of a function's parameters."""

@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from typing import Final, TypeAlias
 
 from distal.diagnostics import CompileError, Span
+from distal.ir.contents import contents
 from distal.ir.nodes import (
     Apply,
     Call,
@@ -57,6 +58,8 @@ class _BoundShape:
     name: str
     captures: tuple[_BoundShape | Type, ...]
 
+
+_SPECIALISED: Final = frozenset({Call, Apply, Gradient, FunctionRef, Resource})
 
 _Bound: TypeAlias = _BoundShape | Const | None  # None: a run-time parameter
 
@@ -192,6 +195,10 @@ class _Clone:
             else:
                 self._bound[param.name] = self._open_binding(param, binding, extra)
         self._params = (*params, *extra)
+        # The names whose reads are replaced.
+        self._replaced = {
+            p.name for p, b in zip(original.params, bindings, strict=True) if b is not None
+        }
 
     def _open_binding(self, param: Param, shape: _BoundShape, extra: list[Param]) -> Expr:
         """Return the bound value as an expression over the clone's additional parameters."""
@@ -219,6 +226,7 @@ class _Clone:
             self._span = stmt.span
             if isinstance(stmt, Let) and is_static(stmt.value.type):
                 self._bound[stmt.name] = self._kept(self._static(stmt.value), stmt, written)
+                self._replaced.add(stmt.name)
             elif isinstance(stmt, Var) and is_static(stmt.value.type):
                 raise self._chosen(stmt.value)
             else:
@@ -242,6 +250,9 @@ class _Clone:
         return FunctionRef(bound.name, tuple(captures), bound.type)
 
     def _expression(self, e: Expr) -> Expr:
+        known = contents(e)
+        if known.kinds.isdisjoint(_SPECIALISED) and known.reads.isdisjoint(self._replaced):
+            return e  # most expressions of the library: nothing in them is static
         done = self._memo.get(e)
         if done is None:
             done = self._memo[e] = self._rewritten(e)

@@ -32,6 +32,7 @@ from distal.scene.lowering.slope_limit import loses_slope, may_be_endless, refus
 from distal.scene.objects.field import BaseShape
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
+from distal.session import SESSION
 
 Points = NDArray[np.float64]
 
@@ -62,7 +63,7 @@ class _Suspects(NamedTuple):
     endless: list[Node]
 
 
-_looked_at: WeakSet[Node] = WeakSet()
+_looked_at: WeakSet[Node] = SESSION.keep("checked nodes", WeakSet())
 
 
 def _suspects_of(root: Node) -> _Suspects:

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
+from distal.at_once import cached_property
 from distal.diagnostics import Span
 from distal.fields.combine import joins
 from distal.scene.looks.boxes import subject_box

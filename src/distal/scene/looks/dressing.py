@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
 from distal import Background, DistantLight, HemisphereLight, Plane, SpotLight, matte, pattern
+from distal.at_once import cached_property
 from distal.lang import cos, sin
 from distal.render.backdrops import ruled
 from distal.render.declarations import CAMERAS

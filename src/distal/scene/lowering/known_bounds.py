@@ -26,6 +26,7 @@ from distal.scene.lowering.bounds import PACKED, BoundsComposer, ShapeBounds, pa
 from distal.scene.tree.conversion import NO_VALUES
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values
+from distal.session import SESSION
 
 # Size of the cache of functions; those of nodes with textures or buffers are not cached.
 MOST_KEPT: Final = 512
@@ -43,8 +44,8 @@ class KnownBounds:
     side_growth: float
 
 
-_known: WeakKeyDictionary[Node, KnownBounds] = WeakKeyDictionary()
-_bounds_steps: dict[Any, _BoundsStep] = {}
+_known: WeakKeyDictionary[Node, KnownBounds] = SESSION.keep("bounds", WeakKeyDictionary())
+_bounds_steps: dict[Any, _BoundsStep] = SESSION.keep("steps of bounds", {})
 
 
 def known_bounds_of(node: Node) -> KnownBounds:

@@ -365,7 +365,7 @@ class SceneLowering:
         given["look"] = body.let("look", composer.call(settings.look, given))
         rays = self._rays
         given["first_hit"] = rays.first_hit(body, given, hybrid=self._hybrid)
-        given["occlusion"] = rays.occlusion(body, given, hybrid=self._hybrid)
+        given["occlusion"] = self._occlusion(body, given)
         given["shadow"] = self._shadow(body, given)
         if scene.renderer == "refracted" or paths:
             on_surface = {**given, "near": number(0.0)}
@@ -397,6 +397,13 @@ class SceneLowering:
         """Return the author's field, which views and layers show."""
         values = self.composer.values.all(self._shown_node)
         return self.composer.field(self._shown_node, values, ZERO_CELL)
+
+    def _occlusion(self, body: StatementList, given: Mapping[str, Expr]) -> FunctionRef:
+        """The share of ambient light that reaches a point; 1 where the scene has none."""
+        if any(light.ambient is not None for light in self._scene.lights):
+            return self._rays.occlusion(body, given, hybrid=self._hybrid)
+        place = (("p", VEC3), ("n", VEC3), ("slope", FLOAT))
+        return self._function("unoccluded", place, lambda body, given: number(1.0))
 
     def _shadow(self, body: StatementList, given: Mapping[str, Expr]) -> FunctionRef:
         """Return the function ``(origin, light, sample, samples) -> Opening``."""

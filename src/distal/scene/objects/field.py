@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from os import PathLike
 from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeVar, Unpack, overload
 
+from distal.at_once import cached_property
 from distal.diagnostics import Span
 from distal.fields.combine import blends, joins
 from distal.fields.guarantees import EXACT, Guarantee, Limit, Operator, ended

@@ -23,6 +23,7 @@ from distal.scene.lowering.derived import DistanceOf
 from distal.scene.objects.field import BaseShape
 from distal.scene.tree.node import Node
 from distal.scene.tree.varying import VaryingNumber
+from distal.session import SESSION
 
 _COLUMNS: Final = 16  # along x and z, at first
 _LEVELS: Final = 5  # of divided columns
@@ -46,7 +47,7 @@ _TIGHT: Final = frozenset(
 
 Corner = tuple[float, ...]
 # Heights by what they depend on: a scene is made again at each change of its file.
-_found: dict[Hashable, float] = {}
+_found: dict[Hashable, float] = SESSION.keep("lowest points", {})
 _MOST_FOUND: Final = 1024
 
 

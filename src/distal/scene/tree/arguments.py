@@ -55,6 +55,7 @@ from distal.scene.tree.conversion import (
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.varying import VaryingNumber, varying_or_same
 from distal.scene.tree.whole_numbers import whole_ends
+from distal.session import SESSION
 
 # The value of a parameter; may be another object, such as a pattern, if the caller accepts it.
 Given: TypeAlias = "Number | int | bool | TextureValue | LangBuffer | Any"
@@ -105,7 +106,9 @@ class FunctionParameter:
         return self.type is FLOAT or self.is_vector
 
 
-_slots: WeakKeyDictionary[Func, tuple[FunctionParameter, ...]] = WeakKeyDictionary()
+_slots: WeakKeyDictionary[Func, tuple[FunctionParameter, ...]] = SESSION.keep(
+    "parameters", WeakKeyDictionary()
+)
 
 
 def slots_of(func: Func) -> tuple[FunctionParameter, ...]:

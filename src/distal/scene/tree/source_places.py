@@ -19,6 +19,7 @@ from typing import Final, TypeAlias
 
 import distal
 from distal.diagnostics import Span
+from distal.session import SESSION
 
 # First and last line, first and last column in bytes of UTF-8; None if Python did not record it.
 _Position: TypeAlias = tuple[int | None, int | None, int | None, int | None]
@@ -49,7 +50,7 @@ class _CodeText:
     spans: dict[int, Span] = field(default_factory=dict)
 
 
-_texts: dict[int, _CodeText] = {}
+_texts: dict[int, _CodeText] = SESSION.keep("texts of code", {})
 _inside: dict[str, bool] = {}
 
 
@@ -112,7 +113,7 @@ def _text(frame: FrameType) -> _CodeText:
         linecache.checkcache(code.co_filename)
         lines = linecache.getlines(code.co_filename, frame.f_globals)
         if len(_texts) >= _REMEMBERED:
-            del _texts[next(iter(_texts))]
+            _texts.clear()
         found = _texts[id(code)] = _CodeText(code, tuple(code.co_positions()), lines)
     return found
 

@@ -7,7 +7,6 @@ the numbers by name. Pages read the same programs by WebGL.
 from __future__ import annotations
 
 import struct
-import threading
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
@@ -30,7 +29,6 @@ class NumberRow:
     def __init__(self, image: Composed, names: Sequence[str]) -> None:
         self.image, self.names = image, tuple(names)
         self.is_ready = False
-        self._lock = threading.Lock()
 
     def read(
         self, settings: Mapping[str, Any], *, time: float, params: Mapping[str, Any]
@@ -45,8 +43,7 @@ class NumberRow:
         options = RenderOptions(
             size=(len(self.names), 1), time=time, params=params, threads=1, settings=settings
         )
-        with self._lock:  # the first call compiles; a second one waits for it
-            pixels = executor().render(self.image, options).array[0]
-            self.is_ready = True
+        pixels = executor().render(self.image, options).array[0]
+        self.is_ready = True
         bits = bytes(round(float(value) * _BYTE) for value in pixels.reshape(-1))
         return dict(zip(self.names, struct.unpack(f"<{len(self.names)}f", bits), strict=True))

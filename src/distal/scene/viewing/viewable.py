@@ -9,10 +9,10 @@ from __future__ import annotations
 import copy
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from distal.at_once import cached_property
 from distal.diagnostics import LoadError
 from distal.frontend import Assembly, lower
 from distal.ir.nodes import Module

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.case_samples import VARIABLE, drawn_last
+from tests.selection import VARIABLE, drawn_last
 
 pytest_plugins = ["pytester"]
 
@@ -25,7 +25,7 @@ def test_each(name, target):
 def test_other():
     pass
 """
-HOOKS = "from tests.case_samples import *\n"
+HOOKS = "from tests.selection import *\n"
 
 
 @pytest.fixture
@@ -51,7 +51,7 @@ def test_one_of_three_cases_runs_and_one_of_each_name(trial, capsys):
     assert sorted(name[len("test_each[")] for name in each) == [*"abcdef"]
     assert {name[-5:-1] for name in each} == {"glsl", "wgsl"}
     assert "test_other" in names
-    assert "26 cases of sampled tests were left out: `make test-all` runs each case" in said
+    assert "26 cases of sampled tests were left out: `make sweep` runs each case" in said
     assert passed(trial) == names
 
 

@@ -1,10 +1,15 @@
-"""Tests of which ``make test`` runs a sample of the cases, and ``make test-all`` each case.
+"""Which tests run: all of them, those of ``make test``, or a list; and one of several cases.
+
+``DISTAL_TESTS=chosen`` leaves out the tests that the record (``tools/record``) knows and has not
+chosen; the path of a file, those that it names, one a line. A test that the record does not know is
+new, and runs.
 
 ``@pytest.mark.sample(3)`` runs one of three cases of a parametrized test; with ``each="name"``, one
 of three for each value of the parameter ``name``, and at least one. Which cases run depends on
-their names only, so that a change is judged by the same cases today and tomorrow. pytest's summary
-says how many cases were left out. ``DISTAL_ALL_CASES=1`` runs them all, and so does a case that is
-named on the command line. Knows nothing of what the tests are about.
+their names only, so that a change is judged by the same cases today and tomorrow.
+``DISTAL_ALL_CASES=1`` runs each case, and so does a case that is named on the command line.
+
+pytest's summary says how many were left out. Knows nothing of what the tests are about.
 """
 
 from __future__ import annotations
@@ -13,31 +18,50 @@ import os
 import zlib
 from collections import defaultdict
 from collections.abc import Hashable, Iterable
+from collections.abc import Set as AbstractSet
+from pathlib import Path
 from typing import Any, Final
 
 import pytest
 
+from tools.record import rows
+
 VARIABLE: Final = "DISTAL_ALL_CASES"
+TESTS: Final = "DISTAL_TESTS"
+CHOSEN: Final = "chosen"
 MARK: Final = "sample(of, each=None): run one of so many cases; for each value of a parameter"
-_LEFT_OUT: Final = pytest.StashKey[int]()
-_WORKER_KEY: Final = "distal_cases_left_out"
+_LEFT_OUT: Final = pytest.StashKey[dict[str, int]]()
+_WORKER_KEY: Final = "distal_tests_left_out"
 
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", MARK)
-    config.stash[_LEFT_OUT] = 0
+    config.stash[_LEFT_OUT] = {}
 
 
 @pytest.hookimpl(tryfirst=True)  # before -k: the sample must not depend on it
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out the cases that are not in the samples."""
+    """Leave out the cases that are not in the samples, and the tests that are not chosen."""
     is_named = any("[" in word for word in config.invocation_params.args)
-    if is_named or all_cases():
-        return
-    out = left_out(items)
-    if out:
-        items[:] = [item for item in items if item.nodeid not in out]
-        config.stash[_LEFT_OUT] = len(out)
+    if not (is_named or all_cases()):
+        _leave_out(config, items, "cases", left_out(items))
+    if os.environ.get(TESTS):
+        _leave_out(config, items, "tests", not_chosen(os.environ[TESTS]))
+
+
+def _leave_out(
+    config: pytest.Config, items: list[pytest.Item], what: str, out: AbstractSet[str]
+) -> None:
+    before = len(items)
+    items[:] = [item for item in items if item.nodeid not in out]
+    config.stash[_LEFT_OUT][what] = before - len(items)
+
+
+def not_chosen(choice: str) -> AbstractSet[str]:
+    """The tests that a value of ``DISTAL_TESTS`` leaves out."""
+    if choice == CHOSEN:
+        return rows.left_out()
+    return set(Path(choice).read_text("utf-8").splitlines())
 
 
 def all_cases() -> bool:
@@ -80,13 +104,20 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_testnodedown(node: Any) -> None:
-    """Every worker of xdist collects the same cases."""
-    found = getattr(node, "workeroutput", {}).get(_WORKER_KEY, 0)
-    node.config.stash[_LEFT_OUT] = max(node.config.stash[_LEFT_OUT], found)
+    """Every worker of xdist collects the same tests."""
+    found = getattr(node, "workeroutput", {}).get(_WORKER_KEY)
+    if found:
+        node.config.stash[_LEFT_OUT] = found
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
-    if count := config.stash[_LEFT_OUT]:
+    out = config.stash[_LEFT_OUT]
+    if count := out.get("tests"):
         terminalreporter.write_line(
-            f"{count} cases of sampled tests were left out: `make test-all` runs each case"
+            f"{count} tests were left out: `make test-all` runs all, `make test-for` those that a"
+            " change can reach"
+        )
+    if count := out.get("cases"):
+        terminalreporter.write_line(
+            f"{count} cases of sampled tests were left out: `make sweep` runs each case"
         )
