@@ -11,7 +11,7 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 LONGEST_SHOWN: Final = 200  # characters of an external text
 LONGEST_MESSAGE: Final = 1000  # characters of a line that may contain several external texts
@@ -80,39 +80,89 @@ class Span:
 
 
 @dataclass(frozen=True, slots=True)
+class Label:
+    """Another place that a mistake is about, and what is there (no full stop)."""
+
+    span: Span
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One mistake: the message (no full stop), its place and, if known, a hint how to fix it."""
+    """One mistake: the message (no full stop), its place and, if known, a hint how to fix it.
+
+    Attributes:
+        labels: Other places that explain it, such as where a local got its type.
+    """
 
     message: str
     span: Span | None
     hint: str | None = None
+    labels: tuple[Label, ...] = ()
 
     def __str__(self) -> str:
         return self.text("error")
 
     def text(self, kind: str) -> str:
         """Return the text with its severity ("error", "warning" or "note") in front."""
+        places = [label.span for label in self.labels]
+        places += [] if self.span is None else [self.span]
+        width = max((len(_line_number(span)) for span in places), default=1)
         lines = [f"{kind}: {self.message}"]
         if self.span is not None:
-            lines += excerpt(self.span)
+            lines += _excerpt(self.span, width, "-->", "^")
+        for label in self.labels:
+            lines += _excerpt(label.span, width, ":::", "-", f" {label.text}")
         if self.hint:
-            gutter = " " if self.span is None else " " * len(_line_number(self.span))
-            lines.append(f"{gutter} = hint: {self.hint}")
+            lines.append(f"{' ' * width} = hint: {self.hint}")
         return "\n".join(lines)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return plain values in the schema of ``docs/guide/errors.md``."""
+        labels = [{"text": label.text, **_place_json(label.span)} for label in self.labels]
+        return {
+            "message": self.message,
+            "hint": self.hint,
+            **_place_json(self.span),
+            "labels": labels,
+        }
+
+
+def _place_json(span: Span | None) -> dict[str, Any]:
+    return {
+        "file": None if span is None else span.file,
+        "line": None if span is None else span.line,
+        "column": None if span is None else span.col + 1,
+        "end_line": None if span is None else span.end_line or span.line,
+        "end_column": None if span is None else span.end_col + 1,
+        "excerpt": None if span is None else span.text,
+    }
 
 
 def excerpt(span: Span) -> list[str]:
     """Return the place in the author's file, and the line with carets below."""
-    number = _line_number(span)
-    gutter = " " * len(number)
-    # Tabs are kept, so that the caret is in the same column as in the editor.
+    return _excerpt(span, len(_line_number(span)), "-->", "^")
+
+
+def _excerpt(span: Span, width: int, arrow: str, mark: str, text: str = "") -> list[str]:
+    """Return a place, and its line with marks and a text below.
+
+    Args:
+        span: The place.
+        width: The width of the line numbers.
+        arrow: What stands before the place.
+        mark: The character that marks the columns.
+        text: What follows the marks.
+    """
+    gutter = " " * width
+    # Tabs are kept, so that the marks are in the same columns as in the editor.
     lead = "".join("\t" if c == "\t" else " " for c in span.text[: span.col])
-    carets = "^" * max(1, min(span.end_col, len(span.text)) - span.col)
+    marks = mark * max(1, min(span.end_col, len(span.text)) - span.col)
     return [
-        f"{gutter}--> {span.file}:{span.line}:{span.col + 1}",
+        f"{gutter}{arrow} {span.file}:{span.line}:{span.col + 1}",
         f"{gutter} |",
-        f"{number} | {span.text}",
-        f"{gutter} | {lead}{carets}",
+        f"{_line_number(span):>{width}} | {span.text}",
+        f"{gutter} | {lead}{marks}{text}",
     ]
 
 
@@ -133,15 +183,22 @@ class CompileError(Exception):
         super().__init__("\n\n".join(map(str, self.diagnostics)))
 
     @classmethod
-    def at(cls, message: str, span: Span | None, hint: str | None = None) -> CompileError:
+    def at(
+        cls,
+        message: str,
+        span: Span | None,
+        hint: str | None = None,
+        labels: tuple[Label, ...] = (),
+    ) -> CompileError:
         """Return an error for a single mistake.
 
         Args:
             message: What is wrong.
             span: Where it is; None if the place is not known.
             hint: What to write instead.
+            labels: Other places that explain it.
         """
-        return cls([Diagnostic(message, span, hint)])
+        return cls([Diagnostic(message, span, hint, labels)])
 
 
 class LoadError(Exception):

@@ -9,7 +9,7 @@ import pytest
 
 from distal.diagnostics import CompileError, Span
 from distal.scene.tree.errors import refuse, refuse_kind
-from distal.scene.tree.source_places import author_place
+from distal.lang.source_places import author_place
 
 
 def place_in(source: str) -> Span:

@@ -8,12 +8,12 @@ no rules of the language.
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from distal.diagnostics import Diagnostic, Span
+from distal.diagnostics import Diagnostic, Label, Span
 from distal.frontend.name_lookup import NameLookup
 from distal.frontend.problems import FollowupError, SceneError
 from distal.frontend.scopes import ScopeAnalysis
@@ -42,6 +42,7 @@ class Variable:
         home: The block that declares it; None for a parameter.
         ir_name: Its name in the IR, unique in the function; empty until it is bound.
         type: Its type; None before the first assignment.
+        typed_at: Where it gets its type.
         static: Set instead of a type if the name refers to a function, a type or a resource.
         failed: Its definition has an error; uses of it are not reported as further errors.
         loop: Whether it is a loop variable, which is read-only.
@@ -53,6 +54,7 @@ class Variable:
     home: Block | None = None
     ir_name: str = ""
     type: Type | None = None
+    typed_at: Span | None = None
     static: Value | None = None
     failed: bool = False
     loop: bool = False
@@ -109,6 +111,7 @@ class FunctionBody:
         self.loops: list[OpenLoop] = []
         self.captures: dict[Variable, Read] = {}
         self.bindings: dict[TypeVar, Type] = {}
+        self.labels: tuple[Label, ...] = ()  # the calls that chose its types, innermost first
         self.result: Type | None = None
         self.returned: list[tuple[Value, ast.Return]] = []
         self.failed = False
@@ -132,6 +135,7 @@ class FunctionBody:
         message: str,
         node: Node | ast.arg | ast.keyword,
         hint: str | None = None,
+        labels: tuple[Label, ...] = (),
     ) -> SceneError:
         """Return an error at a node, for the caller to raise.
 
@@ -139,13 +143,27 @@ class FunctionBody:
             message: What is wrong.
             node: The node that the error points at.
             hint: What to write instead.
+            labels: Other places that explain it.
         """
-        return SceneError(message, self.span(node), hint)
+        return SceneError(message, self.span(node), hint, labels)
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Record an error of this function."""
         self.failed = True
-        self.compilation.report(diagnostic)
+        labels = (*diagnostic.labels, *self.labels)
+        self.compilation.report(replace(diagnostic, labels=labels))
+
+    def labels_of_call(self, node: Node, types: Mapping[str, Type]) -> tuple[Label, ...]:
+        """Return the labels of errors in a called function.
+
+        Args:
+            node: The call.
+            types: The types that the call chooses, by the name of the type variable or parameter.
+        """
+        if not types:
+            return ()
+        chosen = ", ".join(f"{name} = {type}" for name, type in types.items())
+        return (Label(self.span(node), f"called here with {chosen}"), *self.labels)
 
     # Blocks and statements
 
@@ -216,9 +234,10 @@ class FunctionBody:
         self._taken.add(candidate)
         return candidate
 
-    def add_parameter(self, name: str, type: Type | None) -> Variable:
+    def add_parameter(self, name: str, type: Type | None, span: Span | None) -> Variable:
         """Declare a parameter; ``type`` is None if its annotation has an error."""
-        variable = Variable(name, self, False, None, self.fresh(name), type, failed=type is None)
+        ir_name, failed = self.fresh(name), type is None
+        variable = Variable(name, self, False, None, ir_name, type, span, failed=failed)
         self.parameters[name] = variable
         self.assigned.add(variable)
         return variable
@@ -302,7 +321,7 @@ class FunctionBody:
         self.assigned.add(variable)
 
     def _declare(self, variable: Variable, value: Expr, span: Span) -> None:
-        variable.type = value.type
+        variable.type, variable.typed_at = value.type, variable.typed_at or span
         variable.ir_name = self.fresh(variable.name)
         home = variable.home
         if not variable.changes:

@@ -14,7 +14,7 @@ from weakref import WeakKeyDictionary
 
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.lowering.builtin_calls import call_builtin
-from distal.frontend.problems import SceneError
+from distal.frontend.problems import SceneError, must_be
 from distal.frontend.types.coercion import vector_type, with_default_type
 from distal.frontend.types.constructors import construct
 from distal.frontend.types.operators import binary, compare, unary
@@ -204,7 +204,7 @@ def _selected(operands: Sequence[Value]) -> Value:
     test = with_default_type(_OUTSIDE, operands[0], _NOWHERE)
     if test.type is not BOOL:
         hint = "compare it: select(x > 0.0, ...)" if test.type in (INT, FLOAT) else None
-        message = f"the condition of 'select' is a bool, not {test.type}"
+        message = must_be("the condition of 'select'", BOOL, test.type)
         raise _OUTSIDE.problem(message, _NOWHERE, hint)
     yes, no = unify_operands(_OUTSIDE, operands[1], operands[2], _NOWHERE, "select")
     return Select(test, yes, no, yes.type)

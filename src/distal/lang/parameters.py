@@ -11,10 +11,11 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from enum import Enum
 from typing import Any, assert_never
 
+from distal.diagnostics import Span
 from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3, Type
 from distal.lang.expressions import Expression, Symbolic, refuse_comparison, uniform_of
 from distal.lang.number_text import shown
@@ -31,6 +32,7 @@ from distal.lang.parameter_values import (
     read_coordinates,
     read_number,
 )
+from distal.lang.source_places import author_place
 
 
 class ParameterKind(Enum):
@@ -61,6 +63,7 @@ class Parameter(Symbolic):
         group: The heading that it is listed under, or "".
         help: One sentence about its effect, or "".
         options: Names of a choice's options, else empty.
+        place: Where the author declares it.
     """
 
     name: str
@@ -74,6 +77,7 @@ class Parameter(Symbolic):
     group: str = ""
     help: str = ""
     options: tuple[str, ...] = ()
+    place: Span | None = field(default_factory=author_place, compare=False)
 
     def __repr__(self) -> str:
         match self.kind:
@@ -227,7 +231,7 @@ class Parameter(Symbolic):
 
 
 def _fields_of(parameter: Parameter) -> tuple[object, ...]:
-    return tuple(getattr(parameter, field.name) for field in fields(parameter))
+    return tuple(getattr(parameter, each.name) for each in fields(parameter) if each.compare)
 
 
 def slider(

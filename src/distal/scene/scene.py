@@ -24,6 +24,7 @@ from distal.lang.lazy_module import LazyModule
 from distal.lang.presentable import Presentable
 from distal.lang.render_options import Cancel, Progress, RenderOptions
 from distal.lang.runtime_access import meshing, scene_parts
+from distal.lang.source_places import author_place
 from distal.loading import copy_loaded_from
 from distal.render import film, filters, tonemap, views
 from distal.scene.looks.dressed import Dressed, GivenArguments
@@ -46,7 +47,6 @@ from distal.scene.scene_arguments import (
 )
 from distal.scene.steering import Steering
 from distal.scene.tree.shown_numbers import placed
-from distal.scene.tree.source_places import author_place
 from distal.scene.view_options import MODES, ViewOptions
 
 if TYPE_CHECKING:

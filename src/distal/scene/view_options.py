@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING, Any, Final
 from distal.fields.guarantees import Limit
 from distal.ir.types import FLOAT, VEC3
 from distal.lang.render_options import MOST_SAMPLES, PATH_SAMPLES, Refinement, checked_samples
+from distal.lang.source_places import author_place
 from distal.render import filters, path_film
 from distal.scene.lowering.layers import OF_SAMPLES, checked_layers
 from distal.scene.section import CutPlane
 from distal.scene.steering import Steering
 from distal.scene.tree.conversion import Asked, number
 from distal.scene.tree.errors import refuse_kind
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.images.picture import Picture

@@ -128,7 +128,7 @@ def test_types_of_a_closure_named_only_in_annotations() -> None:
         ({}, "is a dict"),
         ([], "is empty"),
         ([1.0, "a"], "is text"),
-        ([vec3(1), 1.0], "the elements of an array have one type"),
+        ([vec3(1), 1.0], "the elements of an array must be of one type"),
         (Speed.NAMED, "whose value is not a number"),
         (np.array([1 + 2j]), "is an array of complex128"),
         (np.zeros((7, 7)), "is an array of shape"),

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from distal.frontend.function_body import FunctionBody
-from distal.frontend.problems import FollowupError, SceneError, did_you_mean
+from distal.frontend.problems import FollowupError, SceneError, did_you_mean, must_be, must_match
 from distal.frontend.signatures.annotations import (
     AnnotationError,
     UnboundVariableError,
@@ -27,14 +27,11 @@ from distal.frontend.signatures.signatures import (
     element_annotation,
 )
 from distal.frontend.types.coercion import (
-    callable_hint,
     coerce,
-    conversion_hint,
     default_type,
     is_callable,
-    not_a_value,
-    shown_type,
     vector_type,
+    wrong_type,
 )
 from distal.frontend.types.python_objects import RefusedError, value_of
 from distal.frontend.values import Closure, SequenceValue, Static, Value, Whole
@@ -191,11 +188,8 @@ def _coerce_argument(
     coerced = coerce(body, value, type, node)
     if coerced is not None:
         return coerced
-    if isinstance(value, Static) and not (isinstance(type, FunctionType) and is_callable(value)):
-        raise not_a_value(body, value.object, value.text, node)
     what = f"argument '{parameter.name}' of '{signature.name}'"
-    hint = conversion_hint(value, type) or callable_hint(body, value)
-    raise body.problem(f"{what} is {type}, not {shown_type(value)}", node, hint)
+    raise wrong_type(body, value, type, node, what)
 
 
 def _bind(
@@ -228,16 +222,14 @@ def _bound(
     if not concrete:
         chosen: Type = INT if admits(variable, INT) else FLOAT
     elif len(wide) > 1 or (not wide and len(concrete) > 1):
-        names = " and ".join(map(str, concrete))
         node = list(concrete.values())[-1].node
-        message = f"'{signature.name}' takes one type for '{variable.__name__}', not {names}"
-        raise body.problem(message, node)
+        what = f"the arguments of '{signature.name}' that are '{variable.__name__}'"
+        raise body.problem(must_match(what, concrete), node)
     else:
         chosen = wide[0] if wide else next(iter(concrete))
     if not admits(variable, chosen):
-        node = group[0].node
-        hint = f"{variable.__name__}: {choices(variable)}"
-        raise body.problem(f"'{signature.name}' does not take {chosen}", node, hint)
+        what = f"an argument of '{signature.name}' that is '{variable.__name__}'"
+        raise body.problem(must_be(what, choices(variable), chosen), group[0].node)
     return chosen
 
 

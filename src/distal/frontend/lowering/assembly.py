@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any, Final
 from distal.diagnostics import CompileError, Span
 from distal.frontend.lowering.exact_overloads import exact_instance
 from distal.frontend.lowering.instances import Instance
-from distal.frontend.problems import FollowupError
+from distal.frontend.problems import FollowupError, must_be
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
 from distal.frontend.signatures.signatures import MISSING, SignatureParameter
 from distal.frontend.types.python_objects import RefusedError, coerce_constant, value_of
+from distal.frontend.values import describe
 from distal.ir.nodes import Call, Expr, Function, Param, Return, Stmt
 from distal.ir.types import Buffer, Type
 from distal.lang.composed import Composed
@@ -112,7 +113,7 @@ class Assembly:
         if body and isinstance(body[-1], Return):
             given = body[-1].value.type
             if given != result:
-                raise CompileError.at(f"'{name}' gives a {given}; a {result} is wanted", span)
+                raise CompileError.at(must_be(f"the value of '{name}'", result, given), span)
         key = (name, tuple(params), result, tuple(body))
         unique = self._defined.get(key)
         if unique is None:
@@ -202,12 +203,12 @@ class Assembly:
             return arguments[parameter.name]
         try:
             type = self._compilation.adopt(to_type(parameter.annotation))
-            value = coerce_constant(
-                value_of(parameter.default, parameter.name, self._compilation), type
-            )
+            captured = value_of(parameter.default, parameter.name, self._compilation)
+            value = coerce_constant(captured, type)
         except (AnnotationError, RefusedError) as error:
             raise CompileError.at(error.message, parameter.span, error.hint) from None
         if value is None:
-            message = f"the default of '{parameter.name}' of '{func.name}' is no {type}"
+            what = f"the default of '{parameter.name}' of '{func.name}'"
+            message = must_be(what, type, describe(captured))
             raise CompileError.at(message, parameter.span)
         return value

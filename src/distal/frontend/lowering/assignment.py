@@ -4,16 +4,23 @@ from __future__ import annotations
 
 import ast
 
+from distal.diagnostics import Label
 from distal.frontend.function_body import FunctionBody, Variable
 from distal.frontend.lowering.expressions import element, member
-from distal.frontend.lowering.lowered_nodes import parts_of
-from distal.frontend.problems import FollowupError, SceneError
+from distal.frontend.lowering.lowered_nodes import UNPACKED, parts_of
+from distal.frontend.problems import FollowupError, SceneError, must_be
 from distal.frontend.source import Node
-from distal.frontend.types.coercion import coerce, conversion_hint, shown_type, with_default_type
+from distal.frontend.types.coercion import (
+    coerce,
+    conversion_hint,
+    shown_type,
+    with_default_type,
+    wrong_type,
+)
 from distal.frontend.types.operators import binary
 from distal.frontend.values import Closure, SequenceValue, Static, Value, Whole
 from distal.ir.nodes import Assign, Const, Expr, Field, Read, Swizzle, Uniform
-from distal.ir.types import FLOAT, INT, Type, is_static
+from distal.ir.types import FLOAT, INT, is_static
 from distal.ir.walk import nodes_in
 
 
@@ -69,7 +76,8 @@ def _assign_name(body: FunctionBody, target: ast.Name, value: Value, stmt: ast.s
     else:
         coerced = coerce(body, value, variable.type, value_node(stmt))
         if coerced is None:
-            raise _changed_type(body, variable.name, variable.type, value, stmt)
+            written = isinstance(stmt, ast.Assign) and target in stmt.targets
+            raise changed_type(body, variable, value, value_node(stmt) if written else stmt)
         expr = coerced
     starts = not variable.ir_name
     body.store(variable, expr, stmt)
@@ -92,14 +100,29 @@ def _assign_static(body: FunctionBody, variable: Variable, value: Value, target:
     body.assigned.add(variable)
 
 
-def _changed_type(
-    body: FunctionBody, name: str, type: Type, value: Value, stmt: ast.stmt
-) -> SceneError:
-    given = shown_type(value)
+def changed_type(body: FunctionBody, variable: Variable, value: Value, node: Node) -> SceneError:
+    """Return the error for a local that is assigned a value of another type.
+
+    Args:
+        body: The function being lowered.
+        variable: The local.
+        value: The value.
+        node: The node that the error points at.
+    """
+    type, given = variable.type, shown_type(value)
+    assert type is not None
     hint = conversion_hint(value, type)
     if type is INT and given == str(FLOAT):
-        hint = f"start it as a float: {name} = 0.0"
-    return body.problem(f"'{name}' is {type} and cannot become {given}", stmt, hint)
+        hint = f"start it as a float: {variable.name} = 0.0"
+    message = must_be(f"'{variable.name}'", type, given)
+    return body.problem(message, node, hint, labels_of_type(variable))
+
+
+def labels_of_type(variable: Variable) -> tuple[Label, ...]:
+    """Return the label of the place where a local gets its type; none if it is not known."""
+    if variable.typed_at is None:
+        return ()
+    return (Label(variable.typed_at, f"'{variable.name}' gets the type {variable.type} here"),)
 
 
 def _assign_part(
@@ -107,8 +130,7 @@ def _assign_part(
 ) -> None:
     coerced = coerce(body, value, place.type, value_node(stmt))
     if coerced is None:
-        message = f"'{ast.unparse(target)}' is {place.type}, not {shown_type(value)}"
-        raise body.problem(message, stmt, conversion_hint(value, place.type))
+        raise wrong_type(body, value, place.type, stmt, f"'{ast.unparse(target)}'")
     body.emit(Assign(place, coerced, span=body.span(stmt)))
 
 
@@ -215,7 +237,7 @@ def unpacked_items(
         expr = with_default_type(body, value, node)
         parts = parts_of(body, expr)
         if parts is None:
-            raise body.problem(f"{expr.type} does not unpack", node)
+            raise body.problem(must_be("what is unpacked", UNPACKED, expr.type), node)
         items = parts
     if len(items) != count:
         raise body.problem(f"{count} names cannot take {len(items)} values", target)

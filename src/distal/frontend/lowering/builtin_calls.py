@@ -10,7 +10,7 @@ from functools import cache
 from typing import Any, Final
 
 from distal.frontend.function_body import FunctionBody
-from distal.frontend.problems import SceneError
+from distal.frontend.problems import SceneError, must_be, must_match, one_of
 from distal.frontend.types.coercion import coerce, default_type, shown_type, with_default_type
 from distal.frontend.types.powers import power
 from distal.frontend.types.python_objects import coerce_constant, lang_value, number_of
@@ -213,12 +213,17 @@ def _mismatch(
     for arg in args:
         if isinstance(arg, Static | Closure):
             with_default_type(body, arg, node)
-    types = [shown_type(a) for a in args]
-    distinct = list(dict.fromkeys(types))
-    shown = distinct[0] if len(distinct) == 1 else ", ".join(types)
-    return body.problem(
-        f"'{intrinsic.name}' does not take {shown}", node, signature_text(intrinsic)
-    )
+    hint = signature_text(intrinsic)
+    for i, (arg, name) in enumerate(zip(args, intrinsic.args, strict=True)):
+        of_arg = {params[i]: splats for params, _, splats in _instances(intrinsic.name)}
+        if all(_score([arg], [t], splats=splats) is None for t, splats in of_arg.items()):
+            what = "the argument" if len(args) == 1 else f"argument '{name}'"
+            message = must_be(
+                f"{what} of '{intrinsic.name}'", one_of(map(str, of_arg)), shown_type(arg)
+            )
+            return body.problem(message, node, hint)
+    types = map(shown_type, args)
+    return body.problem(must_match(f"the arguments of '{intrinsic.name}'", types), node, hint)
 
 
 def signature_text(intrinsic: Intrinsic) -> str:

@@ -14,7 +14,7 @@ from distal.frontend.function_body import FunctionBody
 from distal.frontend.lowering.builtin_calls import PYTHON_FUNCTIONS, call_builtin
 from distal.frontend.lowering.lowered_nodes import LoweredNode, methods_of, unstarred
 from distal.frontend.other_languages import COUNTERPARTS
-from distal.frontend.problems import SceneError
+from distal.frontend.problems import SceneError, must_be
 from distal.frontend.signatures.annotations import AnnotationError, to_type
 from distal.frontend.types.coercion import (
     coerce_or_raise,
@@ -89,11 +89,11 @@ def lower_call(body: FunctionBody, node: ast.Call) -> Value:
         case Closure():
             return body.compilation.call_closure(body, called, arguments(body, node), node)
         case Whole() | SequenceValue():
-            raise body.problem(f"{shown_type(called)} is not a function", node.func)
+            pass
         case _:
             if isinstance(called.type, FunctionType):
                 return _apply(body, called, node)
-            raise body.problem(f"{called.type} is not a function", node.func)
+    raise body.problem(must_be("what is called", "a function", shown_type(called)), node.func)
 
 
 def _of_value(body: FunctionBody, node: ast.Call, func: ast.Attribute) -> ast.Call:
@@ -242,20 +242,22 @@ def _select(body: FunctionBody, args: list[Value], node: ast.Call) -> Value:
                 yes, no = splat(yes, wide), splat(no, wide)
             if yes.type is wide:
                 return Select(test, yes, no, yes.type, span=body.span(node))
-            raise body.problem(f"'select' by a {test.type} does not pick from {yes.type}", node)
+            wanted = f"numbers or vectors of {count}"
+            message = must_be(f"the choices of 'select' by {test.type}", wanted, yes.type)
+            raise body.problem(message, node)
         case _:
             hint = "compare it: select(x > 0.0, ...)" if isinstance(test.type, Scalar) else None
-            message = f"the condition of 'select' is a bool or bvec, not {test.type}"
+            message = must_be("the condition of 'select'", "bool or bvec2 to bvec4", test.type)
             raise body.problem(message, node.args[0], hint)
 
 
 def _gradient(body: FunctionBody, args: list[Value], node: ast.Call, *, with_value: bool) -> Value:
     point = with_default_type(body, args[1], node.args[1])
-    if point.type not in (FLOAT, VEC2, VEC3, VEC4):
-        hint = "the point is a float or a vec2 to vec4"
-        raise body.problem(f"there is no gradient at {point.type}", node.args[1], hint)
-    wanted = FunctionType((point.type,), FLOAT)
     name = "value_and_gradient" if with_value else "gradient"
+    if point.type not in (FLOAT, VEC2, VEC3, VEC4):
+        message = must_be(f"the point of '{name}'", "float or vec2 to vec4", point.type)
+        raise body.problem(message, node.args[1])
+    wanted = FunctionType((point.type,), FLOAT)
     what = f"the field of '{name}'"
     field = coerce_or_raise(body, args[0], wanted, node.args[0], what)
     type = tuple_type((FLOAT, point.type)) if with_value else point.type
@@ -267,7 +269,8 @@ def _texture(
 ) -> tuple[Expr, TextureShape]:
     texture = last_frame(body, value) or with_default_type(body, value, node.args[0])
     if not isinstance(texture.type, Texture):
-        raise body.problem(f"'{name}' takes a texture, not {texture.type}", node.args[0])
+        message = must_be(f"argument 1 of '{name}'", "a texture", texture.type)
+        raise body.problem(message, node.args[0])
     return texture, texture.type.shape
 
 
@@ -294,7 +297,7 @@ def _size(body: FunctionBody, args: list[Value], node: ast.Call) -> Value:
             return Size(resource, INT)
         case _:
             hint = "the length of an array is len(...)"
-            message = f"'size' takes a texture or a buffer, not {resource.type}"
+            message = must_be("the argument of 'size'", "a texture or a buffer", resource.type)
             raise body.problem(message, node.args[0], hint)
 
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, TypeVar
 
-from distal.diagnostics import CompileError, Diagnostic, Span
+from distal.diagnostics import CompileError, Diagnostic, Label, Span
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.lowering import lambda_lifting, scene_calls
 from distal.frontend.lowering.assembly import TABLE_FROM, Assembly
@@ -83,7 +83,9 @@ class Compilation:
     def report(self, diagnostic: Diagnostic) -> None:
         """Record an error, once."""
         self._not_lasting()
-        if diagnostic not in self.diagnostics:
+        # A generic function may fail in the same way for several types.
+        key = (diagnostic.message, diagnostic.span)
+        if all((d.message, d.span) != key for d in self.diagnostics):
             self.diagnostics.append(diagnostic)
 
     def error(self) -> CompileError | None:
@@ -245,7 +247,8 @@ class Compilation:
             hint = (
                 f"their labels: '{known[0].label}' and '{parameter.label}', with different ranges"
             )
-            raise CompileError.at(message, None, hint)
+            labels = [Label(p, "the first is here") for p in (known[0].place,) if p is not None]
+            raise CompileError.at(message, parameter.place, hint, tuple(labels))
         if known is None:
             declaration = UniformDeclaration(
                 name,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from distal.frontend.lowering.instances import Instance
 from distal.frontend.lowering.scene_calls import instantiate
-from distal.frontend.problems import SceneError
+from distal.frontend.problems import SceneError, must_be_call
 from distal.frontend.signatures.annotations import (
     AnnotationError,
     UnboundVariableError,
@@ -38,9 +38,8 @@ def exact_instance(compilation: Compilation, func: Func, types: tuple[Type, ...]
         bindings = exact_bindings(compilation, signature, types)
         if bindings is not None:
             return instantiate(compilation, signature, types, bindings, None)
-    given = ", ".join(map(str, types)) or "nothing"
-    hint = " or ".join(s.text() for s in signatures)
-    raise SceneError(f"'{func.name}' does not take {given}", signatures[0].span, hint)
+    message = must_be_call(func.name, (s.text() for s in signatures), types)
+    raise SceneError(message, signatures[0].span)
 
 
 def _given(signature: FunctionSignature, types: tuple[Type, ...]) -> int:

@@ -21,7 +21,7 @@ from distal.frontend.lowering.lowered_nodes import (
 )
 from distal.frontend.lowering.refusals import refusal
 from distal.frontend.other_languages import hint_for
-from distal.frontend.problems import did_you_mean
+from distal.frontend.problems import did_you_mean, must_be
 from distal.frontend.types.coercion import coerce, constant_int, with_default_type
 from distal.frontend.types.constructors import repeated
 from distal.frontend.types.operators import binary, compare, condition, unary
@@ -263,7 +263,7 @@ def _unary_op(body: FunctionBody, node: ast.UnaryOp) -> Value:
         type = operand.type
         if isinstance(type, Vector) and type.kind is Kind.BOOL:
             hint = "write ~v for each component, or not any(v)"
-            raise body.problem(f"'not' takes a bool, not {type}", node, hint)
+            raise body.problem(must_be("the operand of 'not'", BOOL, type), node, hint)
     value = condition(body, operand, node.operand, "the operand of 'not'")
     return Unary(UnaryOp.NOT, value, BOOL, span=body.span(node))
 
@@ -301,7 +301,7 @@ def _compare(body: FunctionBody, node: ast.Compare) -> Value:
 def _if_exp(body: FunctionBody, node: ast.IfExp) -> Value:
     test = condition(body, body.expression(node.test), node.test, "a condition")
     values = (body.expression(node.body), body.expression(node.orelse))
-    yes, no = unify_values(body, values, node, "the branches of a conditional expression are")
+    yes, no = unify_values(body, values, node, "the branches of a conditional expression")
     return Select(test, yes, no, yes.type, span=body.span(node))
 
 
@@ -360,7 +360,7 @@ def element(body: FunctionBody, base: Expr, node: ast.Subscript) -> Expr:
         hint = (
             "write int(...) around it" if kind_of(value.type) in (Kind.FLOAT, Kind.UINT) else None
         )
-        raise body.problem(f"an index is int, not {value.type}", node.slice, hint)
+        raise body.problem(must_be("an index", INT, value.type), node.slice, hint)
     return Index(base, value, element_type(base.type), span=body.span(node))
 
 
@@ -375,7 +375,8 @@ def _length(body: FunctionBody, base: Expr, node: ast.expr) -> int | None:
         case Buffer():
             return None
         case _:
-            raise body.problem(f"{base.type} takes no index", node)
+            wanted = "an array, a vector, a matrix, a tuple or a buffer"
+            raise body.problem(must_be("what takes an index", wanted, base.type), node)
 
 
 def _constant_element(body: FunctionBody, base: Expr, position: int, node: ast.expr) -> Expr:

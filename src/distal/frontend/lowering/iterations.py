@@ -15,6 +15,7 @@ from typing import Any, Final, TypeAlias
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.lowering.expressions import arguments_of_range, array_name
 from distal.frontend.lowering.lowered_nodes import unstarred
+from distal.frontend.problems import must_be
 from distal.frontend.types.coercion import coerce_or_raise, constant_int, with_default_type
 from distal.frontend.values import FALSE, TRUE, SequenceValue, Static, Value, Whole
 from distal.ir.build import add, element_type, integer, multiply
@@ -97,7 +98,8 @@ def _values(body: FunctionBody, node: ast.expr) -> _Fixed:
             pass
         case _:
             hint = "write for i in range(n)" if expr.type is INT else None
-            message = f"a loop goes over range(...), an array or a vector, not {expr.type}"
+            wanted = "range(...), an array, a vector or a matrix"
+            message = must_be("what a loop goes over", wanted, expr.type)
             raise body.problem(message, node, hint)
     held = body.hold(array_name(node), expr)
     return _Fixed(length, lambda counter: Index(held, counter, element_type(held.type)))

@@ -10,13 +10,13 @@ import ast
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from distal.diagnostics import Diagnostic
+from distal.diagnostics import Diagnostic, Label
 from distal.frontend.function_body import FunctionBody, Variable
 from distal.frontend.lowering import scene_calls
 from distal.frontend.lowering.argument_matching import parameter_type
 from distal.frontend.lowering.builtin_calls import exact_instances
 from distal.frontend.lowering.instances import Instance
-from distal.frontend.problems import FollowupError, SceneError
+from distal.frontend.problems import FollowupError, SceneError, must_be
 from distal.frontend.scopes import analyse_scopes, plain_parameters
 from distal.frontend.signatures.signatures import MISSING, FunctionSignature
 from distal.frontend.source import Node
@@ -111,7 +111,7 @@ def _signature_value(
     if instance.result is None:
         raise FollowupError
     if instance.result is not type.result:
-        message = f"'{signature.name}' gives {instance.result} where {type.result} is wanted"
+        message = must_be(f"the value of '{signature.name}'", type.result, instance.result)
         raise body.problem(message, node)
     return FunctionRef(instance.name, captures, type)
 
@@ -184,7 +184,8 @@ def _closure_value(
         raise FollowupError
     if instance.result is not type.result:
         what = "the lambda" if closure.name == "lambda" else f"'{closure.name}'"
-        raise body.problem(f"{what} gives {instance.result} where {type.result} is wanted", node)
+        message = must_be(f"the value of {what}", type.result, instance.result)
+        raise body.problem(message, node)
     captures = tuple(captured(body, v, node) for v in instance.captures)
     return FunctionRef(instance.name, (*defaults, *captures), type)
 
@@ -292,14 +293,21 @@ def lift_closure(
     instance = Instance(body.compilation.unique_name(name), closure.name, types)
     closure.instances[(*types, result)] = instance
     body.compilation.in_progress.append(instance)
+    labels = owner.labels
+    if isinstance(node, ast.Call):
+        params = zip(plain_parameters(closure.node.args), types, strict=True)
+        untyped = {p.arg: t for p, t in params if p.annotation is None}
+        labels = body.labels_of_call(node, untyped) or labels
     try:
-        _lower_closure(closure, instance, result)
+        _lower_closure(closure, instance, result, labels)
     finally:
         body.compilation.in_progress.pop()
     return instance
 
 
-def _lower_closure(closure: Closure, instance: Instance, result: Type | None) -> None:
+def _lower_closure(
+    closure: Closure, instance: Instance, result: Type | None, labels: tuple[Label, ...]
+) -> None:
     node, owner = closure.node, closure.owner
     compilation = owner.compilation
     args = plain_parameters(closure.node.args)
@@ -311,11 +319,11 @@ def _lower_closure(closure: Closure, instance: Instance, result: Type | None) ->
         body_nodes = node.body
     scopes = analyse_scopes(body_nodes, {a.arg for a in args})
     body = FunctionBody(compilation, closure.name, owner.source, owner.names, scopes, owner)
-    body.bindings = owner.bindings
+    body.bindings, body.labels = owner.bindings, labels
     params = []
     for arg, type in zip(args, instance.params, strict=True):
         _check_annotation(owner, arg, type)
-        params.append(Param(body.add_parameter(arg.arg, type).ir_name, type))
+        params.append(Param(body.add_parameter(arg.arg, type, owner.span(arg)).ir_name, type))
     if isinstance(node, ast.FunctionDef) and node.returns is not None:
         body.result = compilation.annotation(owner, node.returns)
     elif isinstance(node, ast.Lambda):
@@ -346,4 +354,4 @@ def _check_annotation(owner: FunctionBody, arg: ast.arg, type: Type) -> None:
         return
     annotated = owner.compilation.annotation(owner, arg.annotation)
     if annotated is not type:
-        raise owner.problem(f"parameter '{arg.arg}' is {annotated}, and gets {type}", arg)
+        raise owner.problem(must_be(f"parameter '{arg.arg}'", type, annotated), arg)

@@ -12,12 +12,12 @@ from typing import TypeAlias, TypeVar
 from distal.diagnostics import CompileError, Diagnostic
 from distal.frontend.freshness import Captured
 from distal.frontend.lowering.assembly import TABLE_FROM
-from distal.frontend.lowering.builtin_calls import exact_instances
+from distal.frontend.lowering.builtin_calls import exact_instances, signature_text
 from distal.frontend.lowering.compilation import Compilation
 from distal.frontend.lowering.exact_overloads import exact_bindings, exact_instance
 from distal.frontend.lowering.lambda_lifting import builtin_function
 from distal.frontend.lowering.scene_calls import instantiate
-from distal.frontend.problems import FollowupError, SceneError
+from distal.frontend.problems import FollowupError, SceneError, must_be, must_be_call
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
 from distal.frontend.signatures.signatures import MISSING
 from distal.ir.collection import paused_collection
@@ -131,8 +131,8 @@ def _lower_builtin(
 ) -> Module:
     intrinsic = function.row
     if types is None or types not in exact_instances(intrinsic.name):
-        given = "nothing" if not types else ", ".join(map(str, types))
-        raise CompileError.at(f"'{intrinsic.name}' does not take {given}", None)
+        message = must_be_call(intrinsic.name, (signature_text(intrinsic),), types or ())
+        raise CompileError.at(message, None)
     return compilation.finish(builtin_function(compilation, intrinsic, types), EntryKind.FUNCTION)
 
 
@@ -148,7 +148,8 @@ def _lower_image(compilation: Compilation, image: Image) -> Module:
             raise SceneError(message, signature.span, hint)
     instance = instantiate(compilation, signature, (FRAME,) * len(signature.parameters), {}, None)
     if instance.result is not None and instance.result not in (VEC3, VEC4):
-        message = f"the image '{image.name}' returns vec3 or vec4, not {instance.result}"
+        what = f"the value of the image '{image.name}'"
+        message = must_be(what, "vec3 or vec4", instance.result)
         compilation.report(Diagnostic(message, signature.span, hint))
     return compilation.finish(instance, EntryKind.IMAGE)
 

@@ -10,6 +10,7 @@ import ast
 from collections.abc import Mapping, Sequence
 
 from distal.frontend.function_body import FunctionBody
+from distal.frontend.problems import must_be
 from distal.frontend.types.coercion import with_default_type
 from distal.frontend.values import SequenceValue, Value
 from distal.ir.build import integer
@@ -68,7 +69,7 @@ def _starred_parts(body: FunctionBody, value: Value, node: ast.Starred) -> Seque
     parts = parts_of(body, with_default_type(body, value, node.value))
     if parts is None:
         given = with_default_type(body, value, node.value).type
-        raise body.problem(f"'*' takes {UNPACKED}, not {given}", node)
+        raise body.problem(must_be("what '*' unpacks", UNPACKED, given), node)
     return parts
 
 

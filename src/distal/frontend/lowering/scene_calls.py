@@ -6,13 +6,13 @@ import ast
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeVar
 
-from distal.diagnostics import Diagnostic
+from distal.diagnostics import Diagnostic, Label
 from distal.frontend.function_body import FunctionBody, Variable
 from distal.frontend.lowering.argument_matching import Argument, closeness, match, pair
 from distal.frontend.lowering.instances import Instance
 from distal.frontend.lowering.recipes import keep, repeated
 from distal.frontend.lowering.statements import lower_statements
-from distal.frontend.problems import FollowupError, SceneError
+from distal.frontend.problems import FollowupError, SceneError, must_be_call, must_match
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
 from distal.frontend.signatures.signatures import MISSING, FunctionSignature
 from distal.frontend.source import Node
@@ -96,11 +96,9 @@ def _choose(
         if score is not None and (best is None or score > best[0]):
             best = (score, signature, paired)
     if best is None:
-        shown = ", ".join(shown_type(a.value) for a in (*args, *keywords.values()))
-        hint = " or ".join(s.text() for s in signatures)
-        raise body.problem(
-            f"no overload of '{function.name}' takes {shown or 'nothing'}", node, hint
-        )
+        types = [shown_type(a.value) for a in (*args, *keywords.values())]
+        message = must_be_call(function.name, (s.text() for s in signatures), types)
+        raise body.problem(message, node)
     return best[1], best[2]
 
 
@@ -118,7 +116,7 @@ def instantiate(
         signature: The overload.
         types: The types of its parameters.
         bindings: The types bound to its type variables.
-        caller: The calling function and node, for the check of recursion; None outside scene code.
+        caller: The calling function and node, for errors; None outside scene code.
 
     Raises:
         SceneError: The call is recursive.
@@ -129,7 +127,9 @@ def instantiate(
         if caller is not None:
             compilation.check_recursion(instance, caller[0].span(caller[1]))
     else:
-        instance = repeated(compilation, *key) or _lowered(compilation, signature, types, bindings)
+        instance = repeated(compilation, *key) or _lowered(
+            compilation, signature, types, bindings, caller
+        )
         compilation.instances[key] = instance
     compilation.record("instance", (*key, bindings), instance.name)
     return instance
@@ -140,7 +140,11 @@ def _lowered(
     signature: FunctionSignature,
     types: tuple[Type, ...],
     bindings: dict[TypeVar, Type],
+    caller: tuple[FunctionBody, Node] | None,
 ) -> Instance:
+    labels: tuple[Label, ...] = ()
+    if caller is not None:
+        labels = caller[0].labels_of_call(caller[1], {v.__name__: t for v, t in bindings.items()})
     with compilation.recording() as recording:
         name = compilation.unique_name(signature.name, _suffix(types))
         instance = Instance(name, signature.name, types)
@@ -148,7 +152,7 @@ def _lowered(
         compilation.instances[signature.overload, types] = instance
         compilation.in_progress.append(instance)
         try:
-            lower_function(compilation, signature, instance, bindings)
+            lower_function(compilation, signature, instance, bindings, labels)
         finally:
             compilation.in_progress.pop()
     keep(signature.overload, types, recording, instance)
@@ -167,6 +171,7 @@ def lower_function(
     signature: FunctionSignature,
     instance: Instance,
     bindings: dict[TypeVar, Type],
+    labels: tuple[Label, ...],
 ) -> None:
     """Lower one function's body; its errors are recorded in the compilation.
 
@@ -175,16 +180,17 @@ def lower_function(
         signature: The overload.
         instance: The instance, whose result type is set.
         bindings: The types bound to its type variables.
+        labels: The calls that chose these types.
     """
     scopes = signature.definition.scopes
     body = FunctionBody(compilation, signature.name, signature.source, signature.names, scopes)
-    body.bindings = bindings
+    body.bindings, body.labels = bindings, labels
     if signature.overload.takes_self and signature.parameters:
         body.self_name = signature.parameters[0].name
     params = []
     for parameter, type in zip(signature.parameters, instance.params, strict=True):
         failed = parameter.annotation is MISSING
-        variable = body.add_parameter(parameter.name, None if failed else type)
+        variable = body.add_parameter(parameter.name, None if failed else type, parameter.span)
         params.append(Param(variable.ir_name, type))
     result_ok = _declare_result(signature, body, bindings)
     instance.result = body.result
@@ -244,7 +250,9 @@ def lower_body(body: FunctionBody, statements: list[ast.stmt]) -> tuple[Stmt, ..
             parameter = body.parameters[name]
             if parameter.type is None or is_static(parameter.type):
                 continue
-            local = Variable(name, body, True, block, body.fresh(name), parameter.type)
+            local = Variable(
+                name, body, True, block, body.fresh(name), parameter.type, parameter.typed_at
+            )
             initial = Read(parameter.ir_name, parameter.type)
             block.statements.append(Var(local.ir_name, initial))
             body.parameters[name] = local
@@ -277,10 +285,9 @@ def infer_result(
             return FLOAT, tuple(_as_float(s) for s in statements)
     if len(found) != 1:
         if found and body.returned:
-            kinds = " and ".join(map(str, found))
             _, last = body.returned[-1]
             hint = f"annotate the result: def {body.name}(...) -> {next(iter(found))}"
-            message = f"'{body.name}' returns {kinds}"
+            message = must_match(f"the values that '{body.name}' returns", found)
             body.report(Diagnostic(message, body.span(last), hint))
         return None, statements
     return next(iter(found)), statements

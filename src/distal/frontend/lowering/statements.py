@@ -11,11 +11,17 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from distal.frontend.function_body import FunctionBody, OpenLoop, Variable
-from distal.frontend.lowering.assignment import assign, augment, unpacked_items, value_node
+from distal.frontend.lowering.assignment import (
+    assign,
+    augment,
+    labels_of_type,
+    unpacked_items,
+    value_node,
+)
 from distal.frontend.lowering.expressions import make_closure
 from distal.frontend.lowering.iterations import Iteration, iteration
 from distal.frontend.lowering.refusals import refusal
-from distal.frontend.problems import FollowupError, SceneError
+from distal.frontend.problems import FollowupError, SceneError, must_be
 from distal.frontend.types.coercion import coerce_or_raise, default_type, with_default_type
 from distal.frontend.types.operators import condition
 from distal.frontend.values import TRUE, Closure, SequenceValue, Static, Value, Whole
@@ -105,10 +111,10 @@ def _ann_assign(body: FunctionBody, stmt: ast.AnnAssign) -> None:
     if is_static(type):
         raise body.problem(f"a local cannot be {type}", stmt.annotation)
     if variable is not None and variable.type is None and not variable.loop:
-        variable.type = type
+        variable.type, variable.typed_at = type, body.span(stmt)
     elif variable is not None and variable.type is not type and not variable.loop:
-        message = f"'{variable.name}' is {variable.type} and cannot become {type}"
-        raise body.problem(message, stmt)
+        message = must_be(f"'{variable.name}'", variable.type, type)
+        raise body.problem(message, stmt.annotation, None, labels_of_type(variable))
     if stmt.value is not None:
         value = body.expression(stmt.value)
         expr = coerce_or_raise(body, value, type, value_node(stmt), f"'{stmt.target.id}'")

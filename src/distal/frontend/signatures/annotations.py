@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, TypeAlias, TypeVar
 
+from distal.frontend.problems import one_of
 from distal.frontend.values import LARGEST_ARRAY
 from distal.ir.types import (
     BOOL,
@@ -236,5 +237,5 @@ def admits(variable: TypeVar, type: Type) -> bool:
 
 
 def choices(variable: TypeVar) -> str:
-    """Return the types that a type variable can be bound to, as text for a hint."""
-    return " | ".join(str(to_type(a)) for a in variable.__constraints__)
+    """Return the types that a type variable can be bound to, as text for a message."""
+    return one_of(str(to_type(a)) for a in variable.__constraints__)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from distal.frontend.function_body import FunctionBody
-from distal.frontend.problems import SceneError
+from distal.frontend.problems import SceneError, must_be, must_match
 from distal.frontend.source import Node
 from distal.frontend.types.python_objects import kind_of_object
 from distal.frontend.values import Closure, SequenceValue, Static, Value, Whole, describe, whole_to
@@ -225,7 +225,7 @@ def _mixed_sequence(body: FunctionBody, value: Value, node: Node) -> SceneError:
         if isinstance(item, Static | Closure):
             return body.problem(f"{describe(item)} is not a value", node)
     kinds = list(dict.fromkeys(describe(i) for i in value.items))
-    return body.problem(f"the elements of an array have one type, not {' and '.join(kinds)}", node)
+    return body.problem(must_match("the elements of an array", kinds), node)
 
 
 def coerce_or_raise(body: FunctionBody, value: Value, type: Type, node: Node, what: str) -> Expr:
@@ -236,7 +236,7 @@ def coerce_or_raise(body: FunctionBody, value: Value, type: Type, node: Node, wh
         value: The value.
         type: The required type.
         node: The node that the error points at.
-        what: The subject of the message "``what`` is ``type``, not …".
+        what: The subject of the message "``what`` must be ``type``, but this is …".
 
     Raises:
         SceneError: The value has another type.
@@ -244,15 +244,15 @@ def coerce_or_raise(body: FunctionBody, value: Value, type: Type, node: Node, wh
     coerced = coerce(body, value, type, node)
     if coerced is not None:
         return coerced
-    if isinstance(type, FunctionType) and is_callable(value):
-        raise body.problem(
-            f"{what} is {type}, not {shown_type(value)}", node, callable_hint(body, value)
-        )
-    if isinstance(value, Static):
-        raise not_a_value(body, value.object, value.text, node)
-    raise body.problem(
-        f"{what} is {type}, not {shown_type(value)}", node, conversion_hint(value, type)
-    )
+    raise wrong_type(body, value, type, node, what)
+
+
+def wrong_type(body: FunctionBody, value: Value, type: Type, node: Node, what: str) -> SceneError:
+    """Return the error for a value of the wrong type; arguments as for ``coerce_or_raise``."""
+    if isinstance(value, Static) and not (isinstance(type, FunctionType) and is_callable(value)):
+        return not_a_value(body, value.object, value.text, node)
+    hint = conversion_hint(value, type) or callable_hint(body, value)
+    return body.problem(must_be(what, type, shown_type(value)), node, hint)
 
 
 def callable_hint(body: FunctionBody, value: Value) -> str | None:

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Sequence
 
 from distal.frontend.function_body import FunctionBody
-from distal.frontend.problems import did_you_mean
+from distal.frontend.problems import did_you_mean, must_be
 from distal.frontend.signatures.annotations import AnnotationError, struct_defaults, struct_type
 from distal.frontend.types.coercion import (
     coerce,
@@ -77,7 +77,8 @@ def _scalar(body: FunctionBody, kind: Kind, args: Sequence[Value], node: ast.Cal
         hint = None
         if isinstance(value.type, Vector):
             hint = f"pick a component, such as .x, or write {vector_of(kind, value.type.size)}(...)"
-        raise body.problem(f"'{type}' does not take {value.type}", node, hint)
+        message = must_be(f"the argument of '{type}'", "a number or a bool", value.type)
+        raise body.problem(message, node, hint)
     return cast(value, kind)
 
 
@@ -149,7 +150,8 @@ def _component(body: FunctionBody, arg: Value, type: Vector, node: ast.Call) -> 
         case Scalar() | Vector():
             return cast(value, type.kind)
         case _:
-            raise body.problem(f"'{type}' is made of numbers and vectors, not {value.type}", node)
+            message = must_be(f"an argument of '{type}'", "a number or a vector", value.type)
+            raise body.problem(message, node)
 
 
 def _matrix(body: FunctionBody, type: Matrix, args: Sequence[Value], node: ast.Call) -> Expr:
@@ -171,9 +173,9 @@ def _matrix(body: FunctionBody, type: Matrix, args: Sequence[Value], node: ast.C
         if len(known) == len(cells):
             rows = (known[i : i + size] for i in range(0, len(known), size))
             return Compose(tuple(Compose(r, column) for r in rows), type, span=body.span(node))
-    given = ", ".join(shown_type(a) for a in args) or "nothing"
-    hint = f"give {size} columns ({column}), {size * size} floats column by column, or a matrix"
-    raise body.problem(f"'{type}' is not made of {given}", node, hint)
+    wanted = f"{size} columns ({column}), {size * size} floats column by column, or a {type}"
+    types = [shown_type(a) for a in args] or ["nothing"]
+    raise body.problem(must_be(f"what '{type}' takes", wanted, *types), node)
 
 
 def _diagonal(scalar: Expr, type: Matrix) -> Expr:
@@ -266,7 +268,8 @@ def length_of(body: FunctionBody, value: Value, node: ast.expr) -> Value:
         case Struct(_, fields, is_tuple) if is_tuple:
             return Whole(len(fields))
         case _:
-            raise body.problem(f"'len' does not take {expr.type}", node)
+            wanted = "an array, a vector, a matrix or a tuple"
+            raise body.problem(must_be("the argument of 'len'", wanted, expr.type), node)
 
 
 def _size(value: Value) -> int:

@@ -11,9 +11,9 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from distal.frontend.function_body import FunctionBody
-from distal.frontend.problems import SceneError
+from distal.frontend.problems import SceneError, must_be
 from distal.frontend.source import Node
-from distal.frontend.types.coercion import shown_type, with_default_type
+from distal.frontend.types.coercion import with_default_type
 from distal.frontend.types.powers import power
 from distal.frontend.types.python_objects import RefusedError, float_constant
 from distal.frontend.types.unification import concrete, do_not_mix, unify_operands
@@ -35,6 +35,7 @@ from distal.ir.nodes import (
 from distal.ir.types import (
     BOOL,
     FLOAT,
+    INT,
     UINT,
     Kind,
     Matrix,
@@ -130,17 +131,18 @@ def _fold(body: FunctionBody, op: BinaryOp, lhs: int, rhs: int, node: Node) -> V
 def _arithmetic(body: FunctionBody, op: BinaryOp, lhs: Expr, rhs: Expr, node: Node) -> Expr:
     type, span = lhs.type, body.span(node)
     kind = kind_of(type)
+    operand = f"an operand of '{op.value}'"
     if kind is None:
-        raise body.problem(f"'{op.value}' does not take {type}", node)
+        raise body.problem(must_be(operand, "a number, a vector or a matrix", type), node)
     if isinstance(type, Matrix):
         _check_matrix(body, op, lhs, rhs, node)
     elif op in _BITWISE:
         if kind is Kind.FLOAT:
             hint = "use ** for powers" if op is BinaryOp.XOR else "use and, or for conditions"
-            raise body.problem(f"'{op.value}' does not take {type}", node, hint)
+            raise body.problem(must_be(operand, "of int, uint or bool", type), node, hint)
     elif kind is Kind.BOOL:
         hint = "convert the bool: int(b) or float(b)"
-        raise body.problem(f"'{op.value}' does not take {type}", node, hint)
+        raise body.problem(must_be(operand, "of int, uint or float", type), node, hint)
     elif op is BinaryOp.DIV and kind is not Kind.FLOAT:
         lhs, rhs = cast(lhs, Kind.FLOAT), cast(rhs, Kind.FLOAT)
         type = lhs.type
@@ -161,12 +163,13 @@ def _check_matrix(body: FunctionBody, op: BinaryOp, lhs: Expr, rhs: Expr, node: 
         return
     if op in (BinaryOp.MUL, BinaryOp.DIV) and scaled:
         return
-    if scaled or isinstance(lhs, Splat):
-        raise body.problem(
-            f"'{op.value}' does not take {lhs.type} and a number in this order", node
-        )
+    types = [e.value.type if isinstance(e, Splat) else e.type for e in (lhs, rhs)]
+    wanted = {
+        BinaryOp.MUL: "a matrix and a number",
+        BinaryOp.DIV: "a matrix and a number, in this order",
+    }.get(op, "numbers or vectors")
     hint = "the product of matrices is written @" if op is BinaryOp.MUL else None
-    raise body.problem(f"'{op.value}' does not take {lhs.type} and {rhs.type}", node, hint)
+    raise body.problem(must_be(f"the operands of '{op.value}'", wanted, *types), node, hint)
 
 
 def _shift(body: FunctionBody, op: BinaryOp, lhs: Value, rhs: Value, node: Node) -> Value:
@@ -182,9 +185,11 @@ def _shift(body: FunctionBody, op: BinaryOp, lhs: Value, rhs: Value, node: Node)
     else:
         count = with_default_type(body, rhs, node)
     if kind not in (Kind.INT, Kind.UINT) or isinstance(value.type, Matrix):
-        raise body.problem(f"'{op.value}' does not take {value.type}", node)
+        message = must_be(f"the left operand of '{op.value}'", "of int or uint", value.type)
+        raise body.problem(message, node)
     if kind_of(count.type) not in (Kind.INT, Kind.UINT):
-        raise body.problem(f"'{op.value}' shifts by an int, not {count.type}", node)
+        message = must_be(f"the right operand of '{op.value}'", "of int or uint", count.type)
+        raise body.problem(message, node)
     # int and uint counts keep their bits, and only the lowest five bits are used.
     count = cast(count, kind)
     if isinstance(value.type, Scalar):
@@ -208,7 +213,8 @@ def _matmul(body: FunctionBody, lhs: Value, rhs: Value, node: Node) -> Expr:
         case _:
             scalar = isinstance(left.type, Scalar) or isinstance(right.type, Scalar)
             hint = "a number times a matrix is written *" if scalar else None
-            message = f"'@' does not take {left.type} and {right.type}"
+            wanted = "two matrices, or a matrix and a vector, of one size"
+            message = must_be("the operands of '@'", wanted, left.type, right.type)
             raise body.problem(message, node, hint)
     return MatMul(left, right, type, span=body.span(node))
 
@@ -249,7 +255,11 @@ def unary(body: FunctionBody, op: ast.unaryop, operand: Value, node: ast.expr) -
         case _:
             symbol = {ast.USub: "-", ast.UAdd: "+", ast.Invert: "~"}[type(op)]
             hint = "write not" if isinstance(op, ast.Invert) and kind is Kind.BOOL else None
-            raise body.problem(f"'{symbol}' does not take {value.type}", node, hint)
+            wanted = (
+                "of int or uint, or a vector of bool" if symbol == "~" else "a number or a vector"
+            )
+            message = must_be(f"the operand of '{symbol}'", wanted, value.type)
+            raise body.problem(message, node, hint)
 
 
 def compare(body: FunctionBody, op: ast.cmpop, lhs: Value, rhs: Value, node: ast.expr) -> Expr:
@@ -273,10 +283,10 @@ def compare(body: FunctionBody, op: ast.cmpop, lhs: Value, rhs: Value, node: ast
         return Const(bool(meaning(lhs.value, rhs.value)), BOOL)
     left, right = unify_operands(body, lhs, rhs, node, found.value)
     kind = kind_of(left.type)
-    if kind is None or isinstance(left.type, Matrix):
-        raise body.problem(f"'{found.value}' does not compare {left.type}", node)
-    if kind is Kind.BOOL and found not in (CompareOp.EQ, CompareOp.NE):
-        raise body.problem(f"'{found.value}' does not compare {left.type}", node)
+    is_order = found not in (CompareOp.EQ, CompareOp.NE)
+    if kind is None or isinstance(left.type, Matrix) or (kind is Kind.BOOL and is_order):
+        wanted = "a number or a vector of numbers" if is_order else "a number, a bool or a vector"
+        raise body.problem(must_be(f"an operand of '{found.value}'", wanted, left.type), node)
     return Compare(found, left, right, with_kind(left.type, Kind.BOOL), span=body.span(node))
 
 
@@ -298,13 +308,13 @@ def condition(body: FunctionBody, value: Value, node: ast.expr, what: str) -> Ex
         body: The function being lowered.
         value: The condition.
         node: The node, for errors.
-        what: The subject of the message "``what`` is a bool, not …".
+        what: The subject of the message "``what`` must be bool, but this is …".
 
     Raises:
         SceneError: The value is not a bool.
     """
     if isinstance(value, Whole):
-        raise body.problem(f"{what} is a bool, not int", node, "compare it: x != 0")
+        raise body.problem(must_be(what, BOOL, INT), node, "compare it: x != 0")
     expr = with_default_type(body, value, node)
     if expr.type is BOOL:
         return expr
@@ -313,4 +323,4 @@ def condition(body: FunctionBody, value: Value, node: ast.expr, what: str) -> Ex
         hint = "write any(...) or all(...) around it"
     elif isinstance(expr.type, Scalar):
         hint = "compare it: x != 0"
-    raise body.problem(f"{what} is a bool, not {shown_type(expr)}", node, hint)
+    raise body.problem(must_be(what, BOOL, expr.type), node, hint)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from distal.diagnostics import Span
 from distal.frontend.function_body import FunctionBody
+from distal.frontend.problems import must_be, must_match
 from distal.frontend.source import Node
 from distal.frontend.types.coercion import with_default_type
 from distal.frontend.types.unification import unify_operands
@@ -12,6 +15,8 @@ from distal.ir.build import builtin, compare, number, select
 from distal.ir.limits import LARGEST_POWER, SMALLEST
 from distal.ir.nodes import Binary, BinaryOp, CompareOp, Const, Expr
 from distal.ir.types import FLOAT, Kind, Matrix, kind_of
+
+_OPERAND: Final = "an operand of '**'"
 
 
 def power(body: FunctionBody, base: Value, exponent: Value, node: Node) -> Value:
@@ -38,15 +43,16 @@ def power(body: FunctionBody, base: Value, exponent: Value, node: Node) -> Value
         if kind_of(left.type) is not Kind.FLOAT or isinstance(left.type, Matrix):
             if kind_of(left.type) in (Kind.INT, Kind.UINT):
                 raise body.problem("int ** int needs an exponent known now", node, "use float(...)")
-            raise body.problem(f"'**' does not take {left.type}", node)
+            raise body.problem(must_be(_OPERAND, "a number or a vector", left.type), node)
         return builtin("pow", left, right)
     value = with_default_type(body, base, node)
     kind = kind_of(value.type)
     if kind is Kind.BOOL or kind is None or isinstance(value.type, Matrix):
-        raise body.problem(f"'**' does not take {value.type}", node)
+        raise body.problem(must_be(_OPERAND, "a number or a vector", value.type), node)
     if kind is not Kind.FLOAT:
         if not isinstance(exponent, Whole):
-            raise body.problem(f"{value.type} and float do not mix in '**'", node, "use float(...)")
+            message = must_match("the operands of '**'", (value.type, FLOAT))
+            raise body.problem(message, node, "use float(...)")
         if whole < 0:
             raise body.problem("an int to a negative power is not an int", node, "use float(...)")
     return _multiplied(body, value, whole, node)

@@ -12,6 +12,7 @@ from enum import Enum
 from types import FunctionType, ModuleType
 from typing import Any, Protocol
 
+from distal.frontend.problems import must_be
 from distal.frontend.signatures.annotations import struct_type, to_type
 from distal.frontend.values import (
     FALSE,
@@ -23,6 +24,7 @@ from distal.frontend.values import (
     Static,
     Value,
     Whole,
+    describe,
     whole_to,
 )
 from distal.ir.nodes import Compose, Const, Construct, Expr
@@ -249,7 +251,7 @@ def _struct_value(obj: Any, text: str, declarations: Declarations) -> Expr:
         value = value_of(getattr(obj, name), f"{text}.{name}", declarations)
         coerced = coerce_constant(value, field_type)
         if coerced is None:
-            raise RefusedError(f"'{text}.{name}' is not the {field_type} its struct says")
+            raise RefusedError(must_be(f"'{text}.{name}'", field_type, describe(value)))
         parts.append(coerced)
     return Construct(tuple(parts), struct)
 

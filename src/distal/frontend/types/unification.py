@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from distal.frontend.function_body import FunctionBody
-from distal.frontend.problems import SceneError
+from distal.frontend.problems import SceneError, must_match
 from distal.frontend.source import Node
 from distal.frontend.types.coercion import coerce, default_type, shown_type, with_default_type
 from distal.frontend.values import Closure, SequenceValue, Static, Value, Whole
@@ -112,7 +112,7 @@ def do_not_mix(body: FunctionBody, lhs: Expr, rhs: Expr, node: Node, symbol: str
         symbol: The operator.
     """
     left, right = lhs.type, rhs.type
-    message = f"{left} and {right} do not mix in '{symbol}'"
+    message = must_match(f"the operands of '{symbol}'", (left, right))
     hint = None
     kinds = {kind_of(left), kind_of(right)}
     if (isinstance(left, Matrix) and isinstance(right, Matrix | Vector) and symbol == "*") or (
@@ -152,7 +152,7 @@ def unify_values(
         body: The function being lowered.
         values: The values.
         node: The node, for errors.
-        what: The start of the message, which the types follow.
+        what: The values, for messages.
 
     Raises:
         SceneError: The types differ.
@@ -170,9 +170,7 @@ def unify_values(
     for value in values:
         if isinstance(value, Static | Closure):
             with_default_type(body, value, node)
-    kinds = " and ".join(dict.fromkeys(shown_type(v) for v in values))
-    hint = _unify_hint(values)
-    raise body.problem(f"{what} {kinds}", node, hint)
+    raise body.problem(must_match(what, map(shown_type, values)), node, _unify_hint(values))
 
 
 def _unify_hint(values: Sequence[Value]) -> str | None:

@@ -13,12 +13,12 @@ from typing import Any, Final
 
 from distal.diagnostics import Span
 from distal.frontend.problems import did_you_mean
+from distal.lang.source_places import author_place
 from distal.render.backdrops import open_air, paper, studio_backdrop
 from distal.scene.looks.look import COLORS, Look, LookRow, look_numbers
 from distal.scene.objects.declared import annotation_of
 from distal.scene.tree.arguments import slots_of, takes_color
 from distal.scene.tree.errors import refuse, refuse_kind
-from distal.scene.tree.source_places import author_place
 
 CLAY: Final = (0.78, 0.70, 0.61)
 

@@ -18,11 +18,11 @@ from distal.ir.types import BOOL, INT
 from distal.lang.expressions import Expression, Symbolic
 from distal.lang.parameters import Parameter, ParameterKind
 from distal.lang.places import CELL
+from distal.lang.source_places import author_place
 from distal.scene.objects.field import BaseShape
 from distal.scene.tree.conversion import Asked, Number, choice
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
-from distal.scene.tree.source_places import author_place
 from distal.scene.tree.varying import varying_or_same
 from distal.scene.tree.whole_numbers import whole_ends
 

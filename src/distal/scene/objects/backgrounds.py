@@ -19,6 +19,7 @@ from distal.lang.functions import Func
 from distal.lang.lazy_module import LazyModule
 from distal.lang.resources import Buffer as BufferData
 from distal.lang.resources import Texture2D
+from distal.lang.source_places import author_place
 from distal.render import ambient as ambient_library
 from distal.render import environment as environment_library
 from distal.render import sky as library
@@ -37,7 +38,6 @@ from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import unwrapped
 from distal.scene.tree.errors import refuse_kind
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.scene.objects import images as image_files

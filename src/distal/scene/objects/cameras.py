@@ -18,6 +18,7 @@ from distal.ir.types import FLOAT
 from distal.lang import tan
 from distal.lang.expressions import Expression
 from distal.lang.functions import Func
+from distal.lang.source_places import author_place
 from distal.render import camera as library
 from distal.render.declarations import CAMERAS
 from distal.scene.objects.declared import (
@@ -31,7 +32,6 @@ from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import Asked, number
 from distal.scene.tree.conversion import Number as CheckedNumber
 from distal.scene.tree.errors import refuse, refuse_kind
-from distal.scene.tree.source_places import author_place
 from distal.scene.tree.varying import Composer
 
 if TYPE_CHECKING:

@@ -19,6 +19,7 @@ from distal.fields.combine import joins
 from distal.fields.guarantees import Limit, Operator
 from distal.fields.place import solid as placing
 from distal.ir.types import FLOAT, INT, VEC3, VEC4, Type
+from distal.lang.source_places import author_place
 from distal.scene.objects.field import PLAIN, BaseShape
 from distal.scene.objects.materials import Material, as_material
 from distal.scene.objects.turns import LEAST_DEGREES, STEP_OF_DEGREES, warn_of_degrees
@@ -27,7 +28,6 @@ from distal.scene.tree.columns import choices, column, rows_of
 from distal.scene.tree.conversion import NO_VALUES, Asked, Number, is_scalar, number, unwrapped
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
-from distal.scene.tree.source_places import author_place
 from distal.scene.tree.varying import varied_in
 
 if TYPE_CHECKING:

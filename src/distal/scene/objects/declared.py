@@ -22,12 +22,12 @@ from distal.ir.types import BOOL, FLOAT, INT, Texture, Type
 from distal.ir.types import Buffer as BufferType
 from distal.lang.functions import Func
 from distal.lang.places import PLACES
+from distal.lang.source_places import author_place
 from distal.render.declarations import Declaration, ExtraParameter, Family
 from distal.scene.tree.arguments import Accept, FunctionParameter, arguments, slots_of, takes_color
 from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import unwrapped
 from distal.scene.tree.errors import refuse_kind
-from distal.scene.tree.source_places import author_place
 
 C = TypeVar("C")
 

@@ -10,13 +10,13 @@ import math
 from typing import TYPE_CHECKING, Any, Final
 
 from distal.fields.solids.threads import DEPTH
+from distal.lang.source_places import author_place
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.metric_sizes import MetricSize, metric_size
 from distal.scene.objects.shape import Shape
 from distal.scene.objects.shapes import made_of
 from distal.scene.tree.conversion import is_scalar
 from distal.scene.tree.errors import refuse
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Amount

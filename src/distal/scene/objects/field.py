@@ -25,6 +25,7 @@ from distal.lang.functions import Func
 from distal.lang.places import PLACES
 from distal.lang.presentable import Presentable
 from distal.lang.runtime_access import executor, viewing
+from distal.lang.source_places import author_place
 from distal.scene.lowering.derived import BoundsOf, GradientOf
 from distal.scene.lowering.parts.table import rolled_for
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
@@ -42,7 +43,6 @@ from distal.scene.tree.conversion import Number as Checked
 from distal.scene.tree.described import described
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
-from distal.scene.tree.source_places import author_place
 from distal.scene.tree.values import plain_name
 
 if TYPE_CHECKING:

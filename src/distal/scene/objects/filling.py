@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any, Final
 from distal.lang.parameter_values import as_color
 from distal.lang.render_options import RenderOptions
 from distal.lang.runtime_access import executor
+from distal.lang.source_places import author_place
 from distal.lang.srgb import encode_srgb
 from distal.scene.objects.shown_box import shown_box
 from distal.scene.objects.vm_shapes import program_of_node
 from distal.scene.tree.errors import refuse
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.images.picture import Picture

@@ -9,11 +9,11 @@ from collections.abc import Sequence
 from os import PathLike
 from typing import TYPE_CHECKING
 
+from distal.lang.source_places import author_place
 from distal.scene.objects.mesh_shapes import mesh_node, reports_of
 from distal.scene.objects.placed import Placed
 from distal.scene.objects.point_shapes import points_node
 from distal.scene.objects.volume_shapes import volume_node
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.polygons.importing import ImportReport

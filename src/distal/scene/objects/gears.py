@@ -10,11 +10,11 @@ import math
 from typing import TYPE_CHECKING, Any, Final
 
 from distal.diagnostics import Span
+from distal.lang.source_places import author_place
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.shape import Shape
 from distal.scene.objects.shapes import made_of
 from distal.scene.tree.errors import refuse, refuse_kind
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Amount

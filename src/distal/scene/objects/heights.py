@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 from distal.lang.render_options import RenderOptions
 from distal.lang.runtime_access import executor, ray_views
+from distal.lang.source_places import author_place
 from distal.scene.lowering.derived import GradientOf
 from distal.scene.objects.shown_box import shown_box
 from distal.scene.objects.vm_shapes import program_of_node
 from distal.scene.tree.errors import refuse
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.images.height_map import HeightMap

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 
+from distal.lang.source_places import author_place
 from distal.scene.objects.field import BaseShape
 from distal.scene.tree.errors import refuse_kind
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import BlendNumbers, Number

@@ -19,11 +19,11 @@ from typing import Any, Final
 
 from distal.diagnostics import Span
 from distal.frontend.problems import did_you_mean
+from distal.lang.source_places import author_place
 from distal.packages import imported
 from distal.scene.objects.outlines import DrawnOutline, Edge, font_tools, made_of, outline_pen
 from distal.scene.tree.conversion import beside
 from distal.scene.tree.errors import SceneValueError, refuse, refuse_kind
-from distal.scene.tree.source_places import author_place
 
 ALIGNMENTS: Final = {"left": 0.0, "center": 0.5, "right": 1.0}
 SUFFIXES: Final = (".ttf", ".otf", ".ttc", ".otc")

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 from distal.diagnostics import Span
 from distal.fields.flats.outlines import OUTLINE
 from distal.lang.lazy_module import LazyModule
+from distal.lang.source_places import author_place
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.shape import Shape2D
 from distal.scene.tree.node import Node
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.scene.objects import lettering, outlines

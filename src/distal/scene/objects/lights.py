@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from typing import Any, ClassVar, Final
 
 from distal.lang.functions import Func
+from distal.lang.source_places import author_place
 from distal.render import ambient as _ambient  # noqa: F401 (declares lights)
 from distal.render import lights as _lights  # noqa: F401 (declares lights)
 from distal.render.declarations import LIGHTS
@@ -20,7 +21,6 @@ from distal.scene.objects.declared import declared_call, declared_class, given_a
 from distal.scene.objects.scene_object import SceneObject
 from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.calls import FunctionCall
-from distal.scene.tree.source_places import author_place
 
 
 class Light(SceneObject):

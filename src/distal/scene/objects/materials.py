@@ -18,6 +18,7 @@ from distal.ir.types import FLOAT, VEC3, Struct
 from distal.lang import func, log, max, vec3
 from distal.lang.expressions import Expression, Symbolic
 from distal.lang.functions import Func
+from distal.lang.source_places import author_place
 from distal.lang.values import VectorValue
 from distal.render import material as library
 from distal.render import named_materials
@@ -30,7 +31,6 @@ from distal.scene.tree.calls import FunctionCall, Pattern
 from distal.scene.tree.conversion import Asked, number, unwrapped
 from distal.scene.tree.conversion import Number as CheckedNumber
 from distal.scene.tree.errors import refuse, refuse_kind
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Color, Number, Varying

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from distal.lang.lazy_module import LazyModule
 from distal.lang.render_options import Cancel, Progress
 from distal.lang.runtime_access import outlining
+from distal.lang.source_places import author_place
 from distal.scene.objects.placed import Placed
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.mesh.outlines.outline import Outline

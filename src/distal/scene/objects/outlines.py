@@ -17,9 +17,9 @@ import numpy as np
 
 from distal.diagnostics import Span
 from distal.lang.resources import Buffer
+from distal.lang.source_places import author_place
 from distal.packages import PackageError, imported
 from distal.scene.tree.errors import refuse, refuse_kind
-from distal.scene.tree.source_places import author_place
 
 # A line (two points), a quadratic Bézier curve (three) or a cubic one (four); y points up.
 Edge: TypeAlias = tuple[complex, ...]

@@ -20,6 +20,7 @@ from distal.lang import func, mix, vec3
 from distal.lang.functions import Func
 from distal.lang.lazy_module import LazyModule
 from distal.lang.resources import Texture3D
+from distal.lang.source_places import author_place
 from distal.render import patterns as library
 from distal.render.declarations import PATTERNS, Declaration
 from distal.scene.objects.declared import declared_call, declared_function, scene_call
@@ -27,7 +28,6 @@ from distal.scene.objects.materials import Material, accept, as_material, mixed,
 from distal.scene.tree.calls import FunctionCall, Pattern
 from distal.scene.tree.conversion import is_scalar
 from distal.scene.tree.errors import refuse, refuse_kind
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.scene.objects import images as image_files

@@ -20,6 +20,7 @@ from distal.fields.repeat import grid, polar
 from distal.frontend.problems import did_you_mean
 from distal.ir.types import INT
 from distal.lang.names import select
+from distal.lang.source_places import author_place
 from distal.scene.objects.anchors import measured_extents, offset_aligned, offset_on
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.in_plane import IN_PLANE
@@ -27,7 +28,6 @@ from distal.scene.objects.masked import masked
 from distal.scene.objects.shaped_edges import shaped_edge
 from distal.scene.tree.conversion import Asked, is_scalar, plain_choice
 from distal.scene.tree.errors import refuse
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Argument, Number, Vector

@@ -23,6 +23,7 @@ from distal.fields.solids import heightfield
 from distal.ir.types import VEC2, VEC3
 from distal.lang.functions import Func
 from distal.lang.render_options import Cancel, Progress, RenderOptions
+from distal.lang.source_places import author_place
 from distal.scene.objects.copies import CopyColumns, copied
 from distal.scene.objects.field import PLAIN, BaseShape
 from distal.scene.objects.filling import filled
@@ -32,7 +33,6 @@ from distal.scene.objects.meshable import Meshable
 from distal.scene.objects.outlined import Outlined
 from distal.scene.objects.turns import warn_of_degrees
 from distal.scene.tree.errors import refuse
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.images.height_map import HeightMap

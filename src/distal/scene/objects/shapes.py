@@ -11,11 +11,11 @@ from typing import Any
 
 from distal.fields.guarantees import Primitive
 from distal.fields.library import PRIMITIVES
+from distal.lang.source_places import author_place
 from distal.scene.objects.binding import bound
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.shape import Shape, Shape2D
 from distal.scene.tree.node import Node
-from distal.scene.tree.source_places import author_place
 
 
 def _make(primitive: Primitive) -> type[BaseShape]:

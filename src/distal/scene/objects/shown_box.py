@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from distal.fields.guarantees import Primitive
 from distal.lang.render_options import RenderOptions
+from distal.lang.source_places import author_place
 from distal.scene.tree.errors import refuse
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.scene.objects.field import BaseShape

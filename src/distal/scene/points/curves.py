@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from distal.diagnostics import Span
 from distal.ir.types import VEC3
+from distal.lang.source_places import author_place
 from distal.scene.points.requests import positive, whole_number
 from distal.scene.tree.columns import column, rows_of
 from distal.scene.tree.conversion import Asked, Number, number
 from distal.scene.tree.errors import refuse, refuse_kind
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Points, Vector

@@ -17,6 +17,7 @@ from distal.diagnostics import Span
 from distal.fields.lift import path
 from distal.ir.types import FLOAT, VEC3
 from distal.lang.immutable import Immutable
+from distal.lang.source_places import author_place
 from distal.scene.objects.copies import CopyColumns, copied
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.shapes import CLASSES
@@ -26,7 +27,6 @@ from distal.scene.points.parabolas import Parabolas, parabolas_of
 from distal.scene.points.requests import positive
 from distal.scene.tree.conversion import Asked, number
 from distal.scene.tree.errors import refuse, refuse_kind
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Number, Vector

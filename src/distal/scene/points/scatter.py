@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import Span
+from distal.lang.source_places import author_place
 from distal.scene.objects.field import BaseShape
 from distal.scene.points import poisson, regions
 from distal.scene.points.domains import (
@@ -25,7 +26,6 @@ from distal.scene.points.domains import (
 )
 from distal.scene.points.requests import MOST_POINTS, positive, whole_number
 from distal.scene.tree.errors import refuse, refuse_kind
-from distal.scene.tree.source_places import author_place
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Corners

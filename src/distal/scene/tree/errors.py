@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import NoReturn
 
 from distal.diagnostics import CompileError, Diagnostic, Span
-from distal.scene.tree.source_places import author_place
+from distal.lang.source_places import author_place
 
 
 class SceneValueError(CompileError, ValueError):

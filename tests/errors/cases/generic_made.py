@@ -1,0 +1,21 @@
+from distal.lang import (Floats, func, length, vec2, vec3)
+
+
+@func
+def halved(v: Floats) -> Floats:
+    size = length(v)
+    return v / size
+
+
+@func
+def scaled(v: Floats, by: Floats) -> Floats:
+    return halved(v) * by
+
+
+@func
+def scene(p: vec3) -> float:
+    def inner(q):
+        return q.z
+
+    a = scaled(p, p)
+    return scaled(p.x, 2.0) + inner(p) + inner(p.xy) + a.x
