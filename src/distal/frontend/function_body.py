@@ -8,7 +8,7 @@ no rules of the language.
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -29,6 +29,10 @@ if TYPE_CHECKING:
 
 # Deeper expressions are split into lets, because passes and drivers recurse over expressions.
 DEEPEST = 60
+
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 
 
 @dataclass(eq=False, slots=True)
@@ -152,6 +156,45 @@ class FunctionBody:
         self.failed = True
         labels = (*diagnostic.labels, *self.labels)
         self.compilation.report(replace(diagnostic, labels=labels))
+
+    def record(self, error: SceneError | FollowupError) -> None:
+        """Record an error that was raised; the consequence of another one is not reported."""
+        self.failed = True
+        if isinstance(error, SceneError):
+            self.report(error.diagnostic)
+
+    @contextmanager
+    def checking(self, rest: Iterator[Item], check: Callable[[Item], object]) -> Iterator[None]:
+        """After an error in the block, check what is left, so that its errors are recorded too.
+
+        Args:
+            rest: What the block takes one by one.
+            check: Raises the error of one of them.
+
+        Raises:
+            FollowupError: There was an error.
+        """
+        try:
+            yield
+        except (SceneError, FollowupError) as error:
+            self.record(error)
+            for item in rest:
+                try:
+                    check(item)
+                except (SceneError, FollowupError) as another:
+                    self.record(another)
+            raise FollowupError from None
+
+    def each(self, function: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
+        """Return the function's value for each item, and record the errors of all items.
+
+        Raises:
+            FollowupError: There was an error.
+        """
+        rest = iter(items)
+        with self.checking(rest, function):
+            values = [function(item) for item in rest]
+        return values
 
     def labels_of_call(self, node: Node, types: Mapping[str, Type]) -> tuple[Label, ...]:
         """Return the labels of errors in a called function.

@@ -134,12 +134,13 @@ def match(body: FunctionBody, signature: FunctionSignature, args: Sequence[Argum
         SceneError: An argument cannot be coerced to its parameter's type.
     """
     bindings = _bind(body, signature, args)
-    types, coerced = [], []
-    for parameter, argument in zip(signature.parameters, args, strict=True):
-        type = parameter_type(body, parameter, bindings)
-        types.append(type)
-        coerced.append(_coerce_argument(body, signature, parameter, type, argument))
-    return Match(tuple(types), tuple(coerced), bindings)
+
+    def coerced(pair: tuple[SignatureParameter, Argument]) -> tuple[Type, Expr]:
+        type = parameter_type(body, pair[0], bindings)
+        return type, _coerce_argument(body, signature, pair[0], type, pair[1])
+
+    pairs = body.each(coerced, zip(signature.parameters, args, strict=True))
+    return Match(tuple(t for t, _ in pairs), tuple(e for _, e in pairs), bindings)
 
 
 def parameter_type(
@@ -176,7 +177,10 @@ def _coerce_argument(
 ) -> Expr:
     if argument.parts and isinstance(type, Array):
         one = replace(parameter, annotation=element_annotation(parameter), collects=False)
-        parts = [_coerce_argument(body, signature, one, type.element, a) for a in argument.parts]
+        element = type.element
+        parts = body.each(
+            lambda a: _coerce_argument(body, signature, one, element, a), argument.parts
+        )
         return Construct(tuple(parts), type)
     value, node = argument.value, argument.node
     if isinstance(parameter.annotation, TypeVar) and isinstance(type, Vector):

@@ -246,14 +246,17 @@ def unpacked_items(
 
 def augment(body: FunctionBody, stmt: ast.AugAssign) -> None:
     """Lower ``target op= value``."""
+    rest = iter((stmt.value,))
     if isinstance(stmt.target, ast.Name):
         variable = local(body, stmt.target)
-        old = body.read(variable, stmt.target)
-        value = binary(body, stmt.op, old, body.expression(stmt.value), stmt)
+        with body.checking(rest, body.expression):
+            old = body.read(variable, stmt.target)
+            value = binary(body, stmt.op, old, body.expression(next(rest)), stmt)
         if isinstance(old, Static | Closure):
             raise body.problem(f"'{stmt.target.id}' does not change", stmt)
         _assign_name(body, stmt.target, value, stmt)
         return
-    place = lvalue(body, stmt.target)
-    value = binary(body, stmt.op, place, body.expression(stmt.value), stmt)
+    with body.checking(rest, body.expression):
+        place = lvalue(body, stmt.target)
+        value = binary(body, stmt.op, place, body.expression(next(rest)), stmt)
     _assign_part(body, place, stmt.target, value, stmt)

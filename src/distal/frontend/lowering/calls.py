@@ -6,6 +6,7 @@ import ast
 import builtins
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from itertools import islice
 from types import FunctionType as PythonFunction
 from types import ModuleType
 from typing import Any, Final
@@ -80,9 +81,10 @@ def lower_call(body: FunctionBody, node: ast.Call) -> Value:
         SceneError: The called value is not a function, or does not take these arguments.
     """
     node = unstarred(body, node)
-    if isinstance(node.func, ast.Attribute):
-        node = _of_value(body, node, node.func)
-    called = body.expression(node.func)
+    with body.checking(iter(_argument_nodes(node)), body.expression):
+        if isinstance(node.func, ast.Attribute):
+            node = _of_value(body, node, node.func)
+        called = body.expression(node.func)
     match called:
         case Static(obj, text):
             return _static_call(body, obj, text, node)
@@ -116,7 +118,14 @@ def _of_value(body: FunctionBody, node: ast.Call, func: ast.Attribute) -> ast.Ca
 
 def arguments(body: FunctionBody, node: ast.Call) -> list[Value]:
     """Lower the positional arguments of a call."""
-    return [body.expression(a) for a in node.args]
+    rest = iter(_argument_nodes(node))
+    with body.checking(rest, body.expression):
+        values = [body.expression(a) for a in islice(rest, len(node.args))]
+    return values
+
+
+def _argument_nodes(node: ast.Call) -> list[ast.expr]:
+    return [*node.args, *(k.value for k in node.keywords if k.arg is not None)]
 
 
 def _static_call(body: FunctionBody, obj: Any, text: str, node: ast.Call) -> Value:
@@ -156,13 +165,16 @@ def _builtin_arguments(
     body: FunctionBody, name: str, names: Sequence[str], args: list[Value], node: ast.Call
 ) -> list[Value]:
     parameters: dict[str, Value] = dict(zip(names, args, strict=False))
-    for keyword in node.keywords:
+
+    def take(keyword: ast.keyword) -> None:
         if keyword.arg is None or keyword.arg not in names:
             hint = f"its arguments: {', '.join(names)}"
             raise body.problem(f"'{name}' has no argument '{keyword.arg}'", keyword, hint)
         if keyword.arg in parameters:
             raise body.problem(f"'{name}' gets argument '{keyword.arg}' twice", keyword)
         parameters[keyword.arg] = body.expression(keyword.value)
+
+    body.each(take, node.keywords)
     return [parameters[n] for n in names if n in parameters]
 
 
@@ -204,11 +216,13 @@ def _apply(body: FunctionBody, function: Expr, node: ast.Call, name: str | None 
     assert isinstance(type, FunctionType)
     name = name or ast.unparse(node.func)
     args = _exactly(body, name, len(type.params), node)
-    coerced = tuple(
-        coerce_or_raise(body, a, t, at, f"argument {i} of '{name}'")
-        for i, (a, t, at) in enumerate(zip(args, type.params, node.args, strict=True), 1)
-    )
-    return Apply(function, coerced, type.result, span=body.span(node))
+
+    def coerced(i: int) -> Expr:
+        what = f"argument {i + 1} of '{name}'"
+        return coerce_or_raise(body, args[i], type.params[i], node.args[i], what)
+
+    values = tuple(body.each(coerced, range(len(args))))
+    return Apply(function, values, type.result, span=body.span(node))
 
 
 def _exactly(

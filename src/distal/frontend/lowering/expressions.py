@@ -238,12 +238,13 @@ def _bin_op(body: FunctionBody, node: ast.BinOp) -> Value:
     spine = [node]
     while isinstance(spine[-1].left, ast.BinOp):
         spine.append(spine[-1].left)
-    value = body.expression(spine[-1].left)
-    for step in reversed(spine):
-        right = body.expression(step.right)
-        value = _one_bin_op(body, step, value, right)
-        if not isinstance(value, Whole | SequenceValue | Static | Closure):
-            value = body.shallow(value)
+    operands = iter([spine[-1].left, *(step.right for step in reversed(spine))])
+    with body.checking(operands, body.expression):
+        value = body.expression(next(operands))
+        for step in reversed(spine):
+            value = _one_bin_op(body, step, value, body.expression(next(operands)))
+            if not isinstance(value, Whole | SequenceValue | Static | Closure):
+                value = body.shallow(value)
     return value
 
 
@@ -271,7 +272,7 @@ def _unary_op(body: FunctionBody, node: ast.UnaryOp) -> Value:
 def _bool_op(body: FunctionBody, node: ast.BoolOp) -> Value:
     op = LogicalOp.AND if isinstance(node.op, ast.And) else LogicalOp.OR
     what = f"an operand of '{op.value}'"
-    parts = [condition(body, body.expression(v), v, what) for v in node.values]
+    parts = body.each(lambda v: condition(body, body.expression(v), v, what), node.values)
     total = parts[0]
     for part in parts[1:]:
         total = body.shallow(Logical(op, total, part, BOOL, span=body.span(node)))
@@ -279,12 +280,14 @@ def _bool_op(body: FunctionBody, node: ast.BoolOp) -> Value:
 
 
 def _compare(body: FunctionBody, node: ast.Compare) -> Value:
-    left = body.expression(node.left)
     parts: list[Expr] = []
-    for op, at in zip(node.ops, node.comparators, strict=True):
-        right = body.expression(at)
-        parts.append(compare(body, op, left, right, node))
-        left = right
+    operands = iter([node.left, *node.comparators])
+    with body.checking(operands, body.expression):
+        left = body.expression(next(operands))
+        for op in node.ops:
+            right = body.expression(next(operands))
+            parts.append(compare(body, op, left, right, node))
+            left = right
     if len(parts) == 1:
         return parts[0]
     total: Expr | None = None
@@ -299,14 +302,18 @@ def _compare(body: FunctionBody, node: ast.Compare) -> Value:
 
 
 def _if_exp(body: FunctionBody, node: ast.IfExp) -> Value:
-    test = condition(body, body.expression(node.test), node.test, "a condition")
-    values = (body.expression(node.body), body.expression(node.orelse))
+    operands = iter((node.test, node.body, node.orelse))
+    with body.checking(operands, body.expression):
+        test = condition(body, body.expression(next(operands)), node.test, "a condition")
+        values = body.each(body.expression, operands)
     yes, no = unify_values(body, values, node, "the branches of a conditional expression")
     return Select(test, yes, no, yes.type, span=body.span(node))
 
 
 def _subscript(body: FunctionBody, node: ast.Subscript) -> Value:
-    base = body.expression(node.value)
+    indices = [n for n in (node.slice,) if not isinstance(n, ast.Slice | ast.Tuple | ast.Constant)]
+    with body.checking(iter(indices), body.expression):
+        base = body.expression(node.value)
     if isinstance(base, Static):
         message = f"'{base.text}' is not an array"
         raise body.problem(message, node)
@@ -432,7 +439,7 @@ def _list(body: FunctionBody, node: ast.List) -> Value:
 
 
 def _items(body: FunctionBody, nodes: list[ast.expr]) -> tuple[Value, ...]:
-    return tuple(body.expression(n) for n in without_stars(body, nodes))
+    return tuple(body.each(body.expression, without_stars(body, nodes)))
 
 
 def _lambda(body: FunctionBody, node: ast.Lambda) -> Value:

@@ -243,7 +243,7 @@ def call_closure(
             given.setdefault(param.arg, (closure.defaults[param.arg], node))
         if param.arg not in given:
             raise body.problem(f"'{closure.name}' needs its parameter '{param.arg}'", node)
-    coerced = [_closure_argument(body, closure, p, *given[p.arg]) for p in params]
+    coerced = body.each(lambda p: _closure_argument(body, closure, p, *given[p.arg]), params)
     types = tuple(f.type for f in coerced)
     instance = lift_closure(body, closure, types, None, node)
     if instance.result is None:

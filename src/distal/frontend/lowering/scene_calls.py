@@ -67,12 +67,13 @@ def keyword_arguments(body: FunctionBody, node: ast.Call) -> dict[str, Argument]
     Raises:
         SceneError: The call has a ``**`` argument.
     """
-    keywords: dict[str, Argument] = {}
-    for keyword in node.keywords:
+
+    def named(keyword: ast.keyword) -> tuple[str, Argument]:
         if keyword.arg is None:
             raise body.problem("'**' in a call is not part of scene code", keyword)
-        keywords[keyword.arg] = Argument(body.expression(keyword.value), keyword.value)
-    return keywords
+        return keyword.arg, Argument(body.expression(keyword.value), keyword.value)
+
+    return dict(body.each(named, node.keywords))
 
 
 def _choose(

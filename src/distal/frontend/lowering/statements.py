@@ -42,11 +42,8 @@ def lower_statements(body: FunctionBody, statements: list[ast.stmt]) -> None:
             if rule is None:
                 raise refusal(body, stmt)
             rule(body, stmt)
-        except SceneError as problem:
-            body.report(problem.diagnostic)
-            _give_up(body, stmt)
-        except FollowupError:
-            body.failed = True
+        except (SceneError, FollowupError) as error:
+            body.record(error)
             _give_up(body, stmt)
         except RecursionError:
             _report_depth(body, stmt)
@@ -88,15 +85,15 @@ def _guarded(body: FunctionBody, lower: Callable[[], Expr]) -> Expr | None:
     """Return the condition, or None after recording its error; the blocks are lowered anyway."""
     try:
         return lower()
-    except SceneError as problem:
-        body.report(problem.diagnostic)
-    except FollowupError:
-        body.failed = True
+    except (SceneError, FollowupError) as error:
+        body.record(error)
     return None
 
 
 def _assign(body: FunctionBody, stmt: ast.Assign) -> None:
-    value = body.expression(stmt.value)
+    places = (t for t in stmt.targets if isinstance(t, ast.Attribute | ast.Subscript))
+    with body.checking(places, body.expression):
+        value = body.expression(stmt.value)
     if len(stmt.targets) > 1 and not isinstance(value, Whole | SequenceValue | Static | Closure):
         value = body.bind("value", value)
     for target in stmt.targets:
@@ -106,19 +103,26 @@ def _assign(body: FunctionBody, stmt: ast.Assign) -> None:
 def _ann_assign(body: FunctionBody, stmt: ast.AnnAssign) -> None:
     if not isinstance(stmt.target, ast.Name):
         raise body.problem("only a name takes a type", stmt.target)
+    with body.checking(filter(None, (stmt.value,)), body.expression):
+        type = _annotated(body, stmt.target.id, stmt)
+    if stmt.value is not None:
+        value = body.expression(stmt.value)
+        expr = coerce_or_raise(body, value, type, value_node(stmt), f"'{stmt.target.id}'")
+        assign(body, stmt.target, expr, stmt)
+
+
+def _annotated(body: FunctionBody, name: str, stmt: ast.AnnAssign) -> Type:
+    """Return the type that a local is annotated with, which becomes its type."""
     type = body.compilation.annotation(body, stmt.annotation)
-    variable = body.lookup(stmt.target.id)
+    variable = body.lookup(name)
     if is_static(type):
         raise body.problem(f"a local cannot be {type}", stmt.annotation)
     if variable is not None and variable.type is None and not variable.loop:
         variable.type, variable.typed_at = type, body.span(stmt)
     elif variable is not None and variable.type is not type and not variable.loop:
-        message = must_be(f"'{variable.name}'", variable.type, type)
+        message = must_be(f"'{name}'", variable.type, type)
         raise body.problem(message, stmt.annotation, None, labels_of_type(variable))
-    if stmt.value is not None:
-        value = body.expression(stmt.value)
-        expr = coerce_or_raise(body, value, type, value_node(stmt), f"'{stmt.target.id}'")
-        assign(body, stmt.target, expr, stmt)
+    return type
 
 
 def _if(body: FunctionBody, stmt: ast.If) -> None:
@@ -192,10 +196,8 @@ def _for(body: FunctionBody, stmt: ast.For) -> None:
     found = None
     try:
         found = iteration(body, stmt.iter)
-    except SceneError as problem:
-        body.report(problem.diagnostic)
-    except FollowupError:
-        body.failed = True
+    except (SceneError, FollowupError) as error:
+        body.record(error)
     _loop_body(body, stmt, names, found)
     # Nested loops over _: in Python the inner loop's value remains.
     body.assigned.difference_update(shadowed)

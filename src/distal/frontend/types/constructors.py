@@ -210,7 +210,8 @@ def construct_struct(body: FunctionBody, cls: type, args: Sequence[Value], node:
     given: dict[str, tuple[Value, ast.expr]] = {
         name: (value, at) for name, value, at in zip(names, args, node.args, strict=False)
     }
-    for keyword in node.keywords:
+
+    def take(keyword: ast.keyword) -> None:
         if keyword.arg is None:
             raise body.problem("'**' in a call is not part of scene code", keyword)
         if keyword.arg not in names:
@@ -219,8 +220,10 @@ def construct_struct(body: FunctionBody, cls: type, args: Sequence[Value], node:
         if keyword.arg in given:
             raise body.problem(f"'{type}' gets field '{keyword.arg}' twice", keyword)
         given[keyword.arg] = (body.expression(keyword.value), keyword.value)
-    parts = tuple(_struct_field(body, cls, type, n, t, given, node) for n, t in type.fields)
-    return Construct(parts, type, span=body.span(node))
+
+    body.each(take, node.keywords)
+    parts = body.each(lambda f: _struct_field(body, cls, type, *f, given, node), type.fields)
+    return Construct(tuple(parts), type, span=body.span(node))
 
 
 def _struct_field(
