@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from distal.diagnostics import Diagnostic, LoadError, Span
+from distal.error_codes import ErrorCode
 from distal.frontend.other_languages import COUNTERPARTS
 from distal.frontend.problems import did_you_mean
 from distal.lang.expressions import UnknownValue
@@ -65,7 +66,7 @@ def failure(file: Path, error: BaseException) -> LoadError:
         shown = str(file.parent / Path(shown).name)
     span = _at_keyword(span, error)
     at = Span(shown, span.line, span.col, span.end_col, span.text, span.end_line)
-    text = Diagnostic(reason, at, hint).text("").removeprefix(": ")
+    text = Diagnostic(ErrorCode.FILE, reason, at, hint).text("").removeprefix(": ")
     return LoadError(text, span, reason, hint)
 
 

@@ -13,6 +13,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Final
 
+from distal.error_codes import ErrorCode
+
 LONGEST_SHOWN: Final = 200  # characters of an external text
 LONGEST_MESSAGE: Final = 1000  # characters of a line that may contain several external texts
 
@@ -92,9 +94,11 @@ class Diagnostic:
     """One mistake: the message (no full stop), its place and, if known, a hint how to fix it.
 
     Attributes:
+        code: The family of messages that it belongs to.
         labels: Other places that explain it, such as where a local got its type.
     """
 
+    code: ErrorCode
     message: str
     span: Span | None
     hint: str | None = None
@@ -118,9 +122,10 @@ class Diagnostic:
         return "\n".join(lines)
 
     def to_json(self) -> dict[str, Any]:
-        """Return plain values in the schema of ``docs/guide/errors.md``."""
+        """Return plain values in the schema of ``docs/reference/errors.md``."""
         labels = [{"text": label.text, **_place_json(label.span)} for label in self.labels]
         return {
+            "code": self.code.value,
             "message": self.message,
             "hint": self.hint,
             **_place_json(self.span),
@@ -185,6 +190,7 @@ class CompileError(Exception):
     @classmethod
     def at(
         cls,
+        code: ErrorCode,
         message: str,
         span: Span | None,
         hint: str | None = None,
@@ -193,12 +199,13 @@ class CompileError(Exception):
         """Return an error for a single mistake.
 
         Args:
+            code: The family of messages that it belongs to.
             message: What is wrong.
             span: Where it is; None if the place is not known.
             hint: What to write instead.
             labels: Other places that explain it.
         """
-        return cls([Diagnostic(message, span, hint, labels)])
+        return cls([Diagnostic(code, message, span, hint, labels)])
 
 
 class LoadError(Exception):

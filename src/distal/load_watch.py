@@ -24,6 +24,7 @@ from typing import Final
 
 from distal import loading
 from distal.diagnostics import Diagnostic, Span
+from distal.error_codes import ErrorCode
 from distal.forking import new_lock
 from distal.interrupting import interrupt_main
 from distal.loading import SceneCode, file_of, load, split_source
@@ -161,7 +162,7 @@ class LoadWatch:
     def _message(self) -> Diagnostic:
         text = f"{self._file.name} is still running after {PATIENCE_S:g} s"
         hint = "save the file to load it again, or end it by ctrl-C"
-        return Diagnostic(text, self._place(), hint)
+        return Diagnostic(ErrorCode.FILE, text, self._place(), hint)
 
     def _place(self) -> Span | None:
         """Return the loop that the author's code is in, or else its innermost line."""

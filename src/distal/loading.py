@@ -21,6 +21,7 @@ from weakref import WeakKeyDictionary
 
 from distal.author_errors import failure, hint_of_nothing, hint_of_syntax
 from distal.diagnostics import CompileError, Diagnostic, LoadError, Span
+from distal.error_codes import ErrorCode
 from distal.example_files import EXAMPLE_PREFIX, all_examples
 from distal.ir.nodes import EntryKind
 from distal.lang.composed import Composed
@@ -304,7 +305,11 @@ def _syntax_error(error: SyntaxError, filename: str) -> CompileError:
     end = error.end_offset - 1 if same_line and error.end_offset else len(text)
     span = Span(filename, line, start, max(end, start + 1), text, line)
     return CompileError(
-        [Diagnostic(f"this is not Python: {error.msg}", span, hint_of_syntax(text))]
+        [
+            Diagnostic(
+                ErrorCode.SYNTAX, f"this is not Python: {error.msg}", span, hint_of_syntax(text)
+            )
+        ]
     )
 
 
@@ -330,7 +335,7 @@ def _nothing_shown(
 ) -> LoadError:
     reason = f"{file} defines no scene and no @image; {_listed(found)}"
     hint = hint_of_nothing(vars(module), Composed)
-    text = Diagnostic(reason, None, hint).text("").removeprefix(": ")
+    text = Diagnostic(ErrorCode.FILE, reason, None, hint).text("").removeprefix(": ")
     return LoadError(text, None, reason, hint)
 
 

@@ -20,6 +20,7 @@ from typer.testing import CliRunner
 import distal
 from distal.cli.application import application
 from distal.diagnostics import CompileError, LoadError
+from distal.error_codes import ErrorCode
 from distal.export import page_programs, resources
 from distal.export.payload import name_of
 from distal.export.poster import MOST_TRIANGLE_BYTES
@@ -249,7 +250,7 @@ def test_a_view_that_webgl_cannot_show_is_left_out(rings, tmp_path, monkeypatch)
 
     def refusing(image):
         if "signal" in image.name or image.name.endswith(bad):
-            raise CompileError.at("it cannot be said", None)
+            raise CompileError.at(ErrorCode.TARGET, "it cannot be said", None)
         return compiled(image)
 
     bad = "nothing"

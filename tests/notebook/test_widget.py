@@ -14,6 +14,7 @@ from traitlets import TraitError
 import distal
 from distal import Camera, Scene, Sphere, Torus, time
 from distal.diagnostics import CompileError
+from distal.error_codes import ErrorCode
 from distal.export import page_programs
 from distal.export.payload import name_of
 from distal.lang import Frame, choice, color, func, image, slider, vec3
@@ -161,7 +162,7 @@ def test_a_view_that_webgl_cannot_show_is_none(monkeypatch):
 
     def refusing(image):
         if "depth" in image.name:
-            raise CompileError.at("it cannot be said", None)
+            raise CompileError.at(ErrorCode.TARGET, "it cannot be said", None)
         return compiled(image)
 
     scene = ball()

@@ -46,7 +46,7 @@ BOX = ((-1.2,) * 3, (1.2,) * 3)
 
 def codes(checkup, severity=Severity.ERROR):
     return [
-        (f.code, checkup.shapes[f.shape].node.name)
+        (f.diagnostic.code, checkup.shapes[f.shape].node.name)
         for f in checkup.findings
         if f.severity is severity
     ]
@@ -167,7 +167,7 @@ def test_what_is_called_exact_and_is_not_is_an_error():
 def test_what_is_not_a_number_is_an_error():
     found = check(Shape.from_function(rooted, slope=9.0, bounds=BOX))
     assert ("undefined", "rooted") in codes(found)
-    (error,) = [f for f in found.findings if f.code == "undefined"]
+    (error,) = [f for f in found.findings if f.diagnostic.code == "undefined"]
     assert error.diagnostic.message.startswith("'rooted' is not a number at (-")
 
 

@@ -28,7 +28,7 @@ def jumping(p: vec3) -> float:
 
 
 def notes(report: ValidationReport) -> dict[str, str]:
-    return {f.code: f.diagnostic.message for f in report.findings if "slope-raised" not in f.code}
+    return {f.diagnostic.code: f.diagnostic.message for f in report.findings if "slope-raised" not in f.diagnostic.code}
 
 
 def test_what_was_proved_on_construction():
@@ -36,7 +36,7 @@ def test_what_was_proved_on_construction():
     assert notes(check(shape)) == {
         "proved": "the slope and the box of 'waved' are proved in (-2, -2, -2) to (2, 2, 2)"
     }
-    (found,) = [f for f in check(shape | Box(0.2)).findings if f.code == "proved"]
+    (found,) = [f for f in check(shape | Box(0.2)).findings if f.diagnostic.code == "proved"]
     assert found.severity is Severity.NOTE
     assert found.diagnostic.span.text.strip().startswith("shape = Shape.from_function(waved")
     boxed = Shape.from_function(waved, depth=0.05, region=CUBE, bounds=CUBE)
@@ -65,7 +65,7 @@ def test_a_slope_that_is_refuted_between_the_points(monkeypatch):
     report = check(shape)
     assert not report.holds
     (error,) = [f for f in report.findings if f.severity is Severity.ERROR]
-    assert error.code == "slope-refuted"
+    assert error.diagnostic.code == "slope-refuted"
     message = error.diagnostic.message
     assert message.startswith("'ridged' declares the slope 1.5, but its value changes by at least ")
     assert "per unit near (0.0123, " in message

@@ -27,6 +27,7 @@ from distal.cli.base import (
     reporting,
 )
 from distal.diagnostics import LoadError
+from distal.error_codes import ErrorCode
 
 if TYPE_CHECKING:
     from distal.diagnostics import Span
@@ -77,7 +78,11 @@ def report_lines(report: ValidationReport) -> Iterator[str]:
     yield from _slope(report)
     yield from _measurements(report)
     # The source of the slope of the whole is already shown above.
-    said = [f for f in report.findings if f.code != "slope-raised" or not _is_in(f, report)]
+    said = [
+        f
+        for f in report.findings
+        if f.diagnostic.code is not ErrorCode.SLOPE_RAISED or not _is_in(f, report)
+    ]
     for finding, more in _gathered(said):
         yield ""
         yield str(finding)
@@ -213,6 +218,6 @@ def _gathered(findings: Sequence[CheckFinding]) -> list[tuple[CheckFinding, int]
     """Group findings of the same kind and line; return each with the number of further ones."""
     groups: dict[Any, list[CheckFinding]] = {}
     for finding in findings:
-        key = (finding.severity, finding.code, finding.diagnostic.span)
+        key = (finding.severity, finding.diagnostic.code, finding.diagnostic.span)
         groups.setdefault(key, []).append(finding)
     return [(group[0], len(group) - 1) for group in groups.values()]

@@ -17,6 +17,7 @@ from distal.backends.base import Artifact
 from distal.compiler.kept_texts import kept_text
 from distal.compiler.prelude_library import PreludeLibrary
 from distal.diagnostics import CompileError
+from distal.error_codes import ErrorCode
 from distal.frontend import lower
 from distal.ir.collection import paused_collection
 from distal.ir.nodes import Module
@@ -68,7 +69,7 @@ def run_passes(
         entry = module.function(module.entry)
         hint = "put parts of it into functions of their own"
         message = f"'{entry.source_name}' or what it calls is too deeply nested"
-        raise CompileError.at(message, entry.span, hint) from None
+        raise CompileError.at(ErrorCode.RECURSION, message, entry.span, hint) from None
 
 
 def _run_passes(

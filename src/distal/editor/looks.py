@@ -31,6 +31,7 @@ from distal.editor.messages import (
 from distal.editor.places import column, shapes_of
 from distal.editor.programs import KeptPrograms, key_of, numbers_of
 from distal.editor.scene_folder import check_name, encoded_text
+from distal.error_codes import ErrorCode
 from distal.export.page_options import PageOptions
 from distal.export.page_programs import framed, lowered
 from distal.export.payload import Facts, parameter_entry, payload
@@ -300,7 +301,9 @@ def mistakes_of(error: Exception, files: Mapping[str, str]) -> tuple[Mistake, ..
     if isinstance(error, CompileError):
         return tuple(mistake_at(d, files) for d in error.diagnostics)
     if isinstance(error, LoadError):
-        return (mistake_at(Diagnostic(error.reason, error.span, error.hint), files),)
+        return (
+            mistake_at(Diagnostic(ErrorCode.FILE, error.reason, error.span, error.hint), files),
+        )
     return (Mistake(severity="error", message=str(error)),)
 
 

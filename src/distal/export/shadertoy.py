@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 from distal.backends import TEXT_TARGETS, emit
 from distal.compiler.driver import TEXT_TABLE_FROM, run_passes
 from distal.diagnostics import CompileError
+from distal.error_codes import ErrorCode
 from distal.export import texts
 from distal.export.exported import Exported
 from distal.export.page_options import TextOptions
@@ -78,7 +79,9 @@ def passes(seen: Viewable, options: TextOptions) -> list[ShaderPass]:
     if len(images) > MOST_BUFFERS:
         names = ", ".join(i.name for i in images)
         message = f"Shadertoy has {MOST_BUFFERS} buffers, and the picture needs {len(images)}"
-        raise CompileError.at(f"{message}: {names}", None, "read a buffer instead of the picture")
+        raise CompileError.at(
+            ErrorCode.TARGET, f"{message}: {names}", None, "read a buffer instead of the picture"
+        )
     tabs = dict(zip(images, _TABS, strict=False))
     made = [_pass(seen, image, tabs[image], tabs, options) for image in images]
     if picture in tabs:

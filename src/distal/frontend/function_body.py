@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from distal.diagnostics import Diagnostic, Label, Span
+from distal.error_codes import ErrorCode
 from distal.frontend.name_lookup import NameLookup
 from distal.frontend.problems import FollowupError, SceneError
 from distal.frontend.scopes import ScopeAnalysis
@@ -136,6 +137,7 @@ class FunctionBody:
 
     def problem(
         self,
+        code: ErrorCode,
         message: str,
         node: Node | ast.arg | ast.keyword,
         hint: str | None = None,
@@ -144,12 +146,13 @@ class FunctionBody:
         """Return an error at a node, for the caller to raise.
 
         Args:
+            code: The family of messages that it belongs to.
             message: What is wrong.
             node: The node that the error points at.
             hint: What to write instead.
             labels: Other places that explain it.
         """
-        return SceneError(message, self.span(node), hint, labels)
+        return SceneError(code, message, self.span(node), hint, labels)
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Record an error of this function."""
@@ -305,9 +308,11 @@ class FunctionBody:
                 return variable
             if name in body.scopes.loops:
                 message = f"the loop variable '{name}' has no value outside its loop"
-                raise self.problem(message, node, "assign it to a local inside the loop")
+                raise self.problem(
+                    ErrorCode.UNSET, message, node, "assign it to a local inside the loop"
+                )
             if name in body.scopes.names:
-                raise self.problem(f"'{name}' has no value here", node)
+                raise self.problem(ErrorCode.UNSET, f"'{name}' has no value here", node)
             body = body.parent
         return self.names.find(name)
 
@@ -324,7 +329,9 @@ class FunctionBody:
         unknown = variable.type is None and variable.static is None
         if variable not in owner.assigned and (owner.reachable or unknown):
             message = f"'{variable.name}' may be read before it has a value"
-            raise self.problem(message, node, "give it a value before the if or the loop")
+            raise self.problem(
+                ErrorCode.UNSET, message, node, "give it a value before the if or the loop"
+            )
         if variable.static is not None:
             return variable.static
         assert variable.type is not None

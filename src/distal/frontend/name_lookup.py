@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from types import FunctionType
 from typing import Any, Final
 
+from distal.error_codes import ErrorCode
 from distal.frontend.parsing import parse
 from distal.frontend.problems import SceneError, did_you_mean
 
@@ -72,14 +73,16 @@ def _annotation(node: ast.expr, find: Any, known: Any) -> Any:
         try:
             node = parse(text, mode="eval").body
         except (SyntaxError, RecursionError, ValueError):
-            raise SceneError(f"'{text}' is not a type of scene code", None) from None
+            raise SceneError(
+                ErrorCode.ANNOTATION, f"'{text}' is not a type of scene code", None
+            ) from None
     names = [n.id for n in ast.walk(node) if isinstance(n, ast.Name)]
     scope: dict[str, Any] = {}
     for name in names:
         exists, found = find(name)
         if not exists:
             hint = did_you_mean(name, known())
-            raise SceneError(f"'{name}' is not defined", None, hint)
+            raise SceneError(ErrorCode.NAME, f"'{name}' is not defined", None, hint)
         scope[name] = found
     if isinstance(node, ast.Name):
         return scope[node.id]
@@ -88,4 +91,4 @@ def _annotation(node: ast.expr, find: Any, known: Any) -> Any:
         return eval(code, {"__builtins__": {}}, scope)
     except Exception as error:
         message = f"'{ast.unparse(node)}' is not a type of scene code"
-        raise SceneError(message, None, str(error) or None) from None
+        raise SceneError(ErrorCode.ANNOTATION, message, None, str(error) or None) from None

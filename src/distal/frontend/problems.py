@@ -11,24 +11,26 @@ import difflib
 from collections.abc import Iterable
 
 from distal.diagnostics import Diagnostic, Label, Span
+from distal.error_codes import ErrorCode
 
 
 class SceneError(Exception):
     """An error in the author's code, with its source place.
 
     Attributes:
-        diagnostic: The message, the span, a hint and labels.
+        diagnostic: The code, the message, the span, a hint and labels.
     """
 
     def __init__(
         self,
+        code: ErrorCode,
         message: str,
         span: Span | None,
         hint: str | None = None,
         labels: tuple[Label, ...] = (),
     ) -> None:
         super().__init__(message)
-        self.diagnostic = Diagnostic(message, span, hint, labels)
+        self.diagnostic = Diagnostic(code, message, span, hint, labels)
 
 
 class FollowupError(Exception):

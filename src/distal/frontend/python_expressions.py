@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, Final
 from weakref import WeakKeyDictionary
 
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.lowering.builtin_calls import call_builtin
 from distal.frontend.problems import SceneError, must_be
@@ -205,7 +206,7 @@ def _selected(operands: Sequence[Value]) -> Value:
     if test.type is not BOOL:
         hint = "compare it: select(x > 0.0, ...)" if test.type in (INT, FLOAT) else None
         message = must_be("the condition of 'select'", BOOL, test.type)
-        raise _OUTSIDE.problem(message, _NOWHERE, hint)
+        raise _OUTSIDE.problem(ErrorCode.TYPE, message, _NOWHERE, hint)
     yes, no = unify_operands(_OUTSIDE, operands[1], operands[2], _NOWHERE, "select")
     return Select(test, yes, no, yes.type)
 

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import TypeAlias
 
 from distal.diagnostics import CompileError, Span
+from distal.error_codes import ErrorCode
 from distal.frontend.parsing import parse, parse_definitions
 from distal.lang.source import Source
 
@@ -63,6 +64,7 @@ def parse_definition(source: Source, name: str) -> tuple[ast.FunctionDef, Source
     """
     if not source.lines or source.first_line > len(source.lines):
         raise CompileError.at(
+            ErrorCode.SOURCE,
             f"the source text of '{name}' is not available",
             None,
             "write it in a file, or in a notebook cell",
@@ -75,11 +77,17 @@ def parse_definition(source: Source, name: str) -> tuple[ast.FunctionDef, Source
         return _find(source, name, span)
     except (SyntaxError, ValueError):
         raise CompileError.at(
-            f"the source text of '{name}' is not what Python runs", span, "load the file again"
+            ErrorCode.SOURCE,
+            f"the source text of '{name}' is not what Python runs",
+            span,
+            "load the file again",
         ) from None
     except (RecursionError, MemoryError):
         raise CompileError.at(
-            f"'{name}' is too deeply nested", span, "split long expressions into several lines"
+            ErrorCode.RECURSION,
+            f"'{name}' is too deeply nested",
+            span,
+            "split long expressions into several lines",
         ) from None
 
 
@@ -100,14 +108,21 @@ def _find(source: Source, name: str, span: Span) -> tuple[ast.FunctionDef, Sourc
                 return node, SourceMap(source.file, source.lines, offset)
             case ast.AsyncFunctionDef() if _first_line(node) == first:
                 message = f"'{name}' is an async function; scene code is plain functions"
-                raise CompileError.at(message, span, "write def instead of async def")
+                raise CompileError.at(
+                    ErrorCode.DEFINITION, message, span, "write def instead of async def"
+                )
             case ast.Lambda() if node.lineno == first and name == "<lambda>":
                 message = "a lambda cannot be scene code by itself"
-                raise CompileError.at(message, span, "write a def, and @func above it")
+                raise CompileError.at(
+                    ErrorCode.DEFINITION, message, span, "write a def, and @func above it"
+                )
             case _:
                 pass
     raise CompileError.at(
-        f"the source text of '{name}' is not what Python runs", span, "load the file again"
+        ErrorCode.SOURCE,
+        f"the source text of '{name}' is not what Python runs",
+        span,
+        "load the file again",
     )
 
 

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
 from distal.diagnostics import CompileError, Diagnostic, Span
+from distal.error_codes import ErrorCode
 
 
 def mistake(
@@ -18,7 +19,7 @@ def mistake(
     text = lines[line - 1] if 0 < line <= len(lines) else ""
     start = len(text) - len(text.lstrip())
     span = Span(file, line, start, max(len(text.rstrip()), start + 1), text, line)
-    return CompileError([Diagnostic(message, span, hint)])
+    return CompileError([Diagnostic(ErrorCode.LESSON, message, span, hint)])
 
 
 def choice_hint(given: str, known: Iterable[str]) -> str:

@@ -19,6 +19,7 @@ from dataclasses import replace
 from typing import Final
 
 from distal.diagnostics import CompileError, Span
+from distal.error_codes import ErrorCode
 from distal.ir import nodes
 from distal.ir.build import number, subtract
 from distal.ir.kept import kept
@@ -117,6 +118,7 @@ def _wrapper(
     args = tuple(coord for p in image.params if p.type is VEC2)
     if len(args) != len(image.params):
         raise CompileError.at(
+            ErrorCode.DEFINITION,
             f"the image '{image.source_name}' takes more than a frame",
             image.span,
             f"def {image.source_name}(frame: Frame) -> vec3",
@@ -126,6 +128,7 @@ def _wrapper(
         color = Compose((color, number(1.0)), VEC4)
     elif image.result is not VEC4 and not _is_drawn(image.result, targets):
         raise CompileError.at(
+            ErrorCode.DEFINITION,
             f"the image '{image.source_name}' returns {image.result}",
             image.span,
             "an image returns vec3 or vec4",
@@ -178,7 +181,10 @@ class _FrameReplacer:
         fn = self._function
         if fn.result is FRAME:
             raise CompileError.at(
-                f"'{fn.source_name}' returns a Frame", fn.span, "return the values it needs instead"
+                ErrorCode.DEFINITION,
+                f"'{fn.source_name}' returns a Frame",
+                fn.span,
+                "return the values it needs instead",
             )
         names = FreshNames(local_names(fn))
         params = []
@@ -239,6 +245,7 @@ class _FrameReplacer:
 
     def _misuse(self, e: Expr) -> CompileError:
         return CompileError.at(
+            ErrorCode.DEFINITION,
             "a Frame can only be read and passed on",
             span_in(self._span, e),
             "there is one frame; read its values where they are needed",

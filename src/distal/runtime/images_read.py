@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from distal.diagnostics import CompileError
+from distal.error_codes import ErrorCode
 from distal.frontend.signatures.signatures import definition_of
 from distal.lang.functions import FrameBuffer, Image
 from distal.lang.live_textures import LastFrame
@@ -69,4 +70,6 @@ def images_read(
 
 def _refused(image: Image, message: str, hint: str | None) -> CompileError:
     definition = definition_of(image.overloads[0])
-    return CompileError.at(message, definition.source.name_span(definition.node), hint)
+    return CompileError.at(
+        ErrorCode.DEFINITION, message, definition.source.name_span(definition.node), hint
+    )

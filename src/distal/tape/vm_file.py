@@ -18,6 +18,7 @@ from typing import Any, Final, NoReturn
 
 from distal.at_once import cached_property
 from distal.diagnostics import CompileError, Diagnostic, Span, printable
+from distal.error_codes import ErrorCode
 from distal.frontend.problems import did_you_mean
 from distal.ir.nodes import BinaryOp, CompareOp, UnaryOp
 from distal.ir.types import Kind
@@ -184,7 +185,9 @@ def read_vm(text: str, file: str) -> VmProgram:
         rows.append(_row(words, names, file, number, line))
         names[words[0]] = len(rows) - 1
     if not rows:
-        raise VmFileError([Diagnostic(f"'{file}' has no operations", None, _FORMAT)])
+        raise VmFileError(
+            [Diagnostic(ErrorCode.FILE, f"'{file}' has no operations", None, _FORMAT)]
+        )
     name = file.replace("\\", "/").rpartition("/")[2].removesuffix(".vm")
     return VmProgram(tuple(rows), name)
 
@@ -262,7 +265,7 @@ def _refuse(
     for each in words[: word + 1]:
         start = line.index(each, start) + (0 if each is words[word] else len(each))
     span = Span(file, number, start, start + len(words[word]), line)
-    raise VmFileError([Diagnostic(message, span, hint)])
+    raise VmFileError([Diagnostic(ErrorCode.FILE, message, span, hint)])
 
 
 # Operations as functions: the expressions of the table, on values that record what is computed.

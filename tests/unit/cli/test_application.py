@@ -15,6 +15,7 @@ import distal
 from distal.cli.application import application
 from distal.cli.doctor import MachineFact, State
 from distal.diagnostics import CompileError, LoadError, Span
+from distal.error_codes import ErrorCode
 from distal.images.picture import Picture
 from distal.lang import func
 from distal.lang.parameters import slider
@@ -195,7 +196,7 @@ def test_output_is_checked_before_any_work(scene, run):
     ("failure", "code", "message"),
     [
         (
-            CompileError.at("'x' is not defined", Span("s.py", 1, 4, 5, "y = x")),
+            CompileError.at(ErrorCode.NAME, "'x' is not defined", Span("s.py", 1, 4, 5, "y = x")),
             1,
             "error: 'x' is not defined\n  --> s.py:1:5\n   |\n 1 | y = x\n   |     ^\n",
         ),

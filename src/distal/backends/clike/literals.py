@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 
 from distal.diagnostics import CompileError, Span
+from distal.error_codes import ErrorCode
 
 INT_MIN = -(2**31)
 
@@ -24,7 +25,9 @@ def float_literal(value: float, span: Span | None = None) -> str:
     try:
         single = _rounded(value)
     except OverflowError:
-        raise CompileError.at(f"{value!r} is too large for a 32-bit float", span) from None
+        raise CompileError.at(
+            ErrorCode.NUMBER, f"{value!r} is too large for a 32-bit float", span
+        ) from None
     for digits in range(9):
         text = f"{single:.{digits}e}"
         try:

@@ -23,6 +23,7 @@ from distal.backends.clike.names import Namer, Reserved
 from distal.backends.glsl.targets import ISF_MOUSE, refuse_live_textures
 from distal.backends.glsl.writer import Glsl100Writer
 from distal.diagnostics import CompileError
+from distal.error_codes import ErrorCode
 from distal.ir.nodes import Module, Origin, Resource, ResourceDeclaration, UniformDeclaration
 from distal.ir.types import Texture, TextureShape
 from distal.version import __version__
@@ -182,12 +183,14 @@ def _file_name(resource: ResourceDeclaration) -> str:
     """Return the name of a texture's file, which the author puts beside the shader."""
     if not isinstance(resource.type, Texture) or resource.type.shape is not TextureShape.FLAT:
         raise CompileError.at(
+            ErrorCode.TARGET,
             f"ISF imports pictures only, and the scene reads '{resource.name}' ({resource.type})",
             None,
         )
     data = getattr(resource.source, "data", None)
     if not isinstance(data, str | PurePath):
         raise CompileError.at(
+            ErrorCode.TARGET,
             f"ISF imports pictures from files, and the texture '{resource.name}' is made of data",
             None,
             "save it as a picture, and declare Texture2D of the file",

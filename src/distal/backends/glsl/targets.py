@@ -21,6 +21,7 @@ from distal.backends.clike.keywords import (
 )
 from distal.backends.targets import Declares, TextTarget
 from distal.diagnostics import CompileError
+from distal.error_codes import ErrorCode
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import ResourceDeclaration
 from distal.ir.target import LARGEST_TABLE, FramePlace
@@ -104,12 +105,14 @@ def shadertoy_channels(resources: Resources) -> dict[str, str]:
     for resource in resources:
         if isinstance(resource.type, Buffer):
             raise CompileError.at(
+                ErrorCode.TARGET,
                 f"Shadertoy has no buffers, and the scene reads '{resource.name}'",
                 None,
                 "a constant tuple of numbers works on every target",
             )
     if len(resources) > SHADERTOY_CHANNELS:
         raise CompileError.at(
+            ErrorCode.TARGET,
             f"Shadertoy has {SHADERTOY_CHANNELS} textures, and the scene reads {len(resources)}",
             None,
         )
@@ -125,6 +128,7 @@ def refuse_live_textures(resources: Resources, host: str) -> None:
     for resource in resources:
         if isinstance(resource.source, LiveTexture):
             raise CompileError.at(
+                ErrorCode.TARGET,
                 f"{host} has no {resource.source.shown}, and the picture reads '{resource.name}'",
                 None,
                 "Shadertoy and a page have it",
@@ -141,6 +145,7 @@ def canvas_textures(resources: Resources) -> dict[str, str]:
     for resource in resources:
         if not isinstance(resource.type, Texture) or resource.type.shape is not TextureShape.FLAT:
             raise CompileError.at(
+                ErrorCode.TARGET,
                 f"glslCanvas has pictures only, and the scene reads '{resource.name}' "
                 f"({resource.type})",
                 None,

@@ -18,6 +18,7 @@ from distal.backends.clike.literals import float_literal, int_literal
 from distal.backends.clike.module_names import ModuleNames
 from distal.backends.glsl.targets import target_name
 from distal.diagnostics import CompileError
+from distal.error_codes import ErrorCode
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import (
     Binary,
@@ -369,7 +370,9 @@ class Glsl100Writer(GlslWriter):
     def _element_text(self, base: str, e: Index) -> str:
         if not isinstance(e.index, Const):
             raise CompileError.at(
-                "GLSL ES 1.00 has no index that is computed at run time", self.span
+                ErrorCode.TARGET,
+                "GLSL ES 1.00 has no index that is computed at run time",
+                self.span,
             )
         if isinstance(e.base.type, Array):
             return f"{base}.item{int(e.index.value)}"
@@ -378,18 +381,21 @@ class Glsl100Writer(GlslWriter):
     def sample(self, resource: Resource, coord: Code) -> Code:
         assert isinstance(resource.type, Texture)
         if resource.type.shape is TextureShape.VOLUME:
-            raise CompileError.at("GLSL ES 1.00 has no 3D textures", self.span)
+            raise CompileError.at(ErrorCode.TARGET, "GLSL ES 1.00 has no 3D textures", self.span)
         function = "texture2D" if resource.type.shape is TextureShape.FLAT else "textureCube"
         return self.call(function, [Code(self.names.resources[resource.name]), coord])
 
     def texel(self, resource: Resource, index: Code) -> Code:
         raise CompileError.at(
-            "GLSL ES 1.00 reads no single texels", self.span, "use sample(texture, coord)"
+            ErrorCode.TARGET,
+            "GLSL ES 1.00 reads no single texels",
+            self.span,
+            "use sample(texture, coord)",
         )
 
     def size(self, resource: Resource) -> Code:
         lacks = "has no buffers" if isinstance(resource.type, Buffer) else "knows no texture's size"
-        raise CompileError.at(f"GLSL ES 1.00 {lacks}", self.span)
+        raise CompileError.at(ErrorCode.TARGET, f"GLSL ES 1.00 {lacks}", self.span)
 
     def buffer_element(self, resource: Resource, index: Code) -> Code:
-        raise CompileError.at("GLSL ES 1.00 has no buffers", self.span)
+        raise CompileError.at(ErrorCode.TARGET, "GLSL ES 1.00 has no buffers", self.span)

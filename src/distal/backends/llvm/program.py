@@ -23,6 +23,7 @@ from distal.backends.llvm.storage import Mask
 from distal.backends.llvm.uniformity import Uniformity
 from distal.backends.llvm.writer import LlvmWriter
 from distal.diagnostics import CompileError
+from distal.error_codes import ErrorCode
 from distal.ir.contents import contents
 from distal.ir.nodes import Expr, Function, Module
 from distal.ir.types import Kind
@@ -101,6 +102,7 @@ class LaneProgram:
         self._array_bytes += size
         if self._array_bytes > ARRAY_BYTES:
             raise CompileError.at(
+                ErrorCode.TARGET,
                 f"the arrays of '{function.source_name}' are too large for the CPU, which keeps "
                 f"{self.lanes.count} of each",
                 function.span,

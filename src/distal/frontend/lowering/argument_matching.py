@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.problems import FollowupError, SceneError, did_you_mean, must_be, must_match
 from distal.frontend.signatures.annotations import (
@@ -89,7 +90,7 @@ def pair(
     collecting = next((p for p in signature.parameters if p.collects), None)
     if len(args) > len(positional) and collecting is None:
         count = f"{len(positional)} argument{'' if len(positional) == 1 else 's'}"
-        raise body.problem(f"'{name}' takes {count}, got {len(args)}", node, hint)
+        raise body.problem(ErrorCode.CALL, f"'{name}' takes {count}, got {len(args)}", node, hint)
     given = {p.name: a for p, a in zip(positional, args, strict=False)}
     if collecting is not None and len(args) > len(positional):
         rest = args[len(positional) :]
@@ -99,15 +100,21 @@ def pair(
     for keyword, argument in keywords.items():
         if keyword not in known:
             close = did_you_mean(keyword, known) or hint
-            raise body.problem(f"'{name}' has no parameter '{keyword}'", argument.node, close)
+            raise body.problem(
+                ErrorCode.CALL, f"'{name}' has no parameter '{keyword}'", argument.node, close
+            )
         if keyword in given:
-            raise body.problem(f"'{name}' gets parameter '{keyword}' twice", argument.node, hint)
+            raise body.problem(
+                ErrorCode.CALL, f"'{name}' gets parameter '{keyword}' twice", argument.node, hint
+            )
         given[keyword] = argument
     missing = [p.name for p in signature.parameters if p.name not in given and p.default is MISSING]
     if missing:
         names = ", ".join(f"'{m}'" for m in missing)
         plural = "" if len(missing) == 1 else "s"
-        raise body.problem(f"'{name}' needs its parameter{plural} {names}", node, hint)
+        raise body.problem(
+            ErrorCode.CALL, f"'{name}' needs its parameter{plural} {names}", node, hint
+        )
     return [given.get(p.name) or _default(body, signature, p, node) for p in signature.parameters]
 
 
@@ -118,7 +125,7 @@ def _default(
         value = value_of(parameter.default, parameter.name, body.compilation)
     except RefusedError as refused:
         message = f"the default of '{parameter.name}' of '{signature.name}': {refused.message}"
-        raise SceneError(message, parameter.span, refused.hint) from None
+        raise SceneError(ErrorCode.VALUE, message, parameter.span, refused.hint) from None
     return Argument(value, node)
 
 
@@ -162,10 +169,10 @@ def parameter_type(
     try:
         return body.compilation.adopt(to_type(parameter.annotation, bindings))
     except AnnotationError as error:
-        raise SceneError(error.message, parameter.span, error.hint) from None
+        raise SceneError(ErrorCode.ANNOTATION, error.message, parameter.span, error.hint) from None
     except UnboundVariableError as error:
         message = f"the type '{error.variable.__name__}' is not known in this call"
-        raise SceneError(message, parameter.span) from None
+        raise SceneError(ErrorCode.ANNOTATION, message, parameter.span) from None
 
 
 def _coerce_argument(
@@ -228,12 +235,12 @@ def _bound(
     elif len(wide) > 1 or (not wide and len(concrete) > 1):
         node = list(concrete.values())[-1].node
         what = f"the arguments of '{signature.name}' that are '{variable.__name__}'"
-        raise body.problem(must_match(what, concrete), node)
+        raise body.problem(ErrorCode.TYPE, must_match(what, concrete), node)
     else:
         chosen = wide[0] if wide else next(iter(concrete))
     if not admits(variable, chosen):
         what = f"an argument of '{signature.name}' that is '{variable.__name__}'"
-        raise body.problem(must_be(what, choices(variable), chosen), group[0].node)
+        raise body.problem(ErrorCode.TYPE, must_be(what, choices(variable), chosen), group[0].node)
     return chosen
 
 

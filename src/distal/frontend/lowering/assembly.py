@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from distal.diagnostics import CompileError, Span
+from distal.error_codes import ErrorCode
 from distal.frontend.lowering.exact_overloads import exact_instance
 from distal.frontend.lowering.instances import Instance
 from distal.frontend.problems import FollowupError, must_be
@@ -113,7 +114,9 @@ class Assembly:
         if body and isinstance(body[-1], Return):
             given = body[-1].value.type
             if given != result:
-                raise CompileError.at(must_be(f"the value of '{name}'", result, given), span)
+                raise CompileError.at(
+                    ErrorCode.TYPE, must_be(f"the value of '{name}'", result, given), span
+                )
         key = (name, tuple(params), result, tuple(body))
         unique = self._defined.get(key)
         if unique is None:
@@ -186,7 +189,7 @@ class Assembly:
         wanted = {p.name for p in signatures[0].parameters if p.default is MISSING} - set(arguments)
         message = f"nothing gives '{func.name}' its {', '.join(sorted(wanted)) or 'arguments'}"
         hint = f"it may ask for {', '.join(arguments)}"
-        raise CompileError.at(message, signatures[0].span, hint)
+        raise CompileError.at(ErrorCode.CALL, message, signatures[0].span, hint)
 
     def _accepts(self, parameter: SignatureParameter, type: Type) -> bool:
         try:
@@ -206,9 +209,11 @@ class Assembly:
             captured = value_of(parameter.default, parameter.name, self._compilation)
             value = coerce_constant(captured, type)
         except (AnnotationError, RefusedError) as error:
-            raise CompileError.at(error.message, parameter.span, error.hint) from None
+            raise CompileError.at(
+                ErrorCode.ANNOTATION, error.message, parameter.span, error.hint
+            ) from None
         if value is None:
             what = f"the default of '{parameter.name}' of '{func.name}'"
             message = must_be(what, type, describe(captured))
-            raise CompileError.at(message, parameter.span)
+            raise CompileError.at(ErrorCode.TYPE, message, parameter.span)
         return value

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 
 from distal.diagnostics import Label
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody, Variable
 from distal.frontend.lowering.expressions import element, member
 from distal.frontend.lowering.lowered_nodes import UNPACKED, parts_of
@@ -45,9 +46,9 @@ def assign(body: FunctionBody, target: ast.expr, value: Value, stmt: ast.stmt) -
             place = lvalue(body, target)
             _assign_part(body, place, target, value, stmt)
         case ast.Starred():
-            raise body.problem("'*' is not part of scene code", target)
+            raise body.problem(ErrorCode.LANGUAGE, "'*' is not part of scene code", target)
         case _:
-            raise body.problem("this cannot be assigned to", target)
+            raise body.problem(ErrorCode.ASSIGNMENT, "this cannot be assigned to", target)
 
 
 def local(body: FunctionBody, target: ast.Name) -> Variable:
@@ -60,7 +61,9 @@ def local(body: FunctionBody, target: ast.Name) -> Variable:
     assert variable is not None, target.id
     if variable.loop:
         message = f"the loop variable '{target.id}' is read-only"
-        raise body.problem(message, target, "assign to a local with another name")
+        raise body.problem(
+            ErrorCode.ASSIGNMENT, message, target, "assign to a local with another name"
+        )
     return variable
 
 
@@ -70,7 +73,9 @@ def _assign_name(body: FunctionBody, target: ast.Name, value: Value, stmt: ast.s
         _assign_static(body, variable, value, target)
         return
     if variable.static is not None:
-        raise body.problem(f"'{variable.name}' is a function and does not change", target)
+        raise body.problem(
+            ErrorCode.ASSIGNMENT, f"'{variable.name}' is a function and does not change", target
+        )
     if variable.type is None:
         expr = with_default_type(body, value, value_node(stmt))
     else:
@@ -95,7 +100,9 @@ def _assign_static(body: FunctionBody, variable: Variable, value: Value, target:
     """Bind a local name to a function, type or resource; this exists only at compile time."""
     if variable.changes or variable.type is not None:
         message = f"'{variable.name}' cannot change what function it stands for"
-        raise body.problem(message, target, "give each function a name of its own")
+        raise body.problem(
+            ErrorCode.ASSIGNMENT, message, target, "give each function a name of its own"
+        )
     variable.static = value
     body.assigned.add(variable)
 
@@ -115,7 +122,7 @@ def changed_type(body: FunctionBody, variable: Variable, value: Value, node: Nod
     if type is INT and given == str(FLOAT):
         hint = f"start it as a float: {variable.name} = 0.0"
     message = must_be(f"'{variable.name}'", type, given)
-    return body.problem(message, node, hint, labels_of_type(variable))
+    return body.problem(ErrorCode.TYPE, message, node, hint, labels_of_type(variable))
 
 
 def labels_of_type(variable: Variable) -> tuple[Label, ...]:
@@ -147,31 +154,40 @@ def lvalue(body: FunctionBody, target: ast.expr) -> Expr:
             place = member(body, lvalue(body, base), name, target)
             if isinstance(place, Swizzle) and len(set(place.lanes)) < len(place.lanes):
                 message = f"'.{name}' names a component twice and cannot be assigned to"
-                raise body.problem(message, target)
+                raise body.problem(ErrorCode.ASSIGNMENT, message, target)
             return place
         case ast.Subscript(base):
             place = element(body, lvalue(body, base), target)
             if isinstance(place, Field):
-                raise body.problem("a tuple does not change", target, "use a struct")
+                raise body.problem(
+                    ErrorCode.ASSIGNMENT, "a tuple does not change", target, "use a struct"
+                )
             return place
         case _:
-            raise body.problem("this cannot be assigned to", target, "assign it to a local first")
+            raise body.problem(
+                ErrorCode.ASSIGNMENT,
+                "this cannot be assigned to",
+                target,
+                "assign it to a local first",
+            )
 
 
 def _root(body: FunctionBody, target: ast.Name) -> Expr:
     variable = body.lookup(target.id)
     if variable is None:
         message = f"'{target.id}' belongs to the module or to an outer function and cannot change"
-        raise body.problem(message, target, f"copy it first: local = {target.id}")
+        raise body.problem(
+            ErrorCode.ASSIGNMENT, message, target, f"copy it first: local = {target.id}"
+        )
     local(body, target)
     if target.id == body.self_name:
         message = f"'{target.id}' is a copy of the struct, which a method cannot change"
         hint = f"copy it first, result = {target.id}, and return the copy"
-        raise body.problem(message, target, hint)
+        raise body.problem(ErrorCode.ASSIGNMENT, message, target, hint)
     if variable.failed:
         raise FollowupError
     if variable.static is not None:
-        raise body.problem(f"'{target.id}' cannot change", target)
+        raise body.problem(ErrorCode.ASSIGNMENT, f"'{target.id}' cannot change", target)
     value = body.read(variable, target)
     assert isinstance(value, Read)
     return value
@@ -237,10 +253,14 @@ def unpacked_items(
         expr = with_default_type(body, value, node)
         parts = parts_of(body, expr)
         if parts is None:
-            raise body.problem(must_be("what is unpacked", UNPACKED, expr.type), node)
+            raise body.problem(
+                ErrorCode.TYPE, must_be("what is unpacked", UNPACKED, expr.type), node
+            )
         items = parts
     if len(items) != count:
-        raise body.problem(f"{count} names cannot take {len(items)} values", target)
+        raise body.problem(
+            ErrorCode.ASSIGNMENT, f"{count} names cannot take {len(items)} values", target
+        )
     return items
 
 
@@ -253,7 +273,7 @@ def augment(body: FunctionBody, stmt: ast.AugAssign) -> None:
             old = body.read(variable, stmt.target)
             value = binary(body, stmt.op, old, body.expression(next(rest)), stmt)
         if isinstance(old, Static | Closure):
-            raise body.problem(f"'{stmt.target.id}' does not change", stmt)
+            raise body.problem(ErrorCode.ASSIGNMENT, f"'{stmt.target.id}' does not change", stmt)
         _assign_name(body, stmt.target, value, stmt)
         return
     with body.checking(rest, body.expression):

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from functools import cache
 from typing import Any, Final
 
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.problems import SceneError, must_be, must_match, one_of
 from distal.frontend.types.coercion import coerce, default_type, shown_type, with_default_type
@@ -93,7 +94,7 @@ def call_builtin(
         )
         two_of_atan = intrinsic.name == "atan" and len(args) == 2
         hint = "atan2(y, x)" if two_of_atan else signature_text(intrinsic)
-        raise body.problem(message, node, hint)
+        raise body.problem(ErrorCode.CALL, message, node, hint)
     if intrinsic.name == "pow" and not isinstance(args[1], SequenceValue | Static | Closure):
         return power(body, args[0], args[1], node)
     types = tuple(None if isinstance(a, Whole) else default_type(a) for a in args)
@@ -221,9 +222,11 @@ def _mismatch(
             message = must_be(
                 f"{what} of '{intrinsic.name}'", one_of(map(str, of_arg)), shown_type(arg)
             )
-            return body.problem(message, node, hint)
+            return body.problem(ErrorCode.TYPE, message, node, hint)
     types = map(shown_type, args)
-    return body.problem(must_match(f"the arguments of '{intrinsic.name}'", types), node, hint)
+    return body.problem(
+        ErrorCode.TYPE, must_match(f"the arguments of '{intrinsic.name}'", types), node, hint
+    )
 
 
 def signature_text(intrinsic: Intrinsic) -> str:

@@ -11,6 +11,7 @@ from types import FunctionType as PythonFunction
 from types import ModuleType
 from typing import Any, Final
 
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.lowering.builtin_calls import PYTHON_FUNCTIONS, call_builtin
 from distal.frontend.lowering.lowered_nodes import LoweredNode, methods_of, unstarred
@@ -95,7 +96,9 @@ def lower_call(body: FunctionBody, node: ast.Call) -> Value:
         case _:
             if isinstance(called.type, FunctionType):
                 return _apply(body, called, node)
-    raise body.problem(must_be("what is called", "a function", shown_type(called)), node.func)
+    raise body.problem(
+        ErrorCode.TYPE, must_be("what is called", "a function", shown_type(called)), node.func
+    )
 
 
 def _of_value(body: FunctionBody, node: ast.Call, func: ast.Attribute) -> ast.Call:
@@ -169,9 +172,13 @@ def _builtin_arguments(
     def take(keyword: ast.keyword) -> None:
         if keyword.arg is None or keyword.arg not in names:
             hint = f"its arguments: {', '.join(names)}"
-            raise body.problem(f"'{name}' has no argument '{keyword.arg}'", keyword, hint)
+            raise body.problem(
+                ErrorCode.CALL, f"'{name}' has no argument '{keyword.arg}'", keyword, hint
+            )
         if keyword.arg in parameters:
-            raise body.problem(f"'{name}' gets argument '{keyword.arg}' twice", keyword)
+            raise body.problem(
+                ErrorCode.CALL, f"'{name}' gets argument '{keyword.arg}' twice", keyword
+            )
         parameters[keyword.arg] = body.expression(keyword.value)
 
     body.each(take, node.keywords)
@@ -206,8 +213,12 @@ def _not_scene_code(body: FunctionBody, obj: Any, text: str, node: ast.Call) -> 
             hint = COUNTERPARTS.get(name)
     if not callable(obj):
         noun = "a module" if isinstance(obj, ModuleType) else f"a {type(obj).__name__}"
-        return body.problem(f"'{text}' is {noun}, not a function", node.func, hint)
-    return body.problem(f"'{text}' is not a function of scene code", node.func, hint)
+        return body.problem(
+            ErrorCode.LANGUAGE, f"'{text}' is {noun}, not a function", node.func, hint
+        )
+    return body.problem(
+        ErrorCode.LANGUAGE, f"'{text}' is not a function of scene code", node.func, hint
+    )
 
 
 def _apply(body: FunctionBody, function: Expr, node: ast.Call, name: str | None = None) -> Expr:
@@ -229,11 +240,15 @@ def _exactly(
     body: FunctionBody, name: str, count: int, node: ast.Call, hint: str | None = None
 ) -> list[Value]:
     if node.keywords:
-        raise body.problem(f"'{name}' takes no keyword arguments", node.keywords[0], hint)
+        raise body.problem(
+            ErrorCode.CALL, f"'{name}' takes no keyword arguments", node.keywords[0], hint
+        )
     args = arguments(body, node)
     if len(args) != count:
         plural = "" if count == 1 else "s"
-        raise body.problem(f"'{name}' takes {count} argument{plural}, got {len(args)}", node, hint)
+        raise body.problem(
+            ErrorCode.CALL, f"'{name}' takes {count} argument{plural}, got {len(args)}", node, hint
+        )
     return args
 
 
@@ -258,11 +273,11 @@ def _select(body: FunctionBody, args: list[Value], node: ast.Call) -> Value:
                 return Select(test, yes, no, yes.type, span=body.span(node))
             wanted = f"numbers or vectors of {count}"
             message = must_be(f"the choices of 'select' by {test.type}", wanted, yes.type)
-            raise body.problem(message, node)
+            raise body.problem(ErrorCode.TYPE, message, node)
         case _:
             hint = "compare it: select(x > 0.0, ...)" if isinstance(test.type, Scalar) else None
             message = must_be("the condition of 'select'", "bool or bvec2 to bvec4", test.type)
-            raise body.problem(message, node.args[0], hint)
+            raise body.problem(ErrorCode.TYPE, message, node.args[0], hint)
 
 
 def _gradient(body: FunctionBody, args: list[Value], node: ast.Call, *, with_value: bool) -> Value:
@@ -270,7 +285,7 @@ def _gradient(body: FunctionBody, args: list[Value], node: ast.Call, *, with_val
     name = "value_and_gradient" if with_value else "gradient"
     if point.type not in (FLOAT, VEC2, VEC3, VEC4):
         message = must_be(f"the point of '{name}'", "float or vec2 to vec4", point.type)
-        raise body.problem(message, node.args[1])
+        raise body.problem(ErrorCode.TYPE, message, node.args[1])
     wanted = FunctionType((point.type,), FLOAT)
     what = f"the field of '{name}'"
     field = coerce_or_raise(body, args[0], wanted, node.args[0], what)
@@ -284,7 +299,7 @@ def _texture(
     texture = last_frame(body, value) or with_default_type(body, value, node.args[0])
     if not isinstance(texture.type, Texture):
         message = must_be(f"argument 1 of '{name}'", "a texture", texture.type)
-        raise body.problem(message, node.args[0])
+        raise body.problem(ErrorCode.TYPE, message, node.args[0])
     return texture, texture.type.shape
 
 
@@ -312,7 +327,7 @@ def _size(body: FunctionBody, args: list[Value], node: ast.Call) -> Value:
         case _:
             hint = "the length of an array is len(...)"
             message = must_be("the argument of 'size'", "a texture or a buffer", resource.type)
-            raise body.problem(message, node.args[0], hint)
+            raise body.problem(ErrorCode.TYPE, message, node.args[0], hint)
 
 
 _FORMS: Final[dict[LangForm, Callable[[FunctionBody, list[Value], ast.Call], Value]]] = {

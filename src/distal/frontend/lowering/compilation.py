@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from typing import Any, TypeVar
 
 from distal.diagnostics import CompileError, Diagnostic, Label, Span
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.lowering import lambda_lifting, scene_calls
 from distal.frontend.lowering.assembly import TABLE_FROM, Assembly
@@ -226,12 +227,14 @@ class Compilation:
         try:
             return self.adopt(to_type(body.names.annotation(node), body.bindings))
         except SceneError as problem:
-            raise body.problem(problem.diagnostic.message, node, problem.diagnostic.hint) from None
+            raise body.problem(
+                problem.diagnostic.code, problem.diagnostic.message, node, problem.diagnostic.hint
+            ) from None
         except AnnotationError as error:
-            raise body.problem(error.message, node, error.hint) from None
+            raise body.problem(ErrorCode.ANNOTATION, error.message, node, error.hint) from None
         except UnboundVariableError as error:
             message = f"the type '{error.variable.__name__}' is not known here"
-            raise body.problem(message, node) from None
+            raise body.problem(ErrorCode.ANNOTATION, message, node) from None
 
     def uniform(self, parameter: Parameter) -> Expr:
         """Return a read of a parameter's uniform, and declare the uniform.
@@ -248,7 +251,9 @@ class Compilation:
                 f"their labels: '{known[0].label}' and '{parameter.label}', with different ranges"
             )
             labels = [Label(p, "the first is here") for p in (known[0].place,) if p is not None]
-            raise CompileError.at(message, parameter.place, hint, tuple(labels))
+            raise CompileError.at(
+                ErrorCode.PARAMETER, message, parameter.place, hint, tuple(labels)
+            )
         if known is None:
             declaration = UniformDeclaration(
                 name,
@@ -359,7 +364,9 @@ class Compilation:
             known.name = obj.compose(self.assembly)
             known.result = next(f.result for f in self.functions if f.name == known.name)
         elif not known.name:
-            raise CompileError.at(f"'{obj.name}' is part of itself", None, "write a loop")
+            raise CompileError.at(
+                ErrorCode.RECURSION, f"'{obj.name}' is part of itself", None, "write a loop"
+            )
         return known
 
     def check_recursion(self, instance: Instance, span: Span) -> None:
@@ -372,4 +379,4 @@ class Compilation:
             start = self.in_progress.index(instance)
             chain = [i.source_name for i in self.in_progress[start:]] + [instance.source_name]
             message = f"recursion is not part of scene code: {' calls '.join(chain)}"
-            raise SceneError(message, span, "write a loop")
+            raise SceneError(ErrorCode.RECURSION, message, span, "write a loop")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeVar
 
+from distal.error_codes import ErrorCode
 from distal.frontend.lowering.instances import Instance
 from distal.frontend.lowering.scene_calls import instantiate
 from distal.frontend.problems import SceneError, must_be_call
@@ -39,7 +40,7 @@ def exact_instance(compilation: Compilation, func: Func, types: tuple[Type, ...]
         if bindings is not None:
             return instantiate(compilation, signature, types, bindings, None)
     message = must_be_call(func.name, (s.text() for s in signatures), types)
-    raise SceneError(message, signatures[0].span)
+    raise SceneError(ErrorCode.TYPE, message, signatures[0].span)
 
 
 def _given(signature: FunctionSignature, types: tuple[Type, ...]) -> int:
@@ -83,7 +84,9 @@ def exact_bindings(
             ):
                 return None
         except AnnotationError as error:
-            raise SceneError(error.message, parameter.span, error.hint) from None
+            raise SceneError(
+                ErrorCode.ANNOTATION, error.message, parameter.span, error.hint
+            ) from None
         except UnboundVariableError:
             return None
     return bindings

@@ -11,6 +11,7 @@ from enum import EnumMeta
 from types import ModuleType
 from typing import Any, Final
 
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody, Variable
 from distal.frontend.lowering.calls import arguments, lower_call
 from distal.frontend.lowering.lowered_nodes import (
@@ -90,7 +91,9 @@ def _constant(body: FunctionBody, node: ast.Constant) -> Value:
             if abs(node.value) <= LARGEST_FLOAT:
                 return Const(node.value, FLOAT)
             hint = "the largest is 3.4e38"
-            raise body.problem("this number is larger than a 32-bit float can be", node, hint)
+            raise body.problem(
+                ErrorCode.NUMBER, "this number is larger than a 32-bit float can be", node, hint
+            )
         case _:
             raise refusal(body, node)
 
@@ -102,7 +105,7 @@ def _name(body: FunctionBody, node: ast.Name) -> Value:
     exists, obj = found
     if not exists:
         hint = hint_for(node.id, body.names.known() | body.scopes.names)
-        raise body.problem(f"'{node.id}' is not defined", node, hint)
+        raise body.problem(ErrorCode.NAME, f"'{node.id}' is not defined", node, hint)
     return object_value(body, obj, node.id, node)
 
 
@@ -121,7 +124,7 @@ def object_value(body: FunctionBody, obj: Any, text: str, node: ast.expr) -> Val
     try:
         return value_of(obj, text, body.compilation)
     except RefusedError as refused:
-        raise body.problem(refused.message, node, refused.hint) from None
+        raise body.problem(ErrorCode.VALUE, refused.message, node, refused.hint) from None
 
 
 def _attribute(body: FunctionBody, node: ast.Attribute) -> Value:
@@ -178,12 +181,12 @@ def member(body: FunctionBody, value: Expr, name: str, node: ast.expr) -> Expr:
                 hint = f"it is a method: call it, {name}(...)"
             elif callable(getattr(value.type.owner, name, None)):
                 hint = f"write @func above the def of '{name}'"
-            raise body.problem(f"{value.type} has no field '{name}'", node, hint)
+            raise body.problem(ErrorCode.NAME, f"{value.type} has no field '{name}'", node, hint)
         case _:
             hint = ""
             if isinstance(value.type, Scalar) and set(name) <= set("xyzwrgba"):
                 hint = f"a {value.type} has one component: use it as it is"
-            raise body.problem(f"{value.type} has no '{name}'", node, hint or None)
+            raise body.problem(ErrorCode.NAME, f"{value.type} has no '{name}'", node, hint or None)
 
 
 def swizzle_lanes(body: FunctionBody, name: str, type: Vector, node: ast.expr) -> str:
@@ -204,15 +207,15 @@ def swizzle_lanes(body: FunctionBody, name: str, type: Vector, node: ast.expr) -
             if set(lanes) <= set("xyzw"[: type.size]):
                 if len(lanes) <= 4:
                     return lanes
-                raise body.problem("a swizzle has 1 to 4 letters", node)
+                raise body.problem(ErrorCode.NAME, "a swizzle has 1 to 4 letters", node)
             hint = f"its components are {', '.join(letters[: type.size])}"
-            raise body.problem(f"{type} has no component '{name}'", node, hint)
+            raise body.problem(ErrorCode.NAME, f"{type} has no component '{name}'", node, hint)
     if name == "length":
-        raise body.problem(f"{type} has no 'length'", node, "write length(v)")
+        raise body.problem(ErrorCode.NAME, f"{type} has no 'length'", node, "write length(v)")
     hint = f"its components are {', '.join('xyzw'[: type.size])}"
     if set(name) <= set("xyzwrgba"):
         hint = "xyzw and rgba do not mix in one swizzle"
-    raise body.problem(f"{type} has no component '{name}'", node, hint)
+    raise body.problem(ErrorCode.NAME, f"{type} has no component '{name}'", node, hint)
 
 
 def _static_attribute(body: FunctionBody, base: Static, node: ast.Attribute) -> Value:
@@ -226,10 +229,10 @@ def _static_attribute(body: FunctionBody, base: Static, node: ast.Attribute) -> 
         hint = did_you_mean(node.attr, known)
         if hint is None and isinstance(base.object, EnumMeta):
             hint = f"its members: {', '.join(base.object.__members__)}"
-        raise body.problem(f"{subject} has no '{node.attr}'", node, hint) from None
+        raise body.problem(ErrorCode.NAME, f"{subject} has no '{node.attr}'", node, hint) from None
     except Exception as error:
         message = f"'{text}' fails: {type(error).__name__}"
-        raise body.problem(message, node) from None
+        raise body.problem(ErrorCode.LANGUAGE, message, node) from None
     return object_value(body, obj, text, node)
 
 
@@ -264,7 +267,9 @@ def _unary_op(body: FunctionBody, node: ast.UnaryOp) -> Value:
         type = operand.type
         if isinstance(type, Vector) and type.kind is Kind.BOOL:
             hint = "write ~v for each component, or not any(v)"
-            raise body.problem(must_be("the operand of 'not'", BOOL, type), node, hint)
+            raise body.problem(
+                ErrorCode.TYPE, must_be("the operand of 'not'", BOOL, type), node, hint
+            )
     value = condition(body, operand, node.operand, "the operand of 'not'")
     return Unary(UnaryOp.NOT, value, BOOL, span=body.span(node))
 
@@ -294,7 +299,9 @@ def _compare(body: FunctionBody, node: ast.Compare) -> Value:
     for part in parts:
         if part.type is not BOOL:
             hint = "write all(a < b) and all(b < c)"
-            raise body.problem("a chain compares single numbers, not vectors", node, hint)
+            raise body.problem(
+                ErrorCode.TYPE, "a chain compares single numbers, not vectors", node, hint
+            )
         total = part if total is None else Logical(LogicalOp.AND, total, part, BOOL)
         total = body.shallow(total)
     assert total is not None
@@ -316,7 +323,7 @@ def _subscript(body: FunctionBody, node: ast.Subscript) -> Value:
         base = body.expression(node.value)
     if isinstance(base, Static):
         message = f"'{base.text}' is not an array"
-        raise body.problem(message, node)
+        raise body.problem(ErrorCode.VALUE, message, node)
     if isinstance(base, SequenceValue):
         position = constant_int(body.expression(node.slice))
         if position is not None:
@@ -350,10 +357,10 @@ def element(body: FunctionBody, base: Expr, node: ast.Subscript) -> Expr:
     """
     if isinstance(node.slice, ast.Slice):
         hint = "pick components by letters, such as .xy" if isinstance(base.type, Vector) else None
-        raise body.problem("slices are not part of scene code", node, hint)
+        raise body.problem(ErrorCode.LANGUAGE, "slices are not part of scene code", node, hint)
     if isinstance(node.slice, ast.Tuple):
         hint = "write m[column][row]" if isinstance(base.type, Matrix) else None
-        raise body.problem("an index is one number", node, hint)
+        raise body.problem(ErrorCode.INDEX, "an index is one number", node, hint)
     index = body.expression(node.slice)
     length = _length(body, base, node)
     position = constant_int(index)
@@ -362,12 +369,12 @@ def element(body: FunctionBody, base: Expr, node: ast.Subscript) -> Expr:
         return _constant_element(body, base, position, node)
     value = with_default_type(body, index, node.slice)
     if isinstance(base.type, Struct):
-        raise body.problem("a tuple's index is a number known now", node.slice)
+        raise body.problem(ErrorCode.INDEX, "a tuple's index is a number known now", node.slice)
     if value.type is not INT:
         hint = (
             "write int(...) around it" if kind_of(value.type) in (Kind.FLOAT, Kind.UINT) else None
         )
-        raise body.problem(must_be("an index", INT, value.type), node.slice, hint)
+        raise body.problem(ErrorCode.TYPE, must_be("an index", INT, value.type), node.slice, hint)
     return Index(base, value, element_type(base.type), span=body.span(node))
 
 
@@ -383,7 +390,9 @@ def _length(body: FunctionBody, base: Expr, node: ast.expr) -> int | None:
             return None
         case _:
             wanted = "an array, a vector, a matrix, a tuple or a buffer"
-            raise body.problem(must_be("what takes an index", wanted, base.type), node)
+            raise body.problem(
+                ErrorCode.TYPE, must_be("what takes an index", wanted, base.type), node
+            )
 
 
 def _constant_element(body: FunctionBody, base: Expr, position: int, node: ast.expr) -> Expr:
@@ -421,20 +430,24 @@ def check_index(body: FunctionBody, position: int, length: int | None, node: ast
         name = text if len(text) <= LONGEST_QUOTE else "..."
         inside = f"len({name}) - {-position}" if length is None else str(length + position)
         message = f"index {position} is negative: indices count from 0, on every target"
-        raise body.problem(message, node, f"write {name}[{inside}]")
+        raise body.problem(ErrorCode.INDEX, message, node, f"write {name}[{inside}]")
     if length is not None and not 0 <= position < length:
-        raise body.problem(f"index {position} is out of range: there are {length} elements", node)
+        raise body.problem(
+            ErrorCode.INDEX, f"index {position} is out of range: there are {length} elements", node
+        )
 
 
 def _tuple(body: FunctionBody, node: ast.Tuple) -> Value:
     if not node.elts:
-        raise body.problem("an empty tuple holds nothing", node)
+        raise body.problem(ErrorCode.SIZE, "an empty tuple holds nothing", node)
     return SequenceValue(_items(body, node.elts), is_list=False)
 
 
 def _list(body: FunctionBody, node: ast.List) -> Value:
     if not node.elts:
-        raise body.problem("an array has at least one element", node, "write [0.0] * 8")
+        raise body.problem(
+            ErrorCode.SIZE, "an array has at least one element", node, "write [0.0] * 8"
+        )
     return SequenceValue(_items(body, node.elts), is_list=True)
 
 
@@ -460,7 +473,9 @@ def make_closure(body: FunctionBody, node: ast.Lambda | ast.FunctionDef, name: s
     a = node.args
     if a.vararg or a.kwarg:
         raise body.problem(
-            "'*' parameters are not part of scene code", a.vararg or a.kwarg or a.args[0]
+            ErrorCode.LANGUAGE,
+            "'*' parameters are not part of scene code",
+            a.vararg or a.kwarg or a.args[0],
         )
     positional = [*a.posonlyargs, *a.args]
     pairs = list(zip(positional[len(positional) - len(a.defaults) :], a.defaults, strict=True))
@@ -476,7 +491,9 @@ def arguments_of_range(body: FunctionBody, node: ast.Call) -> list[Value]:
         SceneError: There are more or fewer arguments, or keywords.
     """
     if node.keywords or not 1 <= len(node.args) <= 3:
-        raise body.problem("'range' takes 1 to 3 arguments", node, "range(start, stop, step)")
+        raise body.problem(
+            ErrorCode.CALL, "'range' takes 1 to 3 arguments", node, "range(start, stop, step)"
+        )
     return arguments(body, node)
 
 

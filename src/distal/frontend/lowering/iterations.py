@@ -12,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias
 
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.lowering.expressions import arguments_of_range, array_name
 from distal.frontend.lowering.lowered_nodes import unstarred
@@ -100,7 +101,7 @@ def _values(body: FunctionBody, node: ast.expr) -> _Fixed:
             hint = "write for i in range(n)" if expr.type is INT else None
             wanted = "range(...), an array, a vector or a matrix"
             message = must_be("what a loop goes over", wanted, expr.type)
-            raise body.problem(message, node, hint)
+            raise body.problem(ErrorCode.TYPE, message, node, hint)
     held = body.hold(array_name(node), expr)
     return _Fixed(length, lambda counter: Index(held, counter, element_type(held.type)))
 
@@ -110,7 +111,7 @@ def _fixed_range(body: FunctionBody, node: ast.Call) -> _Fixed:
     first, last = constant_int(start), constant_int(stop)
     if first is None or last is None:
         hint = "its bounds are whole numbers"
-        raise body.problem("the length of this range is not known now", node, hint)
+        raise body.problem(ErrorCode.LOOP, "the length of this range is not known now", node, hint)
     length = len(range(first, last, step))
     return _Fixed(length, lambda counter: _shifted(start, counter, step))
 
@@ -126,7 +127,7 @@ def _enumerate(body: FunctionBody, node: ast.Call) -> _Fixed:
     plain = [*node.args, *(k.value for k in node.keywords if k.arg == "start")]
     unknown = any(k.arg != "start" for k in node.keywords)
     if unknown or not node.args or len(plain) > 2:
-        raise body.problem("'enumerate' takes values and a start", node, hint)
+        raise body.problem(ErrorCode.CALL, "'enumerate' takes values and a start", node, hint)
     fixed = _fixed(body, plain[0])
     what = "the start of 'enumerate'"
     start: Expr = integer(0)
@@ -146,16 +147,20 @@ def _zip(body: FunctionBody, node: ast.Call) -> _Fixed:
     for keyword in node.keywords:
         value = body.expression(keyword.value) if keyword.arg == "strict" else None
         if value is not TRUE and value is not FALSE:
-            raise body.problem("'zip' takes arrays, and strict=True or strict=False", keyword)
+            raise body.problem(
+                ErrorCode.CALL, "'zip' takes arrays, and strict=True or strict=False", keyword
+            )
         strict = value is TRUE
     nodes = unstarred(body, node).args
     if not nodes:
-        raise body.problem("'zip' takes one array or more", node, "zip(starts, ends)")
+        raise body.problem(
+            ErrorCode.CALL, "'zip' takes one array or more", node, "zip(starts, ends)"
+        )
     parts = [_fixed(body, n) for n in nodes]
     lengths = [p.length for p in parts]
     if strict and len(set(lengths)) > 1:
         listed = " and ".join(map(str, lengths))
-        raise body.problem(f"'zip' with strict=True gets lengths {listed}", node)
+        raise body.problem(ErrorCode.LOOP, f"'zip' with strict=True gets lengths {listed}", node)
 
     def element(counter: Expr) -> Value:
         return SequenceValue(tuple(p.element(counter) for p in parts), is_list=False)
@@ -168,14 +173,16 @@ def _range(body: FunctionBody, node: ast.Call) -> Bounds:
     args = arguments_of_range(body, node)
     step = constant_int(args[2]) if len(args) == 3 else 1
     if step is None:
-        raise body.problem("the step of a range is a whole number known now", node.args[2])
+        raise body.problem(
+            ErrorCode.LOOP, "the step of a range is a whole number known now", node.args[2]
+        )
     if step == 0:
-        raise body.problem("the step of a range is not 0", node.args[2])
+        raise body.problem(ErrorCode.LOOP, "the step of a range is not 0", node.args[2])
     bounds = args[:2] if len(args) > 1 else [Whole(0), *args]
     nodes = node.args[:2] if len(args) > 1 else [node.args[0], node.args[0]]
     whole = [_bound(body, b, at) for b, at in zip(bounds, nodes, strict=True)]
     if step not in range(-(2**31), 2**31):
-        raise body.problem(f"{step} is out of the range of int", node.args[2])
+        raise body.problem(ErrorCode.NUMBER, f"{step} is out of the range of int", node.args[2])
     return whole[0], whole[1], step
 
 

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from distal.diagnostics import Diagnostic, Label
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody, Variable
 from distal.frontend.lowering import scene_calls
 from distal.frontend.lowering.argument_matching import parameter_type
@@ -91,10 +92,10 @@ def _signature_value(
     collecting = next((p for p in signature.parameters if p.collects), None)
     if collecting is not None:
         message = f"'{signature.name}' collects '*{collecting.name}', and is no function value"
-        raise body.problem(message, node, "pass a lambda that calls it")
+        raise body.problem(ErrorCode.CALL, message, node, "pass a lambda that calls it")
     if len(parameters) < count or any(p.default is MISSING for p in extra):
         message = f"'{signature.name}' takes {len(parameters)} arguments where {type} is wanted"
-        raise body.problem(message, node)
+        raise body.problem(ErrorCode.CALL, message, node)
     bindings = {
         p.annotation: t
         for p, t in zip(parameters, type.params, strict=False)
@@ -112,7 +113,7 @@ def _signature_value(
         raise FollowupError
     if instance.result is not type.result:
         message = must_be(f"the value of '{signature.name}'", type.result, instance.result)
-        raise body.problem(message, node)
+        raise body.problem(ErrorCode.TYPE, message, node)
     return FunctionRef(instance.name, captures, type)
 
 
@@ -127,7 +128,7 @@ def _default(
     try:
         value = value_of(default, name, body.compilation)
     except RefusedError as refused:
-        raise body.problem(refused.message, node, refused.hint) from None
+        raise body.problem(ErrorCode.VALUE, refused.message, node, refused.hint) from None
     return coerce_or_raise(body, value, type, node, f"the default of '{name}' of '{function}'")
 
 
@@ -176,7 +177,7 @@ def _closure_value(
         wanted = len(type.params)
         count = f"{wanted} argument{'' if wanted == 1 else 's'}"
         what = "the lambda" if closure.name == "lambda" else f"'{closure.name}'"
-        raise body.problem(f"{what} takes {len(args)} where {count} come", node)
+        raise body.problem(ErrorCode.CALL, f"{what} takes {len(args)} where {count} come", node)
     defaults = [with_default_type(body, closure.defaults[a.arg], node) for a in extra]
     types = (*type.params, *(d.type for d in defaults))
     instance = lift_closure(body, closure, types, type.result, node)
@@ -185,7 +186,7 @@ def _closure_value(
     if instance.result is not type.result:
         what = "the lambda" if closure.name == "lambda" else f"'{closure.name}'"
         message = must_be(f"the value of {what}", type.result, instance.result)
-        raise body.problem(message, node)
+        raise body.problem(ErrorCode.TYPE, message, node)
     captures = tuple(captured(body, v, node) for v in instance.captures)
     return FunctionRef(instance.name, (*defaults, *captures), type)
 
@@ -203,7 +204,7 @@ def captured(body: FunctionBody, variable: Variable, node: Node) -> Expr:
     """
     if variable not in variable.owner.assigned and variable.owner.reachable:
         message = f"'{variable.name}' may be read before it has a value"
-        raise body.problem(message, node, "give it a value first")
+        raise body.problem(ErrorCode.UNSET, message, node, "give it a value first")
     return body.capture(variable)
 
 
@@ -229,20 +230,26 @@ def call_closure(
     given: dict[str, tuple[Value, ast.expr]] = {}
     if len(args) > len(params):
         message = f"'{closure.name}' takes {len(params)} arguments, got {len(args)}"
-        raise body.problem(message, node)
+        raise body.problem(ErrorCode.CALL, message, node)
     for param, value, at in zip(params, args, node.args, strict=False):
         given[param.arg] = (value, at)
     for name, argument in scene_calls.keyword_arguments(body, node).items():
         if name not in {p.arg for p in params}:
-            raise body.problem(f"'{closure.name}' has no parameter '{name}'", argument.node)
+            raise body.problem(
+                ErrorCode.CALL, f"'{closure.name}' has no parameter '{name}'", argument.node
+            )
         if name in given:
-            raise body.problem(f"'{closure.name}' gets parameter '{name}' twice", argument.node)
+            raise body.problem(
+                ErrorCode.CALL, f"'{closure.name}' gets parameter '{name}' twice", argument.node
+            )
         given[name] = (argument.value, argument.node)
     for param in params:
         if param.arg in closure.defaults:
             given.setdefault(param.arg, (closure.defaults[param.arg], node))
         if param.arg not in given:
-            raise body.problem(f"'{closure.name}' needs its parameter '{param.arg}'", node)
+            raise body.problem(
+                ErrorCode.CALL, f"'{closure.name}' needs its parameter '{param.arg}'", node
+            )
     coerced = body.each(lambda p: _closure_argument(body, closure, p, *given[p.arg]), params)
     types = tuple(f.type for f in coerced)
     instance = lift_closure(body, closure, types, None, node)
@@ -334,7 +341,9 @@ def _lower_closure(
     if body.reachable and not body.failed and isinstance(node, ast.FunctionDef):
         message = f"'{closure.name}' may end without returning a value"
         span = owner.source.name_span(node)
-        body.report(Diagnostic(message, span, "end every way through it with return"))
+        body.report(
+            Diagnostic(ErrorCode.RESULT, message, span, "end every way through it with return")
+        )
     owner.failed = owner.failed or body.failed
     if body.failed:
         return
@@ -354,4 +363,4 @@ def _check_annotation(owner: FunctionBody, arg: ast.arg, type: Type) -> None:
         return
     annotated = owner.compilation.annotation(owner, arg.annotation)
     if annotated is not type:
-        raise owner.problem(must_be(f"parameter '{arg.arg}'", type, annotated), arg)
+        raise owner.problem(ErrorCode.TYPE, must_be(f"parameter '{arg.arg}'", type, annotated), arg)

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import TypeAlias, TypeVar
 
 from distal.diagnostics import CompileError, Diagnostic
+from distal.error_codes import ErrorCode
 from distal.frontend.freshness import Captured
 from distal.frontend.lowering.assembly import TABLE_FROM
 from distal.frontend.lowering.builtin_calls import exact_instances, signature_text
@@ -120,7 +121,9 @@ def _guarded(compilation: Compilation, name: str, work: Callable[[], R]) -> R:
             compilation.report(diagnostic)
     except (RecursionError, MemoryError):
         hint = "split long expressions, and functions that call each other many levels deep"
-        compilation.report(Diagnostic(f"'{name}' is too deeply nested", None, hint))
+        compilation.report(
+            Diagnostic(ErrorCode.RECURSION, f"'{name}' is too deeply nested", None, hint)
+        )
     error_found = compilation.error()
     assert error_found is not None, f"lowering {name} stopped without a mistake"
     raise error_found
@@ -132,25 +135,27 @@ def _lower_builtin(
     intrinsic = function.row
     if types is None or types not in exact_instances(intrinsic.name):
         message = must_be_call(intrinsic.name, (signature_text(intrinsic),), types or ())
-        raise CompileError.at(message, None)
+        raise CompileError.at(ErrorCode.TYPE, message, None)
     return compilation.finish(builtin_function(compilation, intrinsic, types), EntryKind.FUNCTION)
 
 
 def _lower_image(compilation: Compilation, image: Image) -> Module:
     signature = compilation.signature(image.overloads[0])
     if len(image.overloads) > 1:
-        raise SceneError(f"the image '{image.name}' has overloads", signature.span)
+        raise SceneError(
+            ErrorCode.DEFINITION, f"the image '{image.name}' has overloads", signature.span
+        )
     hint = f"write def {image.name}(frame: Frame) -> vec3"
     if not signature.problems:
         types = [_plain_type(compilation, p.annotation) for p in signature.parameters]
         if types != [FRAME]:
             message = f"the image '{image.name}' takes one parameter, a Frame"
-            raise SceneError(message, signature.span, hint)
+            raise SceneError(ErrorCode.DEFINITION, message, signature.span, hint)
     instance = instantiate(compilation, signature, (FRAME,) * len(signature.parameters), {}, None)
     if instance.result is not None and instance.result not in (VEC3, VEC4):
         what = f"the value of the image '{image.name}'"
         message = must_be(what, "vec3 or vec4", instance.result)
-        compilation.report(Diagnostic(message, signature.span, hint))
+        compilation.report(Diagnostic(ErrorCode.TYPE, message, signature.span, hint))
     return compilation.finish(instance, EntryKind.IMAGE)
 
 
@@ -169,7 +174,7 @@ def _lower_func(compilation: Compilation, func: Func, types: tuple[Type, ...] | 
         if is_static(type) or type is FRAME:
             what = "a function" if isinstance(type, FunctionType) else f"a {type}"
             message = f"'{func.name}' takes {what}: only scene code can call it"
-            raise SceneError(message, signature.span)
+            raise SceneError(ErrorCode.CALL, message, signature.span)
     return compilation.finish(exact_instance(compilation, func, types), EntryKind.FUNCTION)
 
 
@@ -180,7 +185,7 @@ def _own_types(compilation: Compilation, func: Func) -> tuple[Type, ...]:
         message = (
             f"'{func.name}' has {len(signatures)} overloads: say which argument types are meant"
         )
-        raise SceneError(message, signatures[0].span)
+        raise SceneError(ErrorCode.CALL, message, signatures[0].span)
     (signature,) = signatures
     types: list[Type] = []
     for parameter in signature.parameters:
@@ -192,8 +197,10 @@ def _own_types(compilation: Compilation, func: Func) -> tuple[Type, ...]:
             types.append(compilation.adopt(to_type(parameter.annotation)))
         except UnboundVariableError:
             message = f"'{func.name}' is generic: say which argument types are meant"
-            raise SceneError(message, parameter.span) from None
+            raise SceneError(ErrorCode.CALL, message, parameter.span) from None
         except AnnotationError as error:
-            compilation.report(Diagnostic(error.message, parameter.span, error.hint))
+            compilation.report(
+                Diagnostic(ErrorCode.ANNOTATION, error.message, parameter.span, error.hint)
+            )
             raise FollowupError from None
     return tuple(types)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Mapping, Sequence
 
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.problems import must_be
 from distal.frontend.types.coercion import with_default_type
@@ -69,7 +70,7 @@ def _starred_parts(body: FunctionBody, value: Value, node: ast.Starred) -> Seque
     parts = parts_of(body, with_default_type(body, value, node.value))
     if parts is None:
         given = with_default_type(body, value, node.value).type
-        raise body.problem(must_be("what '*' unpacks", UNPACKED, given), node)
+        raise body.problem(ErrorCode.TYPE, must_be("what '*' unpacks", UNPACKED, given), node)
     return parts
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from typing import Final
 
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.problems import SceneError
 from distal.frontend.source import Node
@@ -46,16 +47,25 @@ def refusal(body: FunctionBody, node: Node) -> SceneError:
     if isinstance(node, ast.Constant):
         return _constant(body, node)
     what, hint = _REFUSED.get(type(node), (f"'{type(node).__name__}'", None))
-    return body.problem(f"{what} is not part of scene code", node, hint)
+    return body.problem(ErrorCode.LANGUAGE, f"{what} is not part of scene code", node, hint)
 
 
 def _constant(body: FunctionBody, node: ast.Constant) -> SceneError:
     match node.value:
         case str() | bytes():
-            return body.problem("text is not part of scene code", node)
+            return body.problem(ErrorCode.LANGUAGE, "text is not part of scene code", node)
         case None:
-            return body.problem("None is not part of scene code", node, "every value is a number")
+            return body.problem(
+                ErrorCode.LANGUAGE,
+                "None is not part of scene code",
+                node,
+                "every value is a number",
+            )
         case complex():
-            return body.problem("a complex number is not part of scene code", node, "use a vec2")
+            return body.problem(
+                ErrorCode.LANGUAGE, "a complex number is not part of scene code", node, "use a vec2"
+            )
         case _:
-            return body.problem(f"{node.value!r} is not part of scene code", node)
+            return body.problem(
+                ErrorCode.LANGUAGE, f"{node.value!r} is not part of scene code", node
+            )

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeVar
 
 from distal.diagnostics import Diagnostic, Label
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody, Variable
 from distal.frontend.lowering.argument_matching import Argument, closeness, match, pair
 from distal.frontend.lowering.instances import Instance
@@ -70,7 +71,9 @@ def keyword_arguments(body: FunctionBody, node: ast.Call) -> dict[str, Argument]
 
     def named(keyword: ast.keyword) -> tuple[str, Argument]:
         if keyword.arg is None:
-            raise body.problem("'**' in a call is not part of scene code", keyword)
+            raise body.problem(
+                ErrorCode.LANGUAGE, "'**' in a call is not part of scene code", keyword
+            )
         return keyword.arg, Argument(body.expression(keyword.value), keyword.value)
 
     return dict(body.each(named, node.keywords))
@@ -99,7 +102,7 @@ def _choose(
     if best is None:
         types = [shown_type(a.value) for a in (*args, *keywords.values())]
         message = must_be_call(function.name, (s.text() for s in signatures), types)
-        raise body.problem(message, node)
+        raise body.problem(ErrorCode.TYPE, message, node)
     return best[1], best[2]
 
 
@@ -198,7 +201,11 @@ def lower_function(
     statements = lower_body(body, signature.node.body)
     if body.reachable and not body.failed:
         message = f"'{signature.name}' may end without returning a value"
-        body.report(Diagnostic(message, signature.span, "end every way through it with return"))
+        body.report(
+            Diagnostic(
+                ErrorCode.RESULT, message, signature.span, "end every way through it with return"
+            )
+        )
     if not result_ok or body.failed:
         return
     result, statements = infer_result(body, statements)
@@ -231,15 +238,15 @@ def _declare_result(
     try:
         body.result = body.compilation.adopt(to_type(signature.result, bindings))
     except AnnotationError as error:
-        body.report(Diagnostic(error.message, span, error.hint))
+        body.report(Diagnostic(ErrorCode.ANNOTATION, error.message, span, error.hint))
         return False
     except UnboundVariableError as error:
         message = f"the type '{error.variable.__name__}' is not known here"
-        body.report(Diagnostic(message, span))
+        body.report(Diagnostic(ErrorCode.ANNOTATION, message, span))
         return False
     if is_static(body.result):
         message = f"a function returns a value, not {body.result}"
-        body.report(Diagnostic(message, span))
+        body.report(Diagnostic(ErrorCode.ANNOTATION, message, span))
         return False
     return True
 
@@ -289,7 +296,7 @@ def infer_result(
             _, last = body.returned[-1]
             hint = f"annotate the result: def {body.name}(...) -> {next(iter(found))}"
             message = must_match(f"the values that '{body.name}' returns", found)
-            body.report(Diagnostic(message, body.span(last), hint))
+            body.report(Diagnostic(ErrorCode.TYPE, message, body.span(last), hint))
         return None, statements
     return next(iter(found)), statements
 

@@ -10,6 +10,7 @@ import ast
 from collections.abc import Callable
 from typing import Any, Final
 
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody, OpenLoop, Variable
 from distal.frontend.lowering.assignment import (
     assign,
@@ -56,13 +57,15 @@ def _report_depth(body: FunctionBody, stmt: ast.stmt) -> None:
     compilation = body.compilation
     if len(compilation.in_progress) < DEEP_CALLS:
         hint = "split it into several lines"
-        body.report(body.problem("this is too deeply nested", stmt, hint).diagnostic)
+        body.report(
+            body.problem(ErrorCode.RECURSION, "this is too deeply nested", stmt, hint).diagnostic
+        )
     elif not compilation.is_too_deep:
         compilation.is_too_deep = True  # every caller fails in the same way
         first = compilation.in_progress[0].source_name
         message = f"functions call one another too many levels deep, beginning with '{first}'"
         hint = "join some of them, or call them one after the other"
-        body.report(body.problem(message, stmt, hint).diagnostic)
+        body.report(body.problem(ErrorCode.RECURSION, message, stmt, hint).diagnostic)
 
 
 def _give_up(body: FunctionBody, stmt: ast.stmt) -> None:
@@ -102,7 +105,7 @@ def _assign(body: FunctionBody, stmt: ast.Assign) -> None:
 
 def _ann_assign(body: FunctionBody, stmt: ast.AnnAssign) -> None:
     if not isinstance(stmt.target, ast.Name):
-        raise body.problem("only a name takes a type", stmt.target)
+        raise body.problem(ErrorCode.ASSIGNMENT, "only a name takes a type", stmt.target)
     with body.checking(filter(None, (stmt.value,)), body.expression):
         type = _annotated(body, stmt.target.id, stmt)
     if stmt.value is not None:
@@ -116,12 +119,12 @@ def _annotated(body: FunctionBody, name: str, stmt: ast.AnnAssign) -> Type:
     type = body.compilation.annotation(body, stmt.annotation)
     variable = body.lookup(name)
     if is_static(type):
-        raise body.problem(f"a local cannot be {type}", stmt.annotation)
+        raise body.problem(ErrorCode.ANNOTATION, f"a local cannot be {type}", stmt.annotation)
     if variable is not None and variable.type is None and not variable.loop:
         variable.type, variable.typed_at = type, body.span(stmt)
     elif variable is not None and variable.type is not type and not variable.loop:
         message = must_be(f"'{name}'", variable.type, type)
-        raise body.problem(message, stmt.annotation, None, labels_of_type(variable))
+        raise body.problem(ErrorCode.TYPE, message, stmt.annotation, None, labels_of_type(variable))
     return type
 
 
@@ -155,7 +158,9 @@ def _emit_after(body: FunctionBody, stmt: Stmt, *, reachable: bool) -> None:
 
 def _while(body: FunctionBody, stmt: ast.While) -> None:
     if stmt.orelse:
-        raise body.problem("'else' of a loop is not part of scene code", stmt.orelse[0])
+        raise body.problem(
+            ErrorCode.LANGUAGE, "'else' of a loop is not part of scene code", stmt.orelse[0]
+        )
     reachable = body.reachable
     with body.block([]) as head:
 
@@ -185,14 +190,18 @@ def _while(body: FunctionBody, stmt: ast.While) -> None:
 
 def _for(body: FunctionBody, stmt: ast.For) -> None:
     if stmt.orelse:
-        raise body.problem("'else' of a loop is not part of scene code", stmt.orelse[0])
+        raise body.problem(
+            ErrorCode.LANGUAGE, "'else' of a loop is not part of scene code", stmt.orelse[0]
+        )
     names = _loop_names(body, stmt.target)
     shadowed = [v for n in names if (v := body.lookup(n.id)) is not None]
     for name in names:
         known = body.lookup(name.id)
         if known is not None and not (name.id == "_" and known.loop):
             message = f"'{name.id}' is a local already"
-            raise body.problem(message, name, "give the loop variable a name of its own")
+            raise body.problem(
+                ErrorCode.ASSIGNMENT, message, name, "give the loop variable a name of its own"
+            )
     found = None
     try:
         found = iteration(body, stmt.iter)
@@ -211,7 +220,9 @@ def _loop_names(body: FunctionBody, target: ast.expr) -> list[ast.Name]:
         case ast.Tuple(elements) | ast.List(elements) if elements:
             return [name for e in elements for name in _loop_names(body, e)]
         case _:
-            raise body.problem("a loop variable is a name", target, "unpack it in the body")
+            raise body.problem(
+                ErrorCode.ASSIGNMENT, "a loop variable is a name", target, "unpack it in the body"
+            )
 
 
 def _loop_body(
@@ -279,7 +290,9 @@ def _continue(body: FunctionBody, stmt: ast.Continue) -> None:
 def _return(body: FunctionBody, stmt: ast.Return) -> None:
     try:
         if stmt.value is None:
-            raise body.problem(f"'{body.name}' returns no value here", stmt, "write return value")
+            raise body.problem(
+                ErrorCode.RESULT, f"'{body.name}' returns no value here", stmt, "write return value"
+            )
         value = body.expression(stmt.value)
         expr = _returned(body, value, stmt.value)
         body.returned.append((value, stmt))
@@ -294,7 +307,9 @@ def _returned(body: FunctionBody, value: Value, node: ast.expr) -> Expr:
         return coerce_or_raise(body, value, body.result, node, f"the value of {whose}")
     expr = with_default_type(body, value, node)
     if is_static(expr.type):
-        raise body.problem(f"a function returns a value, not {expr.type}", node)
+        raise body.problem(
+            ErrorCode.ANNOTATION, f"a function returns a value, not {expr.type}", node
+        )
     return expr
 
 
@@ -308,7 +323,7 @@ def _expr(body: FunctionBody, stmt: ast.Expr) -> None:
             default: Type | None = default_type(body.expression(stmt.value))
             what = "this value" if default is None else f"this {default}"
             hint = "functions have no effect but their value: assign it, or return it"
-            raise body.problem(f"{what} is not used", stmt, hint)
+            raise body.problem(ErrorCode.RESULT, f"{what} is not used", stmt, hint)
 
 
 def _pass(body: FunctionBody, stmt: ast.Pass) -> None:
@@ -320,11 +335,16 @@ def _function_def(body: FunctionBody, stmt: ast.FunctionDef) -> None:
     assert variable is not None
     if stmt.decorator_list:
         message = f"the nested function '{stmt.name}' has a decorator"
-        raise body.problem(message, stmt.decorator_list[0], "a nested def needs none")
+        raise body.problem(
+            ErrorCode.DEFINITION, message, stmt.decorator_list[0], "a nested def needs none"
+        )
     if variable.changes or variable.static is not None:
         message = f"'{stmt.name}' cannot change what function it stands for"
         raise SceneError(
-            message, body.source.name_span(stmt), "give each function a name of its own"
+            ErrorCode.ASSIGNMENT,
+            message,
+            body.source.name_span(stmt),
+            "give each function a name of its own",
         )
     variable.static = make_closure(body, stmt, stmt.name)
     body.assigned.add(variable)

@@ -15,6 +15,7 @@ from weakref import WeakKeyDictionary
 
 from distal.at_once import cached_property
 from distal.diagnostics import CompileError, Diagnostic, Span
+from distal.error_codes import ErrorCode
 from distal.frontend.name_lookup import NameLookup, names_of
 from distal.frontend.parsing import TREES_KEPT
 from distal.frontend.problems import SceneError
@@ -194,13 +195,15 @@ def _read(overload: Overload) -> FunctionSignature:
     if overload.struct is None and _is_method(python):
         message = f"'{python.__qualname__}' is a method, and its class is not a struct"
         hint = "write @struct above the class, or move it out of the class"
-        signature.problems.append(Diagnostic(message, signature.span, hint))
+        signature.problems.append(Diagnostic(ErrorCode.DEFINITION, message, signature.span, hint))
         signature.unusable = True
         return signature
     if hasattr(python, "__wrapped__"):
         message = f"'{signature.name}' is changed by another decorator first"
         hint = "put @func directly above def"
-        signature.problems.append(Diagnostic(message, _wrapped_span(python, signature), hint))
+        signature.problems.append(
+            Diagnostic(ErrorCode.DEFINITION, message, _wrapped_span(python, signature), hint)
+        )
         signature.unusable = True
         return signature
     signature.parameters = tuple(_parameters_of(signature, python))
@@ -231,7 +234,9 @@ def _parameters_of(signature: FunctionSignature, python: FunctionType) -> list[S
     if a.kwarg is not None:
         message = f"'**{a.kwarg.arg}' is not part of scene code"
         hint = "name each parameter"
-        signature.problems.append(Diagnostic(message, signature.source.span(a.kwarg), hint))
+        signature.problems.append(
+            Diagnostic(ErrorCode.LANGUAGE, message, signature.source.span(a.kwarg), hint)
+        )
     positional = [*a.posonlyargs, *a.args]
     given = python.__defaults__ or ()
     defaults: dict[str, Any] = dict(
@@ -242,7 +247,7 @@ def _parameters_of(signature: FunctionSignature, python: FunctionType) -> list[S
     if owner is not None and not positional:
         message = f"the method '{signature.name}' has no parameter for its struct"
         hint = f"write def {signature.name}(self), or @staticmethod above @func"
-        signature.problems.append(Diagnostic(message, signature.span, hint))
+        signature.problems.append(Diagnostic(ErrorCode.DEFINITION, message, signature.span, hint))
         signature.unusable = True
     starred = [] if a.vararg is None else [a.vararg]
     parameters = []
@@ -270,7 +275,9 @@ def _annotation_of(signature: FunctionSignature, arg: ast.arg) -> Any:
         return _evaluated(signature, arg.annotation)
     message = f"parameter '{arg.arg}' has no type"
     hint = f"write {arg.arg}: vec3, or {arg.arg}: float"
-    signature.problems.append(Diagnostic(message, signature.source.span(arg), hint))
+    signature.problems.append(
+        Diagnostic(ErrorCode.ANNOTATION, message, signature.source.span(arg), hint)
+    )
     return MISSING
 
 
@@ -280,5 +287,7 @@ def _evaluated(signature: FunctionSignature, node: ast.expr) -> Any:
     except SceneError as problem:
         span = signature.source.span(node)
         diagnostic = problem.diagnostic
-        signature.problems.append(Diagnostic(diagnostic.message, span, diagnostic.hint))
+        signature.problems.append(
+            Diagnostic(diagnostic.code, diagnostic.message, span, diagnostic.hint)
+        )
         return MISSING

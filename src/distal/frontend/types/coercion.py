@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.problems import SceneError, must_be, must_match
 from distal.frontend.source import Node
@@ -84,7 +85,9 @@ def _coerce_whole(body: FunctionBody, number: int, type: Type, node: Node) -> Ex
         return None
     coerced = whole_to(number, type)
     if coerced is None:
-        raise body.problem(f"{_shown(number)} is out of the range of {type}", node)
+        raise body.problem(
+            ErrorCode.NUMBER, f"{_shown(number)} is out of the range of {type}", node
+        )
     return coerced
 
 
@@ -187,7 +190,7 @@ def with_default_type(body: FunctionBody, value: Value, node: Node) -> Expr:
             raise not_a_value(body, obj, text, node)
         case Closure(_, _, name):
             hint = "call it, or pass it to a function that takes one"
-            raise body.problem(f"the function '{name}' is not a value", node, hint)
+            raise body.problem(ErrorCode.VALUE, f"the function '{name}' is not a value", node, hint)
         case Whole() | SequenceValue():
             type = default_type(value)
             coerced = None if type is None else coerce(body, value, type, node)
@@ -210,7 +213,7 @@ def not_a_value(body: FunctionBody, obj: object, text: str, node: Node) -> Scene
     hint = None
     if isinstance(obj, Func | LangFunction | LangForm):
         hint = f"call it: {text}(...)"
-    return body.problem(f"'{text}' is {_kind(obj)}, not a value", node, hint)
+    return body.problem(ErrorCode.VALUE, f"'{text}' is {_kind(obj)}, not a value", node, hint)
 
 
 def _kind(obj: object) -> str:
@@ -223,9 +226,9 @@ def _mixed_sequence(body: FunctionBody, value: Value, node: Node) -> SceneError:
     assert isinstance(value, SequenceValue)
     for item in value.items:
         if isinstance(item, Static | Closure):
-            return body.problem(f"{describe(item)} is not a value", node)
+            return body.problem(ErrorCode.VALUE, f"{describe(item)} is not a value", node)
     kinds = list(dict.fromkeys(describe(i) for i in value.items))
-    return body.problem(must_match("the elements of an array", kinds), node)
+    return body.problem(ErrorCode.TYPE, must_match("the elements of an array", kinds), node)
 
 
 def coerce_or_raise(body: FunctionBody, value: Value, type: Type, node: Node, what: str) -> Expr:
@@ -252,7 +255,7 @@ def wrong_type(body: FunctionBody, value: Value, type: Type, node: Node, what: s
     if isinstance(value, Static) and not (isinstance(type, FunctionType) and is_callable(value)):
         return not_a_value(body, value.object, value.text, node)
     hint = conversion_hint(value, type) or callable_hint(body, value)
-    return body.problem(must_be(what, type, shown_type(value)), node, hint)
+    return body.problem(ErrorCode.TYPE, must_be(what, type, shown_type(value)), node, hint)
 
 
 def callable_hint(body: FunctionBody, value: Value) -> str | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Sequence
 
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.problems import did_you_mean, must_be
 from distal.frontend.signatures.annotations import AnnotationError, struct_defaults, struct_type
@@ -50,7 +51,7 @@ def construct(body: FunctionBody, type: Type, args: Sequence[Value], node: ast.C
     """
     if node.keywords:
         message = f"'{type}' takes no keyword arguments"
-        raise body.problem(message, node.keywords[0])
+        raise body.problem(ErrorCode.CALL, message, node.keywords[0])
     for arg in args:
         if isinstance(arg, Static | Closure):
             with_default_type(body, arg, node)
@@ -62,13 +63,13 @@ def construct(body: FunctionBody, type: Type, args: Sequence[Value], node: ast.C
         case Matrix():
             return _matrix(body, type, args, node)
         case _:
-            raise body.problem(f"{type} is not made by a call", node)
+            raise body.problem(ErrorCode.LANGUAGE, f"{type} is not made by a call", node)
 
 
 def _scalar(body: FunctionBody, kind: Kind, args: Sequence[Value], node: ast.Call) -> Value:
     type = Scalar(kind)
     if len(args) != 1:
-        raise body.problem(f"'{type}' takes 1 argument, got {len(args)}", node)
+        raise body.problem(ErrorCode.CALL, f"'{type}' takes 1 argument, got {len(args)}", node)
     (arg,) = args
     if isinstance(arg, Whole):
         return _literal(body, arg.value, type, node)
@@ -78,7 +79,7 @@ def _scalar(body: FunctionBody, kind: Kind, args: Sequence[Value], node: ast.Cal
         if isinstance(value.type, Vector):
             hint = f"pick a component, such as .x, or write {vector_of(kind, value.type.size)}(...)"
         message = must_be(f"the argument of '{type}'", "a number or a bool", value.type)
-        raise body.problem(message, node, hint)
+        raise body.problem(ErrorCode.TYPE, message, node, hint)
     return cast(value, kind)
 
 
@@ -92,7 +93,7 @@ def _literal(body: FunctionBody, value: int, type: Scalar, node: ast.Call) -> Ex
             return coerced
         case Kind.INT | Kind.UINT:
             if not -(2**31) <= value < 2**32:
-                raise body.problem(f"{value:.6g} does not fit into 32 bits", node)
+                raise body.problem(ErrorCode.NUMBER, f"{value:.6g} does not fit into 32 bits", node)
             if type is UINT:
                 return Const(value & 0xFFFFFFFF, UINT)
             return Const(value - 2**32 if value >= 2**31 else value, INT)
@@ -100,7 +101,9 @@ def _literal(body: FunctionBody, value: int, type: Scalar, node: ast.Call) -> Ex
 
 def _vector(body: FunctionBody, type: Vector, args: Sequence[Value], node: ast.Call) -> Expr:
     if not args:
-        raise body.problem(f"'{type}' needs {type.size} components", node, f"write {type}(0)")
+        raise body.problem(
+            ErrorCode.SIZE, f"'{type}' needs {type.size} components", node, f"write {type}(0)"
+        )
     if len(args) == 1:
         args = _elements(body, args[0], node)
     parts = [_component(body, a, type, node) for a in args]
@@ -117,7 +120,9 @@ def _vector(body: FunctionBody, type: Vector, args: Sequence[Value], node: ast.C
             hint = f"write .{'xyzw'[: type.size]} to take the first {type.size}"
         elif total < type.size:
             hint = f"give {type.size - total} more: {type}(…{', 0.0' * (type.size - total)})"
-        raise body.problem(f"{type} has {type.size} components, not {total}", node, hint)
+        raise body.problem(
+            ErrorCode.SIZE, f"{type} has {type.size} components, not {total}", node, hint
+        )
     return Compose(tuple(parts), type, span=body.span(node))
 
 
@@ -151,7 +156,7 @@ def _component(body: FunctionBody, arg: Value, type: Vector, node: ast.Call) -> 
             return cast(value, type.kind)
         case _:
             message = must_be(f"an argument of '{type}'", "a number or a vector", value.type)
-            raise body.problem(message, node)
+            raise body.problem(ErrorCode.TYPE, message, node)
 
 
 def _matrix(body: FunctionBody, type: Matrix, args: Sequence[Value], node: ast.Call) -> Expr:
@@ -175,7 +180,7 @@ def _matrix(body: FunctionBody, type: Matrix, args: Sequence[Value], node: ast.C
             return Compose(tuple(Compose(r, column) for r in rows), type, span=body.span(node))
     wanted = f"{size} columns ({column}), {size * size} floats column by column, or a {type}"
     types = [shown_type(a) for a in args] or ["nothing"]
-    raise body.problem(must_be(f"what '{type}' takes", wanted, *types), node)
+    raise body.problem(ErrorCode.TYPE, must_be(f"what '{type}' takes", wanted, *types), node)
 
 
 def _diagonal(scalar: Expr, type: Matrix) -> Expr:
@@ -202,23 +207,31 @@ def construct_struct(body: FunctionBody, cls: type, args: Sequence[Value], node:
     try:
         type = body.compilation.adopt(struct_type(cls))
     except AnnotationError as error:
-        raise body.problem(error.message, node, error.hint) from None
+        raise body.problem(ErrorCode.ANNOTATION, error.message, node, error.hint) from None
     assert isinstance(type, Struct)
     names = [name for name, _ in type.fields]
     if len(args) > len(names):
-        raise body.problem(f"'{type}' has {len(names)} fields, got {len(args)}", node)
+        raise body.problem(
+            ErrorCode.CALL, f"'{type}' has {len(names)} fields, got {len(args)}", node
+        )
     given: dict[str, tuple[Value, ast.expr]] = {
         name: (value, at) for name, value, at in zip(names, args, node.args, strict=False)
     }
 
     def take(keyword: ast.keyword) -> None:
         if keyword.arg is None:
-            raise body.problem("'**' in a call is not part of scene code", keyword)
+            raise body.problem(
+                ErrorCode.LANGUAGE, "'**' in a call is not part of scene code", keyword
+            )
         if keyword.arg not in names:
             hint = did_you_mean(keyword.arg, names) or f"fields: {', '.join(names)}"
-            raise body.problem(f"'{type}' has no field '{keyword.arg}'", keyword, hint)
+            raise body.problem(
+                ErrorCode.NAME, f"'{type}' has no field '{keyword.arg}'", keyword, hint
+            )
         if keyword.arg in given:
-            raise body.problem(f"'{type}' gets field '{keyword.arg}' twice", keyword)
+            raise body.problem(
+                ErrorCode.CALL, f"'{type}' gets field '{keyword.arg}' twice", keyword
+            )
         given[keyword.arg] = (body.expression(keyword.value), keyword.value)
 
     body.each(take, node.keywords)
@@ -241,11 +254,11 @@ def _struct_field(
         return coerce_or_raise(body, value, wanted, at, what)
     make = struct_defaults(cls).get(name)
     if make is None:
-        raise body.problem(f"'{type}' needs its field '{name}'", node)
+        raise body.problem(ErrorCode.CALL, f"'{type}' needs its field '{name}'", node)
     try:
         default = value_of(make(), f"{type}.{name}", body.compilation)
     except RefusedError as refused:
-        raise body.problem(refused.message, node, refused.hint) from None
+        raise body.problem(ErrorCode.VALUE, refused.message, node, refused.hint) from None
     return coerce_or_raise(body, default, wanted, node, what)
 
 
@@ -272,7 +285,9 @@ def length_of(body: FunctionBody, value: Value, node: ast.expr) -> Value:
             return Whole(len(fields))
         case _:
             wanted = "an array, a vector, a matrix or a tuple"
-            raise body.problem(must_be("the argument of 'len'", wanted, expr.type), node)
+            raise body.problem(
+                ErrorCode.TYPE, must_be("the argument of 'len'", wanted, expr.type), node
+            )
 
 
 def _size(value: Value) -> int:
@@ -293,9 +308,11 @@ def repeated(body: FunctionBody, element: Value, count: Value, node: ast.expr) -
         SceneError: The count is not known at compile time, or the array is too large or empty.
     """
     if not isinstance(count, Whole) or not isinstance(element, SequenceValue):
-        raise body.problem("a list is repeated a number of times known now", node)
+        raise body.problem(ErrorCode.SIZE, "a list is repeated a number of times known now", node)
     total = _size(element) * count.value
     if not 1 <= total <= LARGEST_ARRAY:
         message = f"an array has 1 to {LARGEST_ARRAY} components, not {total}"
-        raise body.problem(message, node, "more belong into a Buffer" if total > 0 else None)
+        raise body.problem(
+            ErrorCode.SIZE, message, node, "more belong into a Buffer" if total > 0 else None
+        )
     return SequenceValue(element.items * count.value, is_list=True)

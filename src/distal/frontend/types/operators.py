@@ -10,6 +10,7 @@ import operator
 from collections.abc import Callable
 from typing import Any, Final
 
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.problems import SceneError, must_be
 from distal.frontend.source import Node
@@ -113,18 +114,22 @@ def binary(body: FunctionBody, op: ast.operator, lhs: Value, rhs: Value, node: N
 
 def _fold(body: FunctionBody, op: BinaryOp, lhs: int, rhs: int, node: Node) -> Value | None:
     if op in (BinaryOp.DIV, BinaryOp.FLOOR_DIV, BinaryOp.MOD) and rhs == 0:
-        raise body.problem("division by zero", node)
+        raise body.problem(ErrorCode.NUMBER, "division by zero", node)
     if op is BinaryOp.DIV:
         try:
             return float_constant(lhs / rhs, "the quotient")
         except (RefusedError, OverflowError):
-            raise body.problem("the quotient is out of the range of float", node) from None
+            raise body.problem(
+                ErrorCode.NUMBER, "the quotient is out of the range of float", node
+            ) from None
     compute = _LITERAL.get(op)
     if compute is None:
         return None
     value = compute(lhs, rhs)
     if abs(value) >= _LARGEST_LITERAL:
-        raise body.problem("this number is too large", node, "write it as a float")
+        raise body.problem(
+            ErrorCode.NUMBER, "this number is too large", node, "write it as a float"
+        )
     return Whole(value)
 
 
@@ -133,21 +138,27 @@ def _arithmetic(body: FunctionBody, op: BinaryOp, lhs: Expr, rhs: Expr, node: No
     kind = kind_of(type)
     operand = f"an operand of '{op.value}'"
     if kind is None:
-        raise body.problem(must_be(operand, "a number, a vector or a matrix", type), node)
+        raise body.problem(
+            ErrorCode.TYPE, must_be(operand, "a number, a vector or a matrix", type), node
+        )
     if isinstance(type, Matrix):
         _check_matrix(body, op, lhs, rhs, node)
     elif op in _BITWISE:
         if kind is Kind.FLOAT:
             hint = "use ** for powers" if op is BinaryOp.XOR else "use and, or for conditions"
-            raise body.problem(must_be(operand, "of int, uint or bool", type), node, hint)
+            raise body.problem(
+                ErrorCode.TYPE, must_be(operand, "of int, uint or bool", type), node, hint
+            )
     elif kind is Kind.BOOL:
         hint = "convert the bool: int(b) or float(b)"
-        raise body.problem(must_be(operand, "of int, uint or float", type), node, hint)
+        raise body.problem(
+            ErrorCode.TYPE, must_be(operand, "of int, uint or float", type), node, hint
+        )
     elif op is BinaryOp.DIV and kind is not Kind.FLOAT:
         lhs, rhs = cast(lhs, Kind.FLOAT), cast(rhs, Kind.FLOAT)
         type = lhs.type
     if op in _DIVISIONS and _is_zero(rhs):
-        raise body.problem("division by zero", node)
+        raise body.problem(ErrorCode.NUMBER, "division by zero", node)
     return Binary(op, lhs, rhs, type, span=span)
 
 
@@ -169,12 +180,14 @@ def _check_matrix(body: FunctionBody, op: BinaryOp, lhs: Expr, rhs: Expr, node: 
         BinaryOp.DIV: "a matrix and a number, in this order",
     }.get(op, "numbers or vectors")
     hint = "the product of matrices is written @" if op is BinaryOp.MUL else None
-    raise body.problem(must_be(f"the operands of '{op.value}'", wanted, *types), node, hint)
+    raise body.problem(
+        ErrorCode.TYPE, must_be(f"the operands of '{op.value}'", wanted, *types), node, hint
+    )
 
 
 def _shift(body: FunctionBody, op: BinaryOp, lhs: Value, rhs: Value, node: Node) -> Value:
     if isinstance(rhs, Whole) and not 0 <= rhs.value < 32:
-        raise body.problem("a shift goes by 0 to 31 bits", node)
+        raise body.problem(ErrorCode.NUMBER, "a shift goes by 0 to 31 bits", node)
     if isinstance(lhs, Whole) and isinstance(rhs, Whole):
         shifted = lhs.value << rhs.value if op is BinaryOp.SHL else lhs.value >> rhs.value
         return Whole(shifted)
@@ -186,10 +199,10 @@ def _shift(body: FunctionBody, op: BinaryOp, lhs: Value, rhs: Value, node: Node)
         count = with_default_type(body, rhs, node)
     if kind not in (Kind.INT, Kind.UINT) or isinstance(value.type, Matrix):
         message = must_be(f"the left operand of '{op.value}'", "of int or uint", value.type)
-        raise body.problem(message, node)
+        raise body.problem(ErrorCode.TYPE, message, node)
     if kind_of(count.type) not in (Kind.INT, Kind.UINT):
         message = must_be(f"the right operand of '{op.value}'", "of int or uint", count.type)
-        raise body.problem(message, node)
+        raise body.problem(ErrorCode.TYPE, message, node)
     # int and uint counts keep their bits, and only the lowest five bits are used.
     count = cast(count, kind)
     if isinstance(value.type, Scalar):
@@ -215,7 +228,7 @@ def _matmul(body: FunctionBody, lhs: Value, rhs: Value, node: Node) -> Expr:
             hint = "a number times a matrix is written *" if scalar else None
             wanted = "two matrices, or a matrix and a vector, of one size"
             message = must_be("the operands of '@'", wanted, left.type, right.type)
-            raise body.problem(message, node, hint)
+            raise body.problem(ErrorCode.TYPE, message, node, hint)
     return MatMul(left, right, type, span=body.span(node))
 
 
@@ -259,7 +272,7 @@ def unary(body: FunctionBody, op: ast.unaryop, operand: Value, node: ast.expr) -
                 "of int or uint, or a vector of bool" if symbol == "~" else "a number or a vector"
             )
             message = must_be(f"the operand of '{symbol}'", wanted, value.type)
-            raise body.problem(message, node, hint)
+            raise body.problem(ErrorCode.TYPE, message, node, hint)
 
 
 def compare(body: FunctionBody, op: ast.cmpop, lhs: Value, rhs: Value, node: ast.expr) -> Expr:
@@ -286,7 +299,9 @@ def compare(body: FunctionBody, op: ast.cmpop, lhs: Value, rhs: Value, node: ast
     is_order = found not in (CompareOp.EQ, CompareOp.NE)
     if kind is None or isinstance(left.type, Matrix) or (kind is Kind.BOOL and is_order):
         wanted = "a number or a vector of numbers" if is_order else "a number, a bool or a vector"
-        raise body.problem(must_be(f"an operand of '{found.value}'", wanted, left.type), node)
+        raise body.problem(
+            ErrorCode.TYPE, must_be(f"an operand of '{found.value}'", wanted, left.type), node
+        )
     return Compare(found, left, right, with_kind(left.type, Kind.BOOL), span=body.span(node))
 
 
@@ -295,10 +310,12 @@ def _no_comparison(body: FunctionBody, op: ast.cmpop, node: ast.expr) -> SceneEr
         case ast.Is() | ast.IsNot():
             symbol = "is" if isinstance(op, ast.Is) else "is not"
             other = "==" if isinstance(op, ast.Is) else "!="
-            return body.problem(f"'{symbol}' is not part of scene code", node, f"write {other}")
+            return body.problem(
+                ErrorCode.LANGUAGE, f"'{symbol}' is not part of scene code", node, f"write {other}"
+            )
         case _:
             hint = "compare with each: x == a or x == b"
-            return body.problem("'in' is not part of scene code", node, hint)
+            return body.problem(ErrorCode.LANGUAGE, "'in' is not part of scene code", node, hint)
 
 
 def condition(body: FunctionBody, value: Value, node: ast.expr, what: str) -> Expr:
@@ -314,7 +331,7 @@ def condition(body: FunctionBody, value: Value, node: ast.expr, what: str) -> Ex
         SceneError: The value is not a bool.
     """
     if isinstance(value, Whole):
-        raise body.problem(must_be(what, BOOL, INT), node, "compare it: x != 0")
+        raise body.problem(ErrorCode.TYPE, must_be(what, BOOL, INT), node, "compare it: x != 0")
     expr = with_default_type(body, value, node)
     if expr.type is BOOL:
         return expr
@@ -323,4 +340,4 @@ def condition(body: FunctionBody, value: Value, node: ast.expr, what: str) -> Ex
         hint = "write any(...) or all(...) around it"
     elif isinstance(expr.type, Scalar):
         hint = "compare it: x != 0"
-    raise body.problem(must_be(what, BOOL, expr.type), node, hint)
+    raise body.problem(ErrorCode.TYPE, must_be(what, BOOL, expr.type), node, hint)

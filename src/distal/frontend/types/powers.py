@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from distal.diagnostics import Span
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.problems import must_be, must_match
 from distal.frontend.source import Node
@@ -37,24 +38,37 @@ def power(body: FunctionBody, base: Value, exponent: Value, node: Node) -> Value
     if isinstance(base, Whole) and whole is None:
         exponent_expr = with_default_type(body, exponent, node)
         if kind_of(exponent_expr.type) is not Kind.FLOAT:
-            raise body.problem("int ** int needs an exponent known now", node, "use float(...)")
+            raise body.problem(
+                ErrorCode.NUMBER, "int ** int needs an exponent known now", node, "use float(...)"
+            )
     if whole is None:
         left, right = unify_operands(body, base, exponent, node, "**")
         if kind_of(left.type) is not Kind.FLOAT or isinstance(left.type, Matrix):
             if kind_of(left.type) in (Kind.INT, Kind.UINT):
-                raise body.problem("int ** int needs an exponent known now", node, "use float(...)")
-            raise body.problem(must_be(_OPERAND, "a number or a vector", left.type), node)
+                raise body.problem(
+                    ErrorCode.NUMBER,
+                    "int ** int needs an exponent known now",
+                    node,
+                    "use float(...)",
+                )
+            raise body.problem(
+                ErrorCode.TYPE, must_be(_OPERAND, "a number or a vector", left.type), node
+            )
         return builtin("pow", left, right)
     value = with_default_type(body, base, node)
     kind = kind_of(value.type)
     if kind is Kind.BOOL or kind is None or isinstance(value.type, Matrix):
-        raise body.problem(must_be(_OPERAND, "a number or a vector", value.type), node)
+        raise body.problem(
+            ErrorCode.TYPE, must_be(_OPERAND, "a number or a vector", value.type), node
+        )
     if kind is not Kind.FLOAT:
         if not isinstance(exponent, Whole):
             message = must_match("the operands of '**'", (value.type, FLOAT))
-            raise body.problem(message, node, "use float(...)")
+            raise body.problem(ErrorCode.TYPE, message, node, "use float(...)")
         if whole < 0:
-            raise body.problem("an int to a negative power is not an int", node, "use float(...)")
+            raise body.problem(
+                ErrorCode.NUMBER, "an int to a negative power is not an int", node, "use float(...)"
+            )
     return _multiplied(body, value, whole, node)
 
 
@@ -72,10 +86,12 @@ def _whole_exponent(exponent: Value) -> int | None:
 def _fold_power(body: FunctionBody, base: int, exponent: int, node: Node) -> Value:
     if exponent < 0:
         if base == 0:
-            raise body.problem("division by zero", node)
+            raise body.problem(ErrorCode.NUMBER, "division by zero", node)
         return number(float(base) ** exponent)
     if abs(base) > 1 and exponent * abs(base).bit_length() > 128:
-        raise body.problem("this number is too large", node, "write it as a float")
+        raise body.problem(
+            ErrorCode.NUMBER, "this number is too large", node, "write it as a float"
+        )
     return Whole(base**exponent)
 
 

@@ -6,6 +6,7 @@ import ast
 from collections.abc import Sequence
 from typing import Final
 
+from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody
 from distal.frontend.problems import SceneError, must_match
 from distal.frontend.source import Node
@@ -130,7 +131,7 @@ def do_not_mix(body: FunctionBody, lhs: Expr, rhs: Expr, node: Node, symbol: str
     elif isinstance(left, Vector) and isinstance(right, Vector) and left.kind is right.kind:
         wide, narrow = (left, right) if left.size > right.size else (right, left)
         hint = f"pick {narrow.size} components of the {wide}, such as .{'xyzw'[: narrow.size]}"
-    return body.problem(message, node, hint)
+    return body.problem(ErrorCode.TYPE, message, node, hint)
 
 
 def _int_hint(body: FunctionBody, value: Expr) -> str:
@@ -170,7 +171,9 @@ def unify_values(
     for value in values:
         if isinstance(value, Static | Closure):
             with_default_type(body, value, node)
-    raise body.problem(must_match(what, map(shown_type, values)), node, _unify_hint(values))
+    raise body.problem(
+        ErrorCode.TYPE, must_match(what, map(shown_type, values)), node, _unify_hint(values)
+    )
 
 
 def _unify_hint(values: Sequence[Value]) -> str | None:

@@ -13,6 +13,7 @@ from typing import Final
 
 from distal import packages
 from distal.diagnostics import CompileError, Span
+from distal.error_codes import ErrorCode
 from distal.ir.build import compare, integer
 from distal.ir.nodes import (
     Binary,
@@ -67,9 +68,13 @@ def _refusal(target: Target, lacks: str, blame: Blame, hint: str) -> CompileErro
     if span is not None and os.path.dirname(span.file).startswith(_LIBRARY):
         # The author did not write that line, and cannot change it.
         needs = ", which noise and random numbers of the library need"
-        return CompileError.at(f"{target.name} has no {lacks}{needs}", None, _OTHER_TARGET)
+        return CompileError.at(
+            ErrorCode.TARGET, f"{target.name} has no {lacks}{needs}", None, _OTHER_TARGET
+        )
     needs = f", which '{blame.what}' needs" if blame.what else ""
-    return CompileError.at(f"{target.name} has no {lacks}{needs}", blame.span, hint)
+    return CompileError.at(
+        ErrorCode.TARGET, f"{target.name} has no {lacks}{needs}", blame.span, hint
+    )
 
 
 def refuse_expression(e: Expr, target: Target, blame: Blame) -> None:
@@ -127,6 +132,7 @@ def refuse_statement(stmt: Stmt, target: Target, blame: Blame) -> None:
     """
     if isinstance(stmt, While) and not target.dynamic_loops:
         raise CompileError.at(
+            ErrorCode.TARGET,
             f"{target.name} has no while loops",
             blame.span,
             "for i in range(N): with 'if not ...: break' as the first line",
@@ -161,6 +167,7 @@ def constant_loop(
     steppable = start is not None or abs(loop.step) == 1
     if not steppable or abs(last - first) > _LONGEST_CLAMPED_LOOP:
         raise CompileError.at(
+            ErrorCode.TARGET,
             f"{target.name} needs loop bounds that are known when compiling",
             blame.span,
             "range(min(n, 64)) with a constant, or for i in range(64): if i >= n: break",

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import TypeAlias, assert_never
 
 from distal.diagnostics import CompileError, Span
+from distal.error_codes import ErrorCode
 from distal.ir.nodes import (
     Apply,
     Assign,
@@ -259,6 +260,7 @@ class DualBody:
                 pair = self._dual(coord, out)
                 if pair.changes:
                     raise CompileError.at(
+                        ErrorCode.LANGUAGE,
                         "the gradient of a texture is not defined",
                         span_in(self._span, e),
                         "compare samples at neighbouring places, outside the differentiated "

@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from typing import Final, TypeAlias
 
 from distal.diagnostics import CompileError, Span
+from distal.error_codes import ErrorCode
 from distal.ir.contents import contents
 from distal.ir.nodes import (
     Apply,
@@ -75,6 +76,7 @@ def run(module: Module, context: Context) -> Module:
     for param in entry.params:
         if is_static(param.type):
             raise CompileError.at(
+                ErrorCode.CALL,
                 f"'{entry.source_name}' takes a {param.type} and can only be called "
                 "from scene code",
                 entry.span,
@@ -132,6 +134,7 @@ class _SpecialisedFunctions:
 
     def _recursion(self, name: str, span: Span | None) -> CompileError:
         return CompileError.at(
+            ErrorCode.RECURSION,
             f"'{self._functions[name].source_name}' calls itself through a function it is given",
             span,
             "scene code has no recursion; use a loop",
@@ -325,5 +328,8 @@ class _Clone:
         what = "function" if isinstance(e.type, FunctionType) else str(e.type)
         hint = _CHOSEN_HINT if isinstance(e.type, FunctionType) else "read both and choose after"
         return CompileError.at(
-            f"a {what} cannot be chosen while the program runs", span_in(self._span, e), hint
+            ErrorCode.LANGUAGE,
+            f"a {what} cannot be chosen while the program runs",
+            span_in(self._span, e),
+            hint,
         )

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
+from distal.error_codes import ErrorCode
 from distal.fields.guarantees import Primitive, Proven
 from distal.lang.runtime_access import executor
 from distal.scene.checks.bounds_report import NodeBounds
@@ -29,12 +30,12 @@ class ProofNote:
     """What is known of a function's slope.
 
     Attributes:
-        code: "proved", "slope-proved", "slope-not-proved" or "slope-refuted"; the last is an error.
+        code: That it is proved, not proved or refuted; the last is an error.
         message: What is known.
         hint: What to write instead, or None.
     """
 
-    code: str
+    code: ErrorCode
     message: str
     hint: str | None = None
 
@@ -53,7 +54,7 @@ def proof_note(
     rule, name = node.rule, node.name
     assert isinstance(rule, Primitive)
     if rule.proved is not None:
-        return ProofNote("proved", _by_construction(rule.proved, name))
+        return ProofNote(ErrorCode.PROVED, _by_construction(rule.proved, name))
     if rule.normalize is not None or not own.finite:
         return None
     n = 2 if node.flat else 3
@@ -62,19 +63,23 @@ def proof_note(
     try:
         found = executor().prove(function, low, high, params, time, most=MOST_OPERATIONS)
     except TapeError as error:
-        return ProofNote("slope-not-proved", f"the slope of '{name}' is not proved: {error}")
+        return ProofNote(
+            ErrorCode.SLOPE_NOT_PROVED, f"the slope of '{name}' is not proved: {error}"
+        )
     if found.slope <= declared * (1.0 + _ROUNDING):
         message = f"the slope of '{name}' is proved in its box: it is at most {_up(found.slope)}"
-        return ProofNote("slope-proved", f"{message}, and {declared:.4g} is declared")
+        return ProofNote(ErrorCode.SLOPE_PROVED, f"{message}, and {declared:.4g} is declared")
     most = declared * (1.0 + _ROUNDING)
     refuted = executor().refute(function, most, (low, high), params, time)
     if refuted is None:
         message = f"the slope {declared:.4g} of '{name}' is neither proved nor refuted in its box"
-        return ProofNote("slope-not-proved", f"{message}: at most {_up(found.slope)} is proved")
+        return ProofNote(
+            ErrorCode.SLOPE_NOT_PROVED, f"{message}: at most {_up(found.slope)} is proved"
+        )
     place = ", ".join(f"{number:.3g}" for number in refuted.place)
     message = f"'{name}' declares the slope {declared:.4g}, but its value changes by at least "
     message += f"{refuted.slope:.3g} per unit near ({place})"
-    return ProofNote("slope-refuted", message, f"slope={_up(found.slope)}, which is proved")
+    return ProofNote(ErrorCode.SLOPE_REFUTED, message, f"slope={_up(found.slope)}, which is proved")
 
 
 def _by_construction(proved: Proven, name: str) -> str:

@@ -13,6 +13,7 @@ from enum import Enum
 from typing import Any, Final
 
 from distal.diagnostics import Diagnostic
+from distal.error_codes import ErrorCode
 from distal.fields.boxes import given_slope
 from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive, ended
 from distal.scene.checks.bounds_report import NodeBounds, bounds_of_nodes
@@ -32,7 +33,7 @@ ROUNDING: Final = 1e-4
 ON_FOOT: Final = 0.98
 
 # Findings at a point, after which nothing is proved.
-_MEASURED_WRONG: Final = ("slope-exceeded", "undefined")
+_MEASURED_WRONG: Final = (ErrorCode.SLOPE_EXCEEDED, ErrorCode.UNDEFINED)
 
 
 class Severity(Enum):
@@ -48,12 +49,10 @@ class CheckFinding:
     """A finding about one shape.
 
     Attributes:
-        code: Kind of the finding, for editors: "slope-exceeded", "outside-box" …
         shape: Index of the shape in ``ValidationReport.shapes``.
     """
 
     severity: Severity
-    code: str
     shape: int
     diagnostic: Diagnostic
 
@@ -113,11 +112,9 @@ class ValidationReport:
             "findings": [
                 {
                     "severity": f.severity.value,
-                    "code": f.code,
                     "shape": f.shape,
-                    "message": f.diagnostic.message,
-                    "hint": f.diagnostic.hint,
                     "place": place_json(f.diagnostic.span),
+                    **f.diagnostic.to_json(),
                 }
                 for f in self.findings
             ],
@@ -152,7 +149,9 @@ def check(
         children = tuple(numbers[id(c)] for c in node.children)
         rows.append(ShapeReport(node, children, own, _raised(node, declared), measured))
     found = [f for i, row in enumerate(rows) for f in _findings(i, row, rows)]
-    found += _proofs(rows, {f.shape for f in found if f.code in _MEASURED_WRONG}, given, time)
+    found += _proofs(
+        rows, {f.shape for f in found if f.diagnostic.code in _MEASURED_WRONG}, given, time
+    )
     order = {severity: i for i, severity in enumerate(Severity)}
     found = sorted(_at_their_roots(found, rows), key=lambda f: order[f.severity])
     return ValidationReport(tuple(rows), _slope_from(rows), tuple(found), table, smooth)
@@ -187,11 +186,14 @@ def _at_their_roots(
     found: Sequence[CheckFinding], rows: Sequence[ShapeReport]
 ) -> list[CheckFinding]:
     """Drop the errors of shapes that only inherit the error of one of their parts."""
-    wrong = {(f.code, id(rows[f.shape].node)) for f in found if f.severity is Severity.ERROR}
+    errors = [f for f in found if f.severity is Severity.ERROR]
+    wrong = {(f.diagnostic.code, id(rows[f.shape].node)) for f in errors}
 
     def is_passed_on(f: CheckFinding) -> bool:
         below = list(rows[f.shape].node.walk())[1:]
-        return f.severity is Severity.ERROR and any((f.code, id(n)) in wrong for n in below)
+        return f.severity is Severity.ERROR and any(
+            (f.diagnostic.code, id(n)) in wrong for n in below
+        )
 
     return [f for f in found if not is_passed_on(f)]
 
@@ -243,9 +245,9 @@ def _slope_from(rows: Sequence[ShapeReport]) -> tuple[int, ...]:
 
 def _findings(i: int, row: ShapeReport, rows: Sequence[ShapeReport]) -> Iterator[CheckFinding]:
     def finding(
-        severity: Severity, code: str, message: str, hint: str | None = None
+        severity: Severity, code: ErrorCode, message: str, hint: str | None = None
     ) -> CheckFinding:
-        return CheckFinding(severity, code, i, Diagnostic(message, row.node.place, hint))
+        return CheckFinding(severity, i, Diagnostic(code, message, row.node.place, hint))
 
     if row.measured is not None:
         yield from _violations(row, row.measured, finding)
@@ -256,7 +258,7 @@ def _findings(i: int, row: ShapeReport, rows: Sequence[ShapeReport]) -> Iterator
         )
         if is_own(row.node) or isinstance(row.node.rule, Primitive):
             message = f"{described(row.node)} has the slope {row.declared.slope:.3g}"
-        yield finding(Severity.NOTE, "slope-raised", message)
+        yield finding(Severity.NOTE, ErrorCode.SLOPE_RAISED, message)
     inner = [rows[c] for c in row.children]
     if not row.declared.finite and all(r.declared.finite for r in inner):
         yield _endless(row, finding)
@@ -280,9 +282,9 @@ def _proofs(
             continue
         note = proof_note(row.node, row.declared, params, time)
         if note is not None:
-            severity = Severity.ERROR if note.code == "slope-refuted" else Severity.NOTE
-            place = Diagnostic(note.message, row.node.place, note.hint)
-            yield CheckFinding(severity, note.code, i, place)
+            severity = Severity.ERROR if note.code is ErrorCode.SLOPE_REFUTED else Severity.NOTE
+            told = Diagnostic(note.code, note.message, row.node.place, note.hint)
+            yield CheckFinding(severity, i, told)
 
 
 def _violations(row: ShapeReport, measured: Measured, finding: Any) -> Iterator[CheckFinding]:
@@ -291,7 +293,7 @@ def _violations(row: ShapeReport, measured: Measured, finding: Any) -> Iterator[
     if measured.undefined_at is not None:
         message = f"'{name}' is not a number at {shown_point(measured.undefined_at)}"
         yield finding(
-            Severity.ERROR, "undefined", message, "look for a division by 0, a root below 0"
+            Severity.ERROR, ErrorCode.UNDEFINED, message, "look for a division by 0, a root below 0"
         )
     if _exceeds(measured.slope, row.declared.slope):
         message = f"'{name}' declares the slope {row.declared.slope:.4g}, but its value changes by "
@@ -301,7 +303,7 @@ def _violations(row: ShapeReport, measured: Measured, finding: Any) -> Iterator[
             p, q = map(shown_point, measured.change_between)
             message += f"{measured.largest_change:.4g} per unit from {p} to {q}"
         hint = f"slope={_rounded_up(measured.slope)}" if own else None
-        yield finding(severity, "slope-exceeded", message, hint)
+        yield finding(severity, ErrorCode.SLOPE_EXCEEDED, message, hint)
     elif measured.steepest_around_at is not None and _exceeds(
         measured.steepest_around, row.declared.slope
     ):
@@ -313,15 +315,15 @@ def _violations(row: ShapeReport, measured: Measured, finding: Any) -> Iterator[
         hint = f"slope={_rounded_up(measured.steepest_around)} if rays come through there"
         # The author's slope may be about the declared bounds only; the library's is everywhere.
         around = Severity.WARNING if own else severity
-        yield finding(around, "slope-outside-box", message, hint if own else None)
+        yield finding(around, ErrorCode.SLOPE_OUTSIDE_BOX, message, hint if own else None)
     if measured.outside_box is not None:
         message = f"'{name}' reaches outside its box, to {shown_point(measured.outside_box)}"
         hint = "bounds=(low, high) hold all of it" if own else None
-        yield finding(Severity.ERROR, "outside-box", message, hint)
+        yield finding(Severity.ERROR, ErrorCode.OUTSIDE_BOX, message, hint)
     if row.node.claims >= EXACT and measured.on_foot < ON_FOOT:
         share = f"{100.0 * (1.0 - measured.on_foot):.0f} %"
         message = f"'{name}' is declared exact, but {share} of its values are not the distance"
-        yield finding(Severity.ERROR, "not-exact", message, "exact=False" if own else None)
+        yield finding(Severity.ERROR, ErrorCode.NOT_EXACT, message, "exact=False" if own else None)
 
 
 def _exceeds(measured: float, declared: float) -> bool:
@@ -336,14 +338,14 @@ def _endless(row: ShapeReport, finding: Any) -> CheckFinding:
             "bounds is not known"
         )
         hint = f"growth=1 for '{unknown.name}' if it is at least the distance to its bounds"
-        grown: CheckFinding = finding(Severity.WARNING, "no-growth", message, hint)
+        grown: CheckFinding = finding(Severity.WARNING, ErrorCode.NO_GROWTH, message, hint)
         return grown
     message = f"{described(row.node)} has no finite bounding box, so every ray has to look for it"
     if is_own(row.node):
         hint = "give its corners: bounds=((x, y, z), (x, y, z))"
-        found: CheckFinding = finding(Severity.WARNING, "no-box", message, hint)
+        found: CheckFinding = finding(Severity.WARNING, ErrorCode.NO_BOX, message, hint)
     else:
-        found = finding(Severity.NOTE, "no-box", message)
+        found = finding(Severity.NOTE, ErrorCode.NO_BOX, message)
     return found
 
 
@@ -367,7 +369,7 @@ def _of_operator(row: ShapeReport, inner: Sequence[Node], finding: Any) -> Itera
     if isinstance(rule, Operator) and not rule.local and len(inner) > 1:
         message = f"{rule.name} changes shapes everywhere, not only where they meet"
         yield finding(
-            Severity.WARNING, "blend-everywhere", message, "blend='cubic' keeps far parts"
+            Severity.WARNING, ErrorCode.BLEND_EVERYWHERE, message, "blend='cubic' keeps far parts"
         )
     lost = [c for c in Guarantee if c not in row.node.claims and all(c in n.claims for n in inner)]
     # If the slope is at most 1, the value never exceeds the distance.
@@ -378,7 +380,7 @@ def _of_operator(row: ShapeReport, inner: Sequence[Node], finding: Any) -> Itera
         words = {Guarantee.LOWER_BOUND: "a lower bound"}
         lost_names = ", ".join(words.get(c, c.value) for c in lost)
         message = f"{described(row.node)} is no longer {lost_names}"
-        yield finding(Severity.NOTE, "claim-lost", message)
+        yield finding(Severity.NOTE, ErrorCode.CLAIM_LOST, message)
 
 
 # Text of messages

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from distal.diagnostics import CompileError
+from distal.error_codes import ErrorCode
 from distal.fields.combine.joins import UNION
 from distal.ir.build import add, compare, field, integer, number, select
 from distal.ir.nodes import Call, CompareOp, Expr, FunctionRef, If, Return
@@ -50,6 +51,7 @@ def bodies_of(root: Node, material: Any, *, apart: bool) -> list[Node]:
     priorities = {priority for priority, _ in members}
     if len(priorities) > MOST:
         raise CompileError.at(
+            ErrorCode.OBJECT,
             f"the shapes have {len(priorities)} different priorities; {MOST} are possible",
             root.place,
             "give the same priority to shapes that do not overlap",
@@ -124,6 +126,7 @@ def _check(member: Node, priority: int) -> None:
             stack.extend(node.children)
         elif node.material.priority != priority:
             raise CompileError.at(
+                ErrorCode.OBJECT,
                 f"'{node.name}' has priority {node.material.priority} in a shape of priority "
                 f"{priority}: {member.name} is one body",
                 node.place,

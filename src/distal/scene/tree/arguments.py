@@ -16,6 +16,7 @@ from typing import Any, Final, NoReturn, TypeAlias
 from weakref import WeakKeyDictionary
 
 from distal.diagnostics import CompileError, Span
+from distal.error_codes import ErrorCode
 from distal.fields.guarantees import BOUNDS_OF_CHILDREN, FIXED_CHOICES, Limit, Requirement
 from distal.frontend.problems import did_you_mean
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
@@ -129,7 +130,9 @@ def slots_of(func: Func) -> tuple[FunctionParameter, ...]:
             except UnboundVariableError:
                 type = None
             except AnnotationError as error:
-                raise CompileError.at(error.message, slot.span, error.hint) from None
+                raise CompileError.at(
+                    ErrorCode.OBJECT, error.message, slot.span, error.hint
+                ) from None
             made.append(FunctionParameter(slot.name, type, slot.default))
         found = _slots[func] = tuple(made)
     return found

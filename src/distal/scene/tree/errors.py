@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import NoReturn
 
 from distal.diagnostics import CompileError, Diagnostic, Span
+from distal.error_codes import ErrorCode
 from distal.lang.source_places import author_place
 
 
@@ -32,7 +33,7 @@ def refuse(message: str, hint: str | None = None, place: Span | None = None) -> 
     Raises:
         SceneValueError: Always.
     """
-    raise SceneValueError([Diagnostic(message, place or author_place(), hint)])
+    raise SceneValueError([Diagnostic(ErrorCode.OBJECT, message, place or author_place(), hint)])
 
 
 def refuse_kind(message: str, hint: str | None = None, place: Span | None = None) -> NoReturn:
@@ -41,4 +42,4 @@ def refuse_kind(message: str, hint: str | None = None, place: Span | None = None
     Raises:
         SceneTypeError: Always.
     """
-    raise SceneTypeError([Diagnostic(message, place or author_place(), hint)])
+    raise SceneTypeError([Diagnostic(ErrorCode.OBJECT, message, place or author_place(), hint)])

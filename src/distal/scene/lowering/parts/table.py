@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 from distal.diagnostics import CompileError
+from distal.error_codes import ErrorCode
 from distal.fields.combine.joins import UNION
 from distal.fields.guarantees import EXACT_OUTSIDE, Operator
 from distal.frontend import Assembly
@@ -168,6 +169,7 @@ def rolled_for(assembly: Assembly, root: Node, *, exact: bool = False) -> Node:
         return rolled(root).node if has_table(assembly, root) else root
     if root.parts > MOST_WITHOUT:
         raise CompileError.at(
+            ErrorCode.TARGET,
             f"{root.parts:,} parts of '{root.name}' need a table, and this target has no buffers",
             root.place,
             f"take a target with buffers; {MOST_WITHOUT:,} parts are possible without",

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 from distal.diagnostics import CompileError
+from distal.error_codes import ErrorCode
 from distal.fields.guarantees import Operator
 from distal.lang.lazy_module import LazyModule
 from distal.lang.resources import Buffer
@@ -166,6 +167,7 @@ def celled_for(table_from: int | None, root: Node, *, exact: bool) -> Node:
     for union, count, reason in found.linear:
         if count > MOST_WITHOUT:
             raise CompileError.at(
+                ErrorCode.TARGET,
                 f"{count:,} shapes of a smooth union need lists for cells, but {reason}",
                 union.place,
                 f"without lists, {MOST_WITHOUT:,} shapes are possible",
