@@ -231,6 +231,11 @@ class LoadError(Exception):
         self.reason = message if reason is None else reason
         self.hint = hint
 
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """The mistake, as that of a ``CompileError``."""
+        return (Diagnostic(ErrorCode.FILE, self.reason, self.span, self.hint),)
+
 
 class DeviceError(Exception):
     """A device is missing, was lost or cannot do the work; the message says how to fix it."""

@@ -202,10 +202,26 @@ def test_a_mistake_is_at_its_line(child: Child) -> None:
     (own,) = child.ask("look", "raise NameError('of the author')\n")["mistakes"]
     assert own["message"] == "NameError: of the author"
     line = SPHERE.replace("Box(0.5)", "Boxx(0.5)").splitlines()[5]
-    assert line[mistake["column"] : mistake["end_column"]] == "Boxx"
+    assert line[mistake["column"] - 1 : mistake["end_column"] - 1] == "Boxx"
+    assert (mistake["excerpt"], mistake["code"], mistake["labels"]) == (line, "file", [])
     text = distal.gallery()["melting"].read_text().replace("blend)", "blend + vec3(1.0))")
     (mistake,) = child.ask("look", text)["mistakes"]
     assert text.splitlines()[mistake["line"] - 1].strip().startswith("return smooth_union")
+
+
+def test_a_mistake_has_the_labels_that_explain_it(child: Child) -> None:
+    text = SPHERE.replace("Box(0.5)", 'Box(slider("size", 2.0, low=0.0, high=4.0))')
+    (mistake,) = child.ask("look", text)["mistakes"]
+    assert (mistake["severity"], mistake["code"]) == ("error", "parameter-name")
+    assert mistake["excerpt"][mistake["column"] - 1 :].startswith('slider("size", 2.0')
+    columns = {"column": 8, "end_column": 46}
+    assert mistake["labels"] == [
+        {
+            "text": "the first is here",
+            **{"file": "scene.py", "line": 5, "end_line": 5, **columns},
+            "excerpt": SPHERE.splitlines()[4],
+        }
+    ]
 
 
 def test_an_unknown_view_and_a_wrong_message_are_answered(child: Child) -> None:

@@ -317,7 +317,8 @@ def test_plain_values_are_json_without_infinity():
     assert text == "Shape.from_function(wobbly, slope=1.2, depth=0.05)"
     assert made["version"] == 1  # the schema of docs/guide/checking.md
     assert set(made["findings"][0]) == {
-        *("severity", "code", "shape", "message", "hint", "place"),
+        *("severity", "code", "shape", "message", "hint", "place", "file", "line", "column"),
+        *("end_line", "end_column", "excerpt", "labels"),
     }
 
 

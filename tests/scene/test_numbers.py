@@ -26,10 +26,10 @@ from distal.lang import (
     vec3,
 )
 from distal.lang.expressions import Expression, time
+from distal.lang.source_places import author_place
 from distal.scene.tree.arguments import Number, arguments
 from distal.scene.tree.conversion import Asked, number, plain_number
 from distal.scene.tree.errors import SceneTypeError, SceneValueError
-from distal.lang.source_places import author_place
 
 ONE = vec3(1.0)
 

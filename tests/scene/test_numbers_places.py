@@ -8,8 +8,8 @@ from functools import cached_property
 import pytest
 
 from distal.diagnostics import CompileError, Span
-from distal.scene.tree.errors import refuse, refuse_kind
 from distal.lang.source_places import author_place
+from distal.scene.tree.errors import refuse, refuse_kind
 
 
 def place_in(source: str) -> Span:

@@ -7,6 +7,7 @@ and exit code. Does not depend on any command.
 from __future__ import annotations
 
 import functools
+import json
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -97,7 +98,10 @@ def prepare_for_arrays() -> None:
 
 
 def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
-    """Wrap a command: print an author's mistake and set the exit code; other errors propagate."""
+    """Wrap a command: print an author's mistake and set the exit code; other errors propagate.
+
+    With ``--json``, the mistakes are also answered, as ``docs/reference/errors.md`` says.
+    """
 
     @functools.wraps(command)
     def run(*args: Arguments.args, **kwargs: Arguments.kwargs) -> None:
@@ -108,10 +112,13 @@ def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
         except UsageError as error:
             say(f"error: {error}")
             raise typer.Exit(2) from None
-        except CompileError as error:
-            say(error)
+        except (CompileError, LoadError) as error:
+            say(error if isinstance(error, CompileError) else f"error: {error}")
+            if kwargs.get("as_json"):
+                errors = [diagnostic.to_json() for diagnostic in error.diagnostics]
+                answer(json.dumps({"version": 1, "errors": errors}))
             raise typer.Exit(1) from None
-        except (LoadError, SaveError, DeviceError) as error:
+        except (SaveError, DeviceError) as error:
             say(f"error: {error}")
             raise typer.Exit(1) from None
         except KeyboardInterrupt:

@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import Any, Final, Literal, cast
 
-from distal.diagnostics import CompileError, Diagnostic, LoadError
+from distal.diagnostics import CompileError, Diagnostic, Label, LoadError, Span
 from distal.editor.edits import applied
 from distal.editor.literals import find_literals, literal_at
 from distal.editor.messages import (
@@ -20,6 +20,7 @@ from distal.editor.messages import (
     HoldRequest,
     LookRequest,
     Mistake,
+    MistakeLabel,
     NumbersFound,
     Printed,
     Progress,
@@ -28,10 +29,9 @@ from distal.editor.messages import (
     SourceLiteral,
     SourceRequest,
 )
-from distal.editor.places import column, shapes_of
+from distal.editor.places import shapes_of
 from distal.editor.programs import KeptPrograms, key_of, numbers_of
 from distal.editor.scene_folder import check_name, encoded_text
-from distal.error_codes import ErrorCode
 from distal.export.page_options import PageOptions
 from distal.export.page_programs import framed, lowered
 from distal.export.payload import Facts, parameter_entry, payload
@@ -298,12 +298,8 @@ def mistakes_of(error: Exception, files: Mapping[str, str]) -> tuple[Mistake, ..
         error: A ``CompileError``, a ``LoadError`` or a ``DeviceError``.
         files: The author's files; places elsewhere are left out.
     """
-    if isinstance(error, CompileError):
+    if isinstance(error, CompileError | LoadError):
         return tuple(mistake_at(d, files) for d in error.diagnostics)
-    if isinstance(error, LoadError):
-        return (
-            mistake_at(Diagnostic(ErrorCode.FILE, error.reason, error.span, error.hint), files),
-        )
     return (Mistake(severity="error", message=str(error)),)
 
 
@@ -313,17 +309,14 @@ def mistake_at(
     severity: Literal["error", "warning", "note"] = "error",
 ) -> Mistake:
     """Return a diagnostic as a mistake; a place outside of the author's files is left out."""
-    span = found.span
-    if span is None or PurePath(span.file).name not in files:
-        return Mistake(severity=severity, message=found.message, hint=found.hint)
-    start, end = column(span, span.col), column(span, span.end_col)
-    return Mistake(
-        severity=severity,
-        message=found.message,
-        file=PurePath(span.file).name,
-        line=span.line,
-        column=start,
-        end_line=span.line,
-        end_column=max(end, start + 1),
-        hint=found.hint,
-    )
+    labels = [(_own(label.span, files), label.text) for label in found.labels]
+    kept = tuple(Label(span, text) for span, text in labels if span is not None)
+    values = replace(found, span=_own(found.span, files), labels=kept).to_json()
+    shown = tuple(MistakeLabel(**label) for label in values.pop("labels"))
+    return Mistake(severity=severity, **values, labels=shown)
+
+
+def _own(span: Span | None, files: Mapping[str, str]) -> Span | None:
+    """Return a place in the author's files, without folders; None for a place elsewhere."""
+    name = None if span is None else PurePath(span.file).name
+    return None if span is None or name not in files else replace(span, file=name)

@@ -109,6 +109,24 @@ def test_check_for_editors_is_one_line_of_json(run):
     assert json.loads(run("check", "twisted.py", "--json").stdout)["holds"]
 
 
+@pytest.mark.parametrize("command", ["check", "probe", "measure"])
+def test_an_error_for_editors_is_json_too(run, command):
+    Path("wrong.py").write_text("from distal import Sphere\n\nball = Spher(1.0)\n")
+    words = ("--at", "1,1") if command == "probe" else ()
+    result = run(command, "wrong.py", "--json", *words)
+    assert result.exit_code == 1
+    (error,) = json.loads(result.stdout)["errors"]
+    assert error == {
+        "code": "file",
+        "message": "NameError: name 'Spher' is not defined",
+        "hint": "did you mean 'Sphere'?",
+        **{"file": "wrong.py", "line": 3, "column": 8, "end_line": 3, "end_column": 13},
+        "excerpt": "ball = Spher(1.0)",
+        "labels": [],
+    }
+    assert "error: NameError" in result.stderr and not run(command, "wrong.py", *words).stdout
+
+
 def test_probe_tells_what_a_pixel_saw(run):
     result = run("probe", "floorless.py", "--at", "32,24", "--size", "64x48")
     assert result.exit_code == 0

@@ -76,16 +76,34 @@ export interface ShapePlace {
   material: string;
 }
 
-/** An error or warning; without a line where the place is not known. */
-export interface Mistake {
-  severity: "error" | "warning" | "note";
-  message: string;
+/** Another place that a mistake is about, and what is there; fields as those of `Mistake`. */
+export interface MistakeLabel {
+  text: string;
   file: string | null;
   line: number | null;
-  column: number;
-  end_line: number;
-  end_column: number;
+  column: number | null;
+  end_line: number | null;
+  end_column: number | null;
+  excerpt: string | null;
+}
+
+/** An error, warning or note: the JSON of a `Diagnostic`, and how severe it is. */
+export interface Mistake {
+  severity: "error" | "warning" | "note";
+  /** The family of messages that it belongs to. */
+  code: string;
+  message: string;
   hint: string | null;
+  file: string | null;
+  /** Counted from 1, as columns are, in characters; null where the place is not known. */
+  line: number | null;
+  column: number | null;
+  end_line: number | null;
+  /** One past the last column on the first line. */
+  end_column: number | null;
+  /** The whole first line. */
+  excerpt: string | null;
+  labels: MistakeLabel[];
 }
 
 /** A format of `render`. */

@@ -31,7 +31,7 @@ import {
   type KeyBinding,
 } from "@codemirror/view";
 import { tags } from "@lezer/highlight";
-import type { Edit, Mistake, SourceLiteral } from "../generated/messages";
+import type { Edit, Mistake, MistakeLabel, SourceLiteral } from "../generated/messages";
 import { costs, showFigures, type Figure } from "./costs";
 import { literals, setLiterals, type Turning } from "./literals";
 import { names } from "./names";
@@ -178,18 +178,15 @@ export class Editor {
     const { state } = this.view;
     const own = mistakes.filter(({ file, line }) => file === this.#name && line !== null);
     const found = own.map((mistake): Diagnostic => {
-      const { message, hint, severity } = mistake;
-      const at = (line: number, column: number) => {
-        const { from, to } = state.doc.line(Math.min(Math.max(line, 1), state.doc.lines));
-        return Math.min(from + column, to);
-      };
-      const from = at(mistake.line!, mistake.column);
-      const to = Math.max(at(mistake.end_line || mistake.line!, mistake.end_column), from);
+      const { message, hint, severity, line, labels } = mistake;
+      const { from, to } = state.doc.line(Math.min(Math.max(line!, 1), state.doc.lines));
+      const start = offsetIn(mistake, mistake.column);
+      const end = Math.max(offsetIn(mistake, mistake.end_column), start + 1);
       return {
-        from,
-        to,
+        from: Math.min(from + start, to),
+        to: Math.min(from + end, to),
         severity: severity === "note" ? "info" : severity,
-        message: hint ? `${message}\nHint: ${hint}` : message,
+        message: [message, ...labels.map(labelText), ...(hint ? [`Hint: ${hint}`] : [])].join("\n"),
       };
     });
     this.view.dispatch(setDiagnostics(state, found));
@@ -216,6 +213,16 @@ export class Editor {
     });
     if (isFocused) this.view.focus();
   }
+}
+
+/** How far a column of a mistake, in characters from 1, is from the start of its line. */
+export function offsetIn({ excerpt }: Mistake, column: number | null): number {
+  return [...(excerpt ?? "")].slice(0, (column ?? 1) - 1).join("").length;
+}
+
+/** What a label says, and where. */
+export function labelText({ file, line, text }: MistakeLabel): string {
+  return `${file} line ${line}: ${text}`;
 }
 
 /** The smallest change that makes one text of another. */

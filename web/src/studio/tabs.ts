@@ -7,6 +7,7 @@
 import { nextDiagnostic } from "@codemirror/lint";
 import { make } from "../dom";
 import type { Mistake } from "../generated/messages";
+import { labelText, offsetIn } from "./editor";
 import type { Studio } from "./studio";
 
 const TEXT_TAB = "Emitted text";
@@ -119,7 +120,7 @@ export class Tabs {
     if (placed.some(({ file }) => file === editor.name)) {
       editor.view.focus();
       nextDiagnostic(editor.view);
-    } else this.goTo(first.file!, first.line!, first.column, true);
+    } else this.goTo(first.file!, first.line!, offsetIn(first, first.column), true);
   }
 
   showMistakes(mistakes: readonly Mistake[]): void {
@@ -127,13 +128,14 @@ export class Tabs {
     this.#mistakes = mistakes;
     editor.setMistakes(mistakes);
     page.mistakes.replaceChildren(
-      ...mistakes.slice(0, 20).map(({ file, line, column, message, hint, severity }) => {
+      ...mistakes.slice(0, 20).map((mistake) => {
+        const { file, line, column, message, hint, severity, labels } = mistake;
         const place = line === null ? "" : `${file === settings.main ? "" : `${file} `}line ${line}: `;
         const text = make("span", {}, make("b", {}, place), message);
-        const about = hint && make("em", {}, hint);
-        if (line === null || !file) return make("div", { className: severity }, text, about);
-        const button = make("button", { type: "button", className: severity }, text, about);
-        button.onclick = () => this.goTo(file, line, column, true);
+        const about = [...labels.map(labelText), hint].map((said) => said && make("em", {}, said));
+        if (line === null || !file) return make("div", { className: severity }, text, ...about);
+        const button = make("button", { type: "button", className: severity }, text, ...about);
+        button.onclick = () => this.goTo(file, line, offsetIn(mistake, column), true);
         return button;
       }),
     );

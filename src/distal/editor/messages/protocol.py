@@ -11,7 +11,14 @@ from typing import Final
 
 from distal.editor.messages.checking import MessageError, plain, record_of
 from distal.editor.messages.kinds import KINDS, Message
-from distal.editor.messages.records import Change, Edit, Mistake, ShapePlace, SourceLiteral
+from distal.editor.messages.records import (
+    Change,
+    Edit,
+    Mistake,
+    MistakeLabel,
+    ShapePlace,
+    SourceLiteral,
+)
 from distal.editor.messages.requests import AppRequest
 from distal.editor.messages.responses import Answer
 from distal.editor.messages.results import RenderFormat
@@ -58,7 +65,7 @@ def _check_result(answer: Answer) -> None:
 
 def records() -> Iterator[type]:
     """Yield every record that a message is or has, each once: those in a message first."""
-    yield from (Change, Edit, SourceLiteral, ShapePlace, Mistake)
+    yield from (Change, Edit, SourceLiteral, ShapePlace, MistakeLabel, Mistake)
     yield RenderFormat
     yield from (made.result for made in REQUESTS if made.result is not None)
     yield from REQUESTS

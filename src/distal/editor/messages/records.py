@@ -8,6 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal, TypeAlias
 
+from distal.error_codes import ErrorCode
+
 # A parameter's value: a number, a switch, a color or a point.
 Value: TypeAlias = bool | float | tuple[float, ...]
 # What a literal holds; the text is that of a hex color or of a choice's word.
@@ -109,14 +111,37 @@ class ShapePlace:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class MistakeLabel:
+    """Another place that a mistake is about, and what is there; fields as those of ``Mistake``."""
+
+    text: str
+    file: str | None
+    line: int | None
+    column: int | None
+    end_line: int | None
+    end_column: int | None
+    excerpt: str | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Mistake:
-    """An error or warning; without a line where the place is not known."""
+    """An error, warning or note: the JSON of a ``Diagnostic``, and how severe it is.
+
+    Attributes:
+        code: The family of messages that it belongs to.
+        line: Counted from 1, as columns are, in characters; null where the place is not known.
+        end_column: One past the last column on the first line.
+        excerpt: The whole first line.
+    """
 
     severity: Literal["error", "warning", "note"]
+    code: str = ErrorCode.DEVICE.value
     message: str
+    hint: str | None = None
     file: str | None = None
     line: int | None = None
-    column: int = 0
-    end_line: int = 0
-    end_column: int = 0
-    hint: str | None = None
+    column: int | None = None
+    end_line: int | None = None
+    end_column: int | None = None
+    excerpt: str | None = None
+    labels: tuple[MistakeLabel, ...] = ()

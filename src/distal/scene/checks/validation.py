@@ -283,8 +283,8 @@ def _proofs(
         note = proof_note(row.node, row.declared, params, time)
         if note is not None:
             severity = Severity.ERROR if note.code is ErrorCode.SLOPE_REFUTED else Severity.NOTE
-            told = Diagnostic(note.code, note.message, row.node.place, note.hint)
-            yield CheckFinding(severity, i, told)
+            diagnostic = Diagnostic(note.code, note.message, row.node.place, note.hint)
+            yield CheckFinding(severity, i, diagnostic)
 
 
 def _violations(row: ShapeReport, measured: Measured, finding: Any) -> Iterator[CheckFinding]:
