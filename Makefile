@@ -1,9 +1,14 @@
 # make picture   sets up what it needs and renders the raymarcher to picture.png
-# make test      sets up what it needs and runs everything that CI runs
-# make test-all  the same, with each case of the tests of which make test runs a sample
+# make test      sets up what it needs and runs what CI runs: static checks, and the tests that together
+#                run every function of the source
+# make test-all  the same with all tests; make test-for REV=HEAD~3 runs the tests that the change since
+#                a revision can reach (the uncommitted change when not given)
+# make record    records anew which functions each test runs, and chooses the tests of make test
 # make bench     measures; make sweep runs thousands of random programs and draws every example
 #                on every target; make clean undoes set-up
 # make sweep-fields   holds every shape and operator against its claims at many more numbers
+# make sweep-threads  compiles and renders in 200 processes of four threads whose interpreter switches
+#                all the time (PROCESSES=1000 for more)
 # make sweep-segments  follows 1e7 segments of rays and counts those on the wrong side of a surface
 # make sweep-meshes  meshes every solid, the printable examples and 100 random fields, and names faults;
 #                    saves the enclosure from its page at 128 cells
@@ -27,9 +32,11 @@ PYTHON ?= $(shell for p in python3 python3.11 python3.12 python3.13 python3.14 p
 	"$$p" -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && echo "$$p" && break; done)
 # One more than two processors: a worker waits for browsers and other processes half of its time.
 WORKERS ?= 3
+REV ?= HEAD
 SWEEP ?= 5000
 SAMPLES ?= 40
 SEGMENTS ?= 1e7
+PROCESSES ?= 200
 TOLERANCE ?= 0.01
 MODULES ?= distal/fields distal/render distal/passes/fold* distal/scene
 COUNT ?= 100
@@ -40,7 +47,7 @@ SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers g
 # A worker begins with a part of the files, and so compiles few programs that another compiles too.
 UNITS = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -rs
 
-.PHONY: picture test test-all lint style units system bench site sweep sweep-fields sweep-segments sweep-meshes parity mutate versions clean
+.PHONY: picture test test-all test-for record lint style units system bench site sweep sweep-fields sweep-threads sweep-segments sweep-meshes parity mutate versions clean
 .NOTPARALLEL:
 
 picture: $(VENV)/.setup-run
@@ -49,15 +56,23 @@ picture: $(VENV)/.setup-run
 
 # The type checker needs one processor for most of a minute: it runs beside the tests. These are not
 # another make, which `make -n` would run.
-test: system style web/node_modules/.ready
-	@log=$$(mktemp); $(BIN)/mypy >"$$log" 2>&1 & types=$$!; \
+CHECKED = log=$$(mktemp); $(BIN)/mypy >"$$log" 2>&1 & types=$$!; \
 	$(UNITS); tests=$$?; \
 	wait $$types; types=$$?; echo "$(BIN)/mypy"; cat "$$log"; rm -f "$$log"; \
 	exit $$((tests | types))
 
-# Which tests are sampled and why: docs/decisions/0060-a-sample-of-cases.md.
-test-all:
-	DISTAL_ALL_CASES=1 $(MAKE) test
+# How they are chosen and why: docs/decisions/0091-the-record.md.
+test: system style web/node_modules/.ready
+	@export DISTAL_TESTS=chosen; $(CHECKED)
+
+test-all: system style web/node_modules/.ready
+	@$(CHECKED)
+
+test-for: system style web/node_modules/.ready
+	@$(BIN)/python -m tools.record changed $(REV) --workers $(WORKERS)
+
+record: system $(VENV)/.setup-test web/node_modules/.ready
+	@$(BIN)/python -m tools.record all --workers $(WORKERS)
 
 lint: style
 	$(BIN)/mypy
@@ -75,6 +90,7 @@ bench: $(VENV)/.setup-test
 	@for f in benchmarks/bench_*.py; do echo "== $$f"; $(BIN)/python "$$f" || exit 1; done
 
 sweep: $(VENV)/.setup-test
+	DISTAL_ALL_CASES=1 $(UNITS)
 	DISTAL_RANDOM_PROGRAMS=$(SWEEP) $(BIN)/python -m pytest -n $(WORKERS) -rs tests/random_programs
 	DISTAL_RANDOM_PROGRAMS=$(SWEEP) $(BIN)/python -m pytest -n $(WORKERS) -rs \
 		tests/parts tests/smooth tests/tape tests/unit/backends
@@ -84,6 +100,10 @@ sweep: $(VENV)/.setup-test
 
 sweep-fields: $(VENV)/.setup-test
 	DISTAL_FIELD_SEED=$(or $(SEED),day) DISTAL_FIELD_SAMPLES=$(SAMPLES) $(BIN)/python -m pytest -n $(WORKERS) -rs tests/fields
+
+# Processes of four nervous threads, and as many of the same scenes made alone.
+sweep-threads: $(VENV)/.setup-test
+	DISTAL_THREAD_PROCESSES=$(PROCESSES) $(BIN)/python -m pytest -q tests/unit/executor/test_threads.py
 
 sweep-segments: $(VENV)/.setup-test
 	DISTAL_SEGMENTS=$(SEGMENTS) $(BIN)/python -m pytest -s tests/paths/test_segment_leaks.py

@@ -14,8 +14,14 @@ import threading
 from types import CodeType, FrameType
 from typing import Any
 
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
+
 FOLDER, TEST, SOURCE = "DISTAL_RECORD", "DISTAL_RECORD_TEST", "DISTAL_RECORD_SOURCE"
 TOOL = 4
+HIGH = 500
 ASKED = "Compilation.signature"
 
 
@@ -53,7 +59,10 @@ class Monitor:
     def write_to(self, folder: str) -> None:
         """Write each function to a file of this child process at once, for the current test."""
         name = os.path.join(folder, f"child-{os.getpid()}-{os.urandom(3).hex()}")
-        self._file = os.open(name, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+        low = os.open(name, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+        self._file = low if fcntl is None else fcntl.fcntl(low, fcntl.F_DUPFD_CLOEXEC, HIGH)
+        if self._file != low:  # programs use the lowest numbers for what they are given
+            os.close(low)
         os.write(self._file, f"test {os.environ.get(TEST, '')}\n".encode())
 
     def names(self) -> set[str]:

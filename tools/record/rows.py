@@ -123,7 +123,7 @@ def raw_rows(folder: Path) -> dict[str, tuple[float, set[str]]]:
         test, *names = path.read_text("utf-8").splitlines()
         owner = test.partition(" ")[2]
         if owner in rows:
-            rows[owner][1].update(n for n in names if not n.endswith(":<module>"))
+            rows[owner][1].update(n for n in names if ".py:" in n and not n.endswith(":<module>"))
     return rows
 
 
