@@ -69,7 +69,7 @@ def _function(program: LaneProgram, name: str, lanes: Lanes, count: int, *, leav
                 writer.line(f"store {vector} {found}, ptr {at}, align {align}")
         arithmetic.leave()
     params = "ptr %target, ptr %x, ptr %y, i64 %number"
-    return f"define internal void @{name}({params}) #0 {{\n{writer.text()}\n  ret void\n}}"
+    return f"define internal void @{name}({params}) #0 {{\n{arithmetic.text()}\n  ret void\n}}"
 
 
 def _chunks(writer: LlvmWriter, base: str, start: int, lanes: Lanes) -> list[str]:

@@ -10,13 +10,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from distal.backends.llvm.fusion import fused
 from distal.backends.llvm.lanes import Lanes, Leaf, Leaves
 from distal.backends.llvm.writer import LlvmWriter
 from distal.ir.nodes import BinaryOp, CompareOp
 from distal.ir.types import Kind
-
-# The allowed freedoms: to fuse a product with a sum, and to ignore the sign of zero.
-FLAGS = "nsz contract"
 
 _FLOAT_COMPARE = {
     CompareOp.EQ: "oeq",
@@ -51,6 +49,8 @@ class LaneArithmetic:
         self.declarations = declarations
         self._scopes: list[dict[object, Any]] = [{}]
         self._typed: dict[tuple[object, ...], str] = {}  # templates with types
+        self._block = ""
+        self._values: dict[str, str] = {}  # of this block, by instruction
 
     def enter(self) -> None:
         """Begin code that may not run; values of ``once`` in it are not used after ``leave``."""
@@ -67,6 +67,12 @@ class LaneArithmetic:
                 return scope[key]
         made = self._scopes[-1][key] = make()
         return made
+
+    def text(self) -> str:
+        """Return the body of the function, with products fused if the processor can."""
+        if self.lanes.has_fma:
+            self.writer.lines = fused(self.writer.lines, self.declarations)
+        return self.writer.text()
 
     # Leaves
 
@@ -108,12 +114,24 @@ class LaneArithmetic:
         typed = self._typed.get(key)
         if typed is None:
             typed = self._typed[key] = self._with_types(result, template, operands, uniform)
-        write = self.writer.value
+        write = self._value
         if uniform:
             return Leaf(result, (write(typed.format(*[o.names[0] for o in operands])),), True)
         columns = [self.vectors(o) for o in operands]
         rows = zip(*columns, strict=True)
         return Leaf(result, tuple([write(typed.format(*row)) for row in rows]), False)
+
+    def _value(self, instruction: str) -> str:
+        """Write an instruction, unless this block has the same one; return its result's name.
+
+        LLVM would find them, but the fusion of products depends on how often each is used.
+        """
+        if self._block != self.writer.block:
+            self._block, self._values = self.writer.block, {}
+        name = self._values.get(instruction)
+        if name is None:
+            name = self._values[instruction] = self.writer.value(instruction)
+        return name
 
     def _with_types(
         self, result: Kind, template: str, operands: Sequence[Leaf], uniform: bool
@@ -150,10 +168,7 @@ class LaneArithmetic:
         returned = lanes.type(result, uniform=uniform)
         self.declarations.add(f"declare {returned} @llvm.{name}{suffix}({types}{more})")
         args = ", ".join(f"{{t{i}}} {{{i}}}" for i in range(len(operands)))
-        flags = f" {FLAGS}" if result is Kind.FLOAT and operands[0].kind is Kind.FLOAT else ""
-        return self.apply(
-            result, f"call{flags} {{r}} @llvm.{name}{suffix}({args}{rest})", *operands
-        )
+        return self.apply(result, f"call {{r}} @llvm.{name}{suffix}({args}{rest})", *operands)
 
     # Operations of the language
 
@@ -169,8 +184,7 @@ class LaneArithmetic:
             return yes
         if condition.constant:
             return yes if condition.names[0] == "true" else no
-        flags = f" {FLAGS}" if yes.kind is Kind.FLOAT else ""
-        form = f"select{flags} {{t0}} {{0}}, {{t1}} {{1}}, {{t2}} {{2}}"
+        form = "select {t0} {0}, {t1} {1}, {t2} {2}"
         if condition.uniform and not (yes.uniform and no.uniform):
             # A scalar condition selects whole vectors.
             vector = self.lanes.vector(yes.kind)
@@ -178,9 +192,7 @@ class LaneArithmetic:
             return Leaf(
                 yes.kind,
                 tuple(
-                    self.writer.value(
-                        f"select{flags} i1 {condition.names[0]}, {vector} {a}, {vector} {b}"
-                    )
+                    self.writer.value(f"select i1 {condition.names[0]}, {vector} {a}, {vector} {b}")
                     for a, b in list(pairs)
                 ),
                 False,
@@ -231,8 +243,12 @@ class LaneArithmetic:
                 raise AssertionError(f"{op} of {kind}")
 
     def _float_binary(self, op: BinaryOp, lhs: Leaf, rhs: Leaf) -> Leaf:
+        if op in (BinaryOp.ADD, BinaryOp.SUB) and self.is_zero(rhs):
+            return lhs  # zeros have no sign in the language
+        if op is BinaryOp.ADD and self.is_zero(lhs):
+            return rhs
         if op in _FLOAT_OPS:
-            return self.apply(Kind.FLOAT, f"{_FLOAT_OPS[op]} {FLAGS} {{t0}} {{0}}, {{1}}", lhs, rhs)
+            return self.apply(Kind.FLOAT, f"{_FLOAT_OPS[op]} {{t0}} {{0}}, {{1}}", lhs, rhs)
         quotient = self.divide(lhs, rhs)
         if op is BinaryOp.DIV:
             return quotient
@@ -242,9 +258,13 @@ class LaneArithmetic:
         assert op is BinaryOp.MOD
         return self.binary(BinaryOp.SUB, lhs, self.binary(BinaryOp.MUL, rhs, floored))
 
+    def is_zero(self, leaf: Leaf) -> bool:
+        """Return whether a float is the constant 0."""
+        return leaf.constant and leaf.names[0] == self.lanes.literal(0.0, Kind.FLOAT)
+
     def divide(self, lhs: Leaf, rhs: Leaf) -> Leaf:
         """Return ``lhs / rhs`` of floats, correctly rounded."""
-        return self.apply(Kind.FLOAT, f"fdiv {FLAGS} {{t0}} {{0}}, {{1}}", lhs, rhs)
+        return self.apply(Kind.FLOAT, "fdiv {t0} {0}, {1}", lhs, rhs)
 
     def _floored(self, lhs: Leaf, rhs: Leaf) -> tuple[Leaf, Leaf]:
         """Return ``lhs // rhs`` and ``lhs % rhs`` of ints; x // 0 = x, x % 0 = 0."""
@@ -307,7 +327,7 @@ class LaneArithmetic:
     def negate(self, operand: Leaf) -> Leaf:
         """Return ``-operand``."""
         if operand.kind is Kind.FLOAT:
-            return self.apply(Kind.FLOAT, f"fneg {FLAGS} {{t0}} {{0}}", operand)
+            return self.apply(Kind.FLOAT, "fneg {t0} {0}", operand)
         return self.binary(BinaryOp.SUB, self.constant(0, operand.kind), operand)
 
     def invert(self, operand: Leaf) -> Leaf:

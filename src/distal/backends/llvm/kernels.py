@@ -51,8 +51,8 @@ def kernels(program: LaneProgram) -> bool:
     return frame_apart
 
 
-def _define(program: LaneProgram, name: str, writer: LlvmWriter) -> None:
-    program.define(LlvmFunction("void", f"@{name}", _JOB, writer.text(), exported=True))
+def _define(program: LaneProgram, name: str, arithmetic: LaneArithmetic) -> None:
+    program.define(LlvmFunction("void", f"@{name}", _JOB, arithmetic.text(), exported=True))
 
 
 def _frame(program: LaneProgram) -> None:
@@ -70,10 +70,10 @@ def _frame(program: LaneProgram) -> None:
             _frame_values(program, part, group)
             part.writer.line("ret void")
             name = f"frame_part.{number}"
-            program.define(LlvmFunction("void", f"@{name}", _JOB, part.writer.text()))
+            program.define(LlvmFunction("void", f"@{name}", _JOB, part.text()))
             writer.line(f"call void @{name}(ptr %job)")
     writer.line("ret void")
-    _define(program, FRAME, writer)
+    _define(program, FRAME, arithmetic)
 
 
 def _groups(program: LaneProgram) -> list[list[tuple[str, Expr]]]:
@@ -190,7 +190,7 @@ def _render(program: LaneProgram) -> None:
     columns.end()
     rows.end()
     tiles.end()
-    _define(program, RENDER, writer)
+    _define(program, RENDER, arithmetic)
 
 
 def _pixels(
@@ -318,7 +318,7 @@ def _batch(program: LaneProgram) -> None:
     arithmetic.leave()
     blocks.end()
     tiles.end()
-    _define(program, BATCH, writer)
+    _define(program, BATCH, arithmetic)
 
 
 def _leaf_at(
@@ -366,4 +366,4 @@ def _map_pixels(program: LaneProgram) -> None:
     arithmetic.leave()
     blocks.end()
     tiles.end()
-    _define(program, PIXELS, writer)
+    _define(program, PIXELS, arithmetic)

@@ -57,6 +57,11 @@ class Lanes:
         """Bytes of a scalar in uniforms, frame values, arrays and buffers."""
         return self.precision // 8
 
+    @property
+    def has_fma(self) -> bool:
+        """Whether the processor fuses a product with a sum; others call a slow function for it."""
+        return self.level != "sse4.2"
+
     def one_chunk(self) -> Lanes:
         """Return a copy with one vector per value, to reduce the code of very large functions."""
         return replace(self, chunks=1, block_width=min(self.block_width, self.width))

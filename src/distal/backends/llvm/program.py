@@ -305,7 +305,7 @@ class LaneProgram:
             packed = writer.value(f"insertvalue {returned} {packed}, {type} {name}, {i}")
         writer.line(f"ret {returned} {packed}")
         source = function.source_name
-        self.define(LlvmFunction(returned, symbol, params, writer.text(), comment=source))
+        self.define(LlvmFunction(returned, symbol, params, arithmetic.text(), comment=source))
 
     def run(
         self,
