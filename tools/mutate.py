@@ -6,7 +6,8 @@ Input: globs below ``src``, how many mutations, a seed. Output: a line for each
 mutation, counts for each package, and the survivors that ``tests/mutation/survivors.toml`` does
 not accept, as entries to put there once their reason is known. Fails when there is one, and when
 an entry is stale; names entries whose mutation is killed now. Which tests run what is in the record
-(``make record``).
+(``make record``). With ``--proof`` the tests of ``make test`` run first, and those that it leaves
+out for what they do not kill: how much ``make test`` notices of what any recorded test does.
 """
 
 from __future__ import annotations
@@ -100,6 +101,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=None, help="which ones; drawn when not given")
     parser.add_argument("--seconds", type=float, default=30.0, help="of tests for a mutation")
     parser.add_argument("--minutes", type=float, default=0.0, help="stop drawing after these")
+    parser.add_argument("--proof", action="store_true", help="the tests of make test first")
     parser.add_argument("--map", type=Path, default=None, help="where the record is")
     parser.add_argument("--paths", nargs="*", default=(), help="what tests import besides")
     parser.add_argument("--root", type=Path, default=ROOT, help="another project")
@@ -142,12 +144,21 @@ def _run_all(
     options: argparse.Namespace,
 ) -> list[Outcome]:
     outcomes: list[Outcome] = []
+    missed: list[Outcome] = []
+    chosen_ones = selection.record.chosen
     begin = time.monotonic()
     for number, mutation in enumerate(chosen, 1):
         if options.minutes and time.monotonic() - begin > 60.0 * options.minutes:
             print(f"stopped after {options.minutes:g} minutes")
             break
-        outcome = run(project, mutation, selection.tests(mutation))
+        tests = selection.tests(mutation)
+        first = {n: s for n, s in tests.items() if n in chosen_ones} if options.proof else tests
+        outcome = run(project, mutation, first)
+        if options.proof and outcome.verdict in (SURVIVED, UNTESTED):
+            rest = run(project, mutation, {n: s for n, s in tests.items() if n not in first})
+            if rest.verdict in (KILLED, TIMED_OUT):
+                missed.append(rest)
+            outcome = rest if rest.verdict != UNTESTED else outcome
         outcomes.append(outcome)
         known = " (accepted)" if mutation.key in keys else ""
         print(
@@ -156,6 +167,13 @@ def _run_all(
             f" {mutation.was[:80]} => {mutation.becomes[:80]} [{outcome.by}]",
             flush=True,
         )
+    if options.proof:
+        killed = sum(outcome.verdict in (KILLED, TIMED_OUT) for outcome in outcomes)
+        print(
+            f"\n{killed} of {len(outcomes)} are killed by any test, {len(missed)} not by make test:"
+        )
+        for outcome in missed:
+            print(f"    {outcome.mutation.file}:{outcome.mutation.line} {outcome.by}")
     return outcomes
 
 

@@ -14,9 +14,10 @@ from typing import Final
 from tools.record.rows import Record
 
 LEAST_S: Final = 0.02  # what any test costs
-# Error texts, bad input, declared guarantees; files of which each test is about one.
+CHEAP_S: Final = 0.15  # a test that takes no longer is in every choice
+# Error texts, bad input, declared guarantees: of these, longer ones too.
 PINNED: Final = ("tests/errors", "tests/meta", "tests/fields")
-LONGEST_PIN_S: Final = 1.0
+LONGEST_PIN_S: Final = 0.5
 
 
 class Cover:
@@ -110,9 +111,9 @@ def chosen(record: Record, times: int, seconds: float) -> set[str]:
 
 
 def pinned(record: Record) -> set[str]:
-    """Return the tests that are chosen in any case: texts of errors, bad input, guarantees."""
+    """Return the tests that are chosen in any case: the cheap ones, error texts, guarantees."""
     return {
         name
         for name, row in record.rows.items()
-        if name.startswith(PINNED) and row.seconds <= LONGEST_PIN_S
+        if row.seconds <= (LONGEST_PIN_S if name.startswith(PINNED) else CHEAP_S)
     }
