@@ -318,5 +318,6 @@ def mistake_at(
 
 def _own(span: Span | None, files: Mapping[str, str]) -> Span | None:
     """Return a place in the author's files, without folders; None for a place elsewhere."""
-    name = None if span is None else PurePath(span.file).name
-    return None if span is None or name not in files else replace(span, file=name)
+    if span is None or PurePath(span.file).name not in files:
+        return None
+    return replace(span, file=PurePath(span.file).name)

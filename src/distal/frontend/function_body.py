@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from distal.diagnostics import Diagnostic, Label, Span
 from distal.error_codes import ErrorCode
 from distal.frontend.name_lookup import NameLookup
-from distal.frontend.problems import FollowupError, SceneError
+from distal.frontend.problems import LOWERING_ERRORS, FollowupError, SceneError
 from distal.frontend.scopes import ScopeAnalysis
 from distal.frontend.source import Node, SourceMap
 from distal.frontend.values import Closure, Static, Value
@@ -166,27 +166,26 @@ class FunctionBody:
         if isinstance(error, SceneError):
             self.report(error.diagnostic)
 
-    @contextmanager
-    def checking(self, rest: Iterator[Item], check: Callable[[Item], object]) -> Iterator[None]:
-        """After an error in the block, check what is left, so that its errors are recorded too.
+    def followup(
+        self,
+        error: SceneError | FollowupError,
+        rest: Iterable[Item],
+        check: Callable[[Item], object],
+    ) -> FollowupError:
+        """Record an error, and the errors of what is left of a statement; return what to raise.
 
         Args:
-            rest: What the block takes one by one.
+            error: The error.
+            rest: What is left.
             check: Raises the error of one of them.
-
-        Raises:
-            FollowupError: There was an error.
         """
-        try:
-            yield
-        except (SceneError, FollowupError) as error:
-            self.record(error)
-            for item in rest:
-                try:
-                    check(item)
-                except (SceneError, FollowupError) as another:
-                    self.record(another)
-            raise FollowupError from None
+        self.record(error)
+        for item in rest:
+            try:
+                check(item)
+            except LOWERING_ERRORS as another:
+                self.record(another)
+        return FollowupError()
 
     def each(self, function: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
         """Return the function's value for each item, and record the errors of all items.
@@ -195,9 +194,10 @@ class FunctionBody:
             FollowupError: There was an error.
         """
         rest = iter(items)
-        with self.checking(rest, function):
-            values = [function(item) for item in rest]
-        return values
+        try:
+            return [function(item) for item in rest]
+        except LOWERING_ERRORS as error:
+            raise self.followup(error, rest, function) from None
 
     def labels_of_call(self, node: Node, types: Mapping[str, Type]) -> tuple[Label, ...]:
         """Return the labels of errors in a called function.

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+from typing import Final
 
 from distal.diagnostics import Diagnostic, Label, Span
 from distal.error_codes import ErrorCode
@@ -35,6 +36,9 @@ class SceneError(Exception):
 
 class FollowupError(Exception):
     """The consequence of an error that was reported already."""
+
+
+LOWERING_ERRORS: Final = (SceneError, FollowupError)
 
 
 def must_be(what: str, wanted: object, *types: object) -> str:

@@ -17,14 +17,13 @@ from dataclasses import dataclass, field
 from types import CodeType, FrameType
 from typing import Final, TypeAlias
 
-import distal
 from distal.diagnostics import Span
 from distal.session import SESSION
 
 # First and last line, first and last column in bytes of UTF-8; None if Python did not record it.
 _Position: TypeAlias = tuple[int | None, int | None, int | None, int | None]
 
-_PACKAGE: Final = os.path.dirname(os.path.abspath(distal.__file__)) + os.sep
+_PACKAGE: Final = os.path.dirname(os.path.dirname(os.path.abspath(__file__))) + os.sep
 _GALLERY: Final = os.path.join(_PACKAGE, "gallery") + os.sep
 # A cached property is called by the standard library: its caller is meant.
 _CACHING: Final = functools.cached_property.__get__.__code__.co_filename

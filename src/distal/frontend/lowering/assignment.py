@@ -9,7 +9,7 @@ from distal.error_codes import ErrorCode
 from distal.frontend.function_body import FunctionBody, Variable
 from distal.frontend.lowering.expressions import element, member
 from distal.frontend.lowering.lowered_nodes import UNPACKED, parts_of
-from distal.frontend.problems import FollowupError, SceneError, must_be
+from distal.frontend.problems import LOWERING_ERRORS, FollowupError, SceneError, must_be
 from distal.frontend.source import Node
 from distal.frontend.types.coercion import (
     coerce,
@@ -266,17 +266,16 @@ def unpacked_items(
 
 def augment(body: FunctionBody, stmt: ast.AugAssign) -> None:
     """Lower ``target op= value``."""
-    rest = iter((stmt.value,))
-    if isinstance(stmt.target, ast.Name):
-        variable = local(body, stmt.target)
-        with body.checking(rest, body.expression):
-            old = body.read(variable, stmt.target)
-            value = binary(body, stmt.op, old, body.expression(next(rest)), stmt)
-        if isinstance(old, Static | Closure):
-            raise body.problem(ErrorCode.ASSIGNMENT, f"'{stmt.target.id}' does not change", stmt)
-        _assign_name(body, stmt.target, value, stmt)
-        return
-    with body.checking(rest, body.expression):
-        place = lvalue(body, stmt.target)
-        value = binary(body, stmt.op, place, body.expression(next(rest)), stmt)
-    _assign_part(body, place, stmt.target, value, stmt)
+    name = stmt.target if isinstance(stmt.target, ast.Name) else None
+    try:
+        old = lvalue(body, stmt.target) if name is None else body.read(local(body, name), name)
+    except LOWERING_ERRORS as error:
+        raise body.followup(error, (stmt.value,), body.expression) from None
+    value = binary(body, stmt.op, old, body.expression(stmt.value), stmt)
+    if isinstance(old, Whole | SequenceValue | Static | Closure):
+        message = f"'{ast.unparse(stmt.target)}' does not change"
+        raise body.problem(ErrorCode.ASSIGNMENT, message, stmt)
+    if name is not None:
+        _assign_name(body, name, value, stmt)
+    else:
+        _assign_part(body, old, stmt.target, value, stmt)

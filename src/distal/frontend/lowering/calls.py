@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import ast
 import builtins
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from itertools import islice
 from types import FunctionType as PythonFunction
 from types import ModuleType
 from typing import Any, Final
@@ -16,7 +15,7 @@ from distal.frontend.function_body import FunctionBody
 from distal.frontend.lowering.builtin_calls import PYTHON_FUNCTIONS, call_builtin
 from distal.frontend.lowering.lowered_nodes import LoweredNode, methods_of, unstarred
 from distal.frontend.other_languages import COUNTERPARTS
-from distal.frontend.problems import SceneError, must_be
+from distal.frontend.problems import LOWERING_ERRORS, SceneError, must_be
 from distal.frontend.signatures.annotations import AnnotationError, to_type
 from distal.frontend.types.coercion import (
     coerce_or_raise,
@@ -82,10 +81,13 @@ def lower_call(body: FunctionBody, node: ast.Call) -> Value:
         SceneError: The called value is not a function, or does not take these arguments.
     """
     node = unstarred(body, node)
-    with body.checking(iter(_argument_nodes(node)), body.expression):
+    try:
         if isinstance(node.func, ast.Attribute):
             node = _of_value(body, node, node.func)
         called = body.expression(node.func)
+    except LOWERING_ERRORS as error:
+        rest = (*node.args, *_keyword_nodes(node))
+        raise body.followup(error, rest, body.expression) from None
     match called:
         case Static(obj, text):
             return _static_call(body, obj, text, node)
@@ -121,14 +123,14 @@ def _of_value(body: FunctionBody, node: ast.Call, func: ast.Attribute) -> ast.Ca
 
 def arguments(body: FunctionBody, node: ast.Call) -> list[Value]:
     """Lower the positional arguments of a call."""
-    rest = iter(_argument_nodes(node))
-    with body.checking(rest, body.expression):
-        values = [body.expression(a) for a in islice(rest, len(node.args))]
-    return values
+    try:
+        return body.each(body.expression, node.args)
+    except LOWERING_ERRORS as error:
+        raise body.followup(error, _keyword_nodes(node), body.expression) from None
 
 
-def _argument_nodes(node: ast.Call) -> list[ast.expr]:
-    return [*node.args, *(k.value for k in node.keywords if k.arg is not None)]
+def _keyword_nodes(node: ast.Call) -> Iterator[ast.expr]:
+    return (k.value for k in node.keywords if k.arg is not None)
 
 
 def _static_call(body: FunctionBody, obj: Any, text: str, node: ast.Call) -> Value:

@@ -22,7 +22,7 @@ from distal.frontend.lowering.lowered_nodes import (
 )
 from distal.frontend.lowering.refusals import refusal
 from distal.frontend.other_languages import hint_for
-from distal.frontend.problems import did_you_mean, must_be
+from distal.frontend.problems import LOWERING_ERRORS, did_you_mean, must_be
 from distal.frontend.types.coercion import coerce, constant_int, with_default_type
 from distal.frontend.types.constructors import repeated
 from distal.frontend.types.operators import binary, compare, condition, unary
@@ -242,12 +242,14 @@ def _bin_op(body: FunctionBody, node: ast.BinOp) -> Value:
     while isinstance(spine[-1].left, ast.BinOp):
         spine.append(spine[-1].left)
     operands = iter([spine[-1].left, *(step.right for step in reversed(spine))])
-    with body.checking(operands, body.expression):
+    try:
         value = body.expression(next(operands))
         for step in reversed(spine):
             value = _one_bin_op(body, step, value, body.expression(next(operands)))
             if not isinstance(value, Whole | SequenceValue | Static | Closure):
                 value = body.shallow(value)
+    except LOWERING_ERRORS as error:
+        raise body.followup(error, operands, body.expression) from None
     return value
 
 
@@ -287,12 +289,14 @@ def _bool_op(body: FunctionBody, node: ast.BoolOp) -> Value:
 def _compare(body: FunctionBody, node: ast.Compare) -> Value:
     parts: list[Expr] = []
     operands = iter([node.left, *node.comparators])
-    with body.checking(operands, body.expression):
+    try:
         left = body.expression(next(operands))
         for op in node.ops:
             right = body.expression(next(operands))
             parts.append(compare(body, op, left, right, node))
             left = right
+    except LOWERING_ERRORS as error:
+        raise body.followup(error, operands, body.expression) from None
     if len(parts) == 1:
         return parts[0]
     total: Expr | None = None
@@ -310,17 +314,21 @@ def _compare(body: FunctionBody, node: ast.Compare) -> Value:
 
 def _if_exp(body: FunctionBody, node: ast.IfExp) -> Value:
     operands = iter((node.test, node.body, node.orelse))
-    with body.checking(operands, body.expression):
+    try:
         test = condition(body, body.expression(next(operands)), node.test, "a condition")
-        values = body.each(body.expression, operands)
+    except LOWERING_ERRORS as error:
+        raise body.followup(error, operands, body.expression) from None
+    values = body.each(body.expression, operands)
     yes, no = unify_values(body, values, node, "the branches of a conditional expression")
     return Select(test, yes, no, yes.type, span=body.span(node))
 
 
 def _subscript(body: FunctionBody, node: ast.Subscript) -> Value:
-    indices = [n for n in (node.slice,) if not isinstance(n, ast.Slice | ast.Tuple | ast.Constant)]
-    with body.checking(iter(indices), body.expression):
+    try:
         base = body.expression(node.value)
+    except LOWERING_ERRORS as error:
+        is_text = isinstance(node.slice, ast.Slice | ast.Tuple | ast.Constant)
+        raise body.followup(error, () if is_text else (node.slice,), body.expression) from None
     if isinstance(base, Static):
         message = f"'{base.text}' is not an array"
         raise body.problem(ErrorCode.VALUE, message, node)

@@ -76,7 +76,7 @@ def keyword_arguments(body: FunctionBody, node: ast.Call) -> dict[str, Argument]
             )
         return keyword.arg, Argument(body.expression(keyword.value), keyword.value)
 
-    return dict(body.each(named, node.keywords))
+    return dict(body.each(named, node.keywords)) if node.keywords else {}
 
 
 def _choose(

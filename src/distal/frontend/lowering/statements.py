@@ -22,7 +22,7 @@ from distal.frontend.lowering.assignment import (
 from distal.frontend.lowering.expressions import make_closure
 from distal.frontend.lowering.iterations import Iteration, iteration
 from distal.frontend.lowering.refusals import refusal
-from distal.frontend.problems import FollowupError, SceneError, must_be
+from distal.frontend.problems import LOWERING_ERRORS, SceneError, must_be
 from distal.frontend.types.coercion import coerce_or_raise, default_type, with_default_type
 from distal.frontend.types.operators import condition
 from distal.frontend.values import TRUE, Closure, SequenceValue, Static, Value, Whole
@@ -43,7 +43,7 @@ def lower_statements(body: FunctionBody, statements: list[ast.stmt]) -> None:
             if rule is None:
                 raise refusal(body, stmt)
             rule(body, stmt)
-        except (SceneError, FollowupError) as error:
+        except LOWERING_ERRORS as error:
             body.record(error)
             _give_up(body, stmt)
         except RecursionError:
@@ -88,15 +88,17 @@ def _guarded(body: FunctionBody, lower: Callable[[], Expr]) -> Expr | None:
     """Return the condition, or None after recording its error; the blocks are lowered anyway."""
     try:
         return lower()
-    except (SceneError, FollowupError) as error:
+    except LOWERING_ERRORS as error:
         body.record(error)
     return None
 
 
 def _assign(body: FunctionBody, stmt: ast.Assign) -> None:
-    places = (t for t in stmt.targets if isinstance(t, ast.Attribute | ast.Subscript))
-    with body.checking(places, body.expression):
+    try:
         value = body.expression(stmt.value)
+    except LOWERING_ERRORS as error:
+        places = (t for t in stmt.targets if isinstance(t, ast.Attribute | ast.Subscript))
+        raise body.followup(error, places, body.expression) from None
     if len(stmt.targets) > 1 and not isinstance(value, Whole | SequenceValue | Static | Closure):
         value = body.bind("value", value)
     for target in stmt.targets:
@@ -106,8 +108,10 @@ def _assign(body: FunctionBody, stmt: ast.Assign) -> None:
 def _ann_assign(body: FunctionBody, stmt: ast.AnnAssign) -> None:
     if not isinstance(stmt.target, ast.Name):
         raise body.problem(ErrorCode.ASSIGNMENT, "only a name takes a type", stmt.target)
-    with body.checking(filter(None, (stmt.value,)), body.expression):
+    try:
         type = _annotated(body, stmt.target.id, stmt)
+    except LOWERING_ERRORS as error:
+        raise body.followup(error, filter(None, (stmt.value,)), body.expression) from None
     if stmt.value is not None:
         value = body.expression(stmt.value)
         expr = coerce_or_raise(body, value, type, value_node(stmt), f"'{stmt.target.id}'")
@@ -205,7 +209,7 @@ def _for(body: FunctionBody, stmt: ast.For) -> None:
     found = None
     try:
         found = iteration(body, stmt.iter)
-    except (SceneError, FollowupError) as error:
+    except LOWERING_ERRORS as error:
         body.record(error)
     _loop_body(body, stmt, names, found)
     # Nested loops over _: in Python the inner loop's value remains.
