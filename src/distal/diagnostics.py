@@ -18,6 +18,8 @@ from distal.error_codes import ErrorCode
 LONGEST_SHOWN: Final = 200  # characters of an external text
 LONGEST_MESSAGE: Final = 1000  # characters of a line that may contain several external texts
 
+_PLACE_KEYS: Final = ("file", "line", "column", "end_line", "end_column")
+
 # Control, format (bidirectional overrides, zero width), surrogates, line and paragraph separators.
 _UNSAFE_CATEGORIES: Final = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
 # Invisible letters and marks (Unicode's Default_Ignorable_Code_Point of other categories).
@@ -123,25 +125,33 @@ class Diagnostic:
 
     def to_json(self) -> dict[str, Any]:
         """Return plain values in the schema of ``docs/reference/errors.md``."""
-        labels = [{"text": label.text, **_place_json(label.span)} for label in self.labels]
+        labels = [{"text": label.text, **_line_json(label.span)} for label in self.labels]
         return {
             "code": self.code.value,
             "message": self.message,
             "hint": self.hint,
-            **_place_json(self.span),
+            **_line_json(self.span),
             "labels": labels,
         }
 
 
-def _place_json(span: Span | None) -> dict[str, Any]:
+def place_json(span: Span | None) -> dict[str, Any] | None:
+    """Return a place with lines and columns counted from 1, as in editors; None if not known."""
+    if span is None:
+        return None
     return {
-        "file": None if span is None else span.file,
-        "line": None if span is None else span.line,
-        "column": None if span is None else span.col + 1,
-        "end_line": None if span is None else span.end_line or span.line,
-        "end_column": None if span is None else span.end_col + 1,
-        "excerpt": None if span is None else span.text,
+        "file": span.file,
+        "line": span.line,
+        "column": span.col + 1,
+        "end_line": span.end_line or span.line,
+        "end_column": span.end_col + 1,
     }
+
+
+def _line_json(span: Span | None) -> dict[str, Any]:
+    """Return a place and its line; of an unknown place, None for each."""
+    line = None if span is None else span.text
+    return {**dict.fromkeys(_PLACE_KEYS), **(place_json(span) or {}), "excerpt": line}
 
 
 def excerpt(span: Span) -> list[str]:

@@ -63,7 +63,7 @@ class Parameter(Symbolic):
         group: The heading that it is listed under, or "".
         help: One sentence about its effect, or "".
         options: Names of a choice's options, else empty.
-        place: Where the author declares it.
+        span: Where the author declares it.
     """
 
     name: str
@@ -77,7 +77,7 @@ class Parameter(Symbolic):
     group: str = ""
     help: str = ""
     options: tuple[str, ...] = ()
-    place: Span | None = field(default_factory=author_place, compare=False)
+    span: Span | None = field(default_factory=author_place, compare=False)
 
     def __repr__(self) -> str:
         match self.kind:

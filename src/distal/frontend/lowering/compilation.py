@@ -250,9 +250,9 @@ class Compilation:
             hint = (
                 f"their labels: '{known[0].label}' and '{parameter.label}', with different ranges"
             )
-            labels = [Label(p, "the first is here") for p in (known[0].place,) if p is not None]
+            labels = [Label(p, "the first is here") for p in (known[0].span,) if p is not None]
             raise CompileError.at(
-                ErrorCode.PARAMETER, message, parameter.place, hint, tuple(labels)
+                ErrorCode.PARAMETER, message, parameter.span, hint, tuple(labels)
             )
         if known is None:
             declaration = UniformDeclaration(

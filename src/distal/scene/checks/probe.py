@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from distal.diagnostics import place_json
 from distal.frontend import Assembly
 from distal.ir.nodes import Param, Read, Return
 from distal.ir.types import VEC2
@@ -19,7 +20,6 @@ from distal.lang.render_options import place_of_pixel
 from distal.lang.runtime_access import executor
 from distal.render.look_along import Seen, look_along
 from distal.render.march import OUT_OF_STEPS, PASSED
-from distal.scene.checks.place_json import place_json
 from distal.scene.checks.validation import guarantee_names
 from distal.scene.lowering.attributes import ListedMaterial, Part
 from distal.scene.lowering.part_map import path_in

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from distal.diagnostics import Span
+from distal.diagnostics import Span, place_json
 from distal.frontend import Assembly
 from distal.frontend.signatures.signatures import read_signature
 from distal.ir.nodes import Construct, Read
@@ -19,7 +19,6 @@ from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
 from distal.lang.render_options import RenderOptions, place_of_pixel
 from distal.lang.runtime_access import executor
-from distal.scene.checks.place_json import place_json
 from distal.scene.lowering.local_views import Local, kept_values, locals_of, watched
 
 TYPES: Final[frozenset[Type]] = frozenset(

@@ -10,8 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from distal.diagnostics import Span
-from distal.scene.checks.place_json import place_json
+from distal.diagnostics import Span, place_json
 from distal.scene.lowering.smooth.cells import CellNode, MemberGrid, celled
 from distal.scene.tree.node import Node
 

@@ -9,9 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from distal.diagnostics import Span
+from distal.diagnostics import Span, place_json
 from distal.fields.combine.joins import UNION
-from distal.scene.checks.place_json import place_json
 from distal.scene.lowering.parts.kinds import paths_to_leaves
 from distal.scene.lowering.parts.table import rolled
 from distal.scene.tree.node import Node

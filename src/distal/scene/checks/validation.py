@@ -12,13 +12,12 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Final
 
-from distal.diagnostics import Diagnostic
+from distal.diagnostics import Diagnostic, place_json
 from distal.error_codes import ErrorCode
 from distal.fields.boxes import given_slope
 from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive, ended
 from distal.scene.checks.bounds_report import NodeBounds, bounds_of_nodes
 from distal.scene.checks.measuring import Measured, Region, measure
-from distal.scene.checks.place_json import place_json
 from distal.scene.checks.proof_report import proof_note
 from distal.scene.checks.smooth_report import SmoothReport, smooth_unions_of
 from distal.scene.checks.table_report import TableReport, table_of
