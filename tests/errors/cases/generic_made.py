@@ -13,9 +13,14 @@ def scaled(v: Floats, by: Floats) -> Floats:
 
 
 @func
+def twice(v: Floats) -> Floats:
+    return v * unknown
+
+
+@func
 def scene(p: vec3) -> float:
     def inner(q):
         return q.z
 
     a = scaled(p, p)
-    return scaled(p.x, 2.0) + inner(p) + inner(p.xy) + a.x
+    return twice(p).x + twice(p.x) + scaled(p.x, 2.0) + inner(p) + inner(p.xy) + a.x

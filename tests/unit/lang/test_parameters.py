@@ -144,3 +144,11 @@ def test_description_tells_the_range():
     assert SOFT.describe() == "a number from 0 to 1 (default 0.3)"
     assert MODE.describe() == "flat, lit, 2 (default lit)"
     assert point("P", (1, 2)).describe() == "x,y (default 1,2)"
+
+
+def test_the_place_of_the_declaration_makes_no_difference():
+    first = slider("Size", 0.5)
+    again = slider("Size", 0.5)
+    assert first.span is not None and again.span is not None
+    assert again.span.line == first.span.line + 1 and first.span.file == __file__
+    assert first == again and len({first, again}) == 1
