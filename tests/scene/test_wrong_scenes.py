@@ -160,7 +160,7 @@ def makes_a_ball(p: vec3) -> float:
 def test_a_field_that_gives_no_distance_never_runs():
     for field, kind in ((says_vector, "vec3"), (is_vector, "vec3"), (counts, "int")):
         for asked in (lambda shape: shape((0, 0, 0)), lambda shape: shape.gradient((0, 0, 0))):
-            with pytest.raises(CompileError, match=f"a distance is a float, not {kind}"):
+            with pytest.raises(CompileError, match=f"must be float, but this is {kind}"):
                 asked(Shape.from_function(field))
 
 

@@ -109,7 +109,8 @@ class VectorValue:
     def _apply(self, other: Any, operation: Callable[[Any, Any], Any], *, swap: bool) -> Any:
         if isinstance(other, VectorValue):
             if type(other) is not type(self):
-                raise TypeError(f"{self._vector()} and {other._vector()} do not mix")
+                types = f"these are {self._vector()} and {other._vector()}"
+                raise TypeError(f"the operands must be of one type, but {types}")
             others = other._components
         elif _is_number(other):
             others = (other,) * len(self._components)

@@ -36,7 +36,7 @@ def test_arithmetic() -> None:
     assert repr(ivec2(1, 2) / 2) == "vec2(0.5, 1.0)"
     assert repr(-vec2(1, 2)) == "vec2(-1.0, -2.0)"
     assert repr(vec2(1, 2) == vec2(1, 3)) == repr(bvec2(True, False))
-    with pytest.raises(TypeError, match="vec2 and vec3 do not mix"):
+    with pytest.raises(TypeError, match="must be of one type, but these are vec2 and vec3"):
         _ = vec2(1) + vec3(1)
 
 

@@ -20,6 +20,7 @@ from typing import Any, Final
 from distal.fields.combine.alternatives import NOWHERE, SELECT
 from distal.fields.guarantees import BOUNDS_OF_CHILDREN, Operator, Primitive
 from distal.frontend import Assembly
+from distal.frontend.problems import must_be
 from distal.ir.build import builtin, divide, multiply, select
 from distal.ir.build import field as field_of
 from distal.ir.build import number as constant_number
@@ -314,7 +315,7 @@ class ShapeComposer:
                 given["field"] = self._unchanged(node, rule, given)
             value = self.call(rule.normalize or rule.distance, given)
             if value.type is not FLOAT:
-                message = f"'{rule.name}' is no field: a distance is a float, not {value.type}"
+                message = must_be(f"the distance of '{rule.name}'", FLOAT, value.type)
                 refuse(message, None, node.place)
             return body.let("d", value)
         if rule.around is not None:
@@ -358,7 +359,7 @@ class ShapeComposer:
             rule.distance, {**given, **{p.name: Read(p.name, p.type) for p in params}}
         )
         if value.type is not FLOAT:
-            message = f"'{rule.name}' is no field: a distance is a float, not {value.type}"
+            message = must_be(f"the distance of '{rule.name}'", FLOAT, value.type)
             refuse(message, None, node.place)
         stem = f"{plain_name(node.name)}_unchanged"
         name = self.assembly.define(stem, params, FLOAT, (Return(value),), node.place)

@@ -15,6 +15,7 @@ from distal.diagnostics import Span
 from distal.fields import boxes
 from distal.fields import normalize as normalizing
 from distal.fields.guarantees import EXACT, NOTHING, Limit, Primitive, Proven
+from distal.frontend.problems import must_be
 from distal.frontend.signatures.signatures import read_signature
 from distal.ir.types import FLOAT, VEC2, VEC3, Vector
 from distal.lang.functions import Func
@@ -133,7 +134,7 @@ def own_node(
     gives = result_of(function)
     if gives is not None and gives is not FLOAT:
         hint = f"def {name}(p: {VEC2 if flat else VEC3}) -> float"
-        refuse(f"'{name}' is no field: a distance is a float, not {gives}", hint, place)
+        refuse(must_be(f"the distance of '{name}'", FLOAT, gives), hint, place)
     rule = Primitive(name, function, EXACT if exact else NOTHING)
     own, constants = bound(rule, (), numbers, place)
     found: dict[str, Any] = dict(own)
