@@ -25,6 +25,7 @@ MEASURED = """
 import json, random, sys
 from time import process_time
 import numpy, llvmlite.binding, distal.runtime.executor, distal.devices.cpu as cpu
+import distal.devices.object_files as object_files
 import distal.compiler.driver as driver
 import distal
 from distal import Box, Capsule, Cone, Cylinder, Octahedron, Scene, Sphere, Torus
@@ -46,7 +47,7 @@ def timed(stage, function):
 
 driver.run_passes = timed("passes", driver.run_passes)
 cpu.emit_modules = timed("text", cpu.emit_modules)
-cpu.compile_objects = timed("llvm", cpu.compile_objects)
+object_files.compile_objects = timed("llvm", object_files.compile_objects)
 
 
 def part(i):

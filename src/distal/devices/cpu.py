@@ -2,12 +2,14 @@
 
 Input: a module from the front end before any pass, then numbers. Output: pictures, and values at
 points. If the cache has the kernel, no pass runs and nothing is compiled.
+
+A new kernel runs code that LLVM generated without optimization, in half of the time; the optimized
+code computes the same bits, is compiled beside, and takes over between two tiles.
 """
 
 from __future__ import annotations
 
 import importlib
-import json
 import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
@@ -20,6 +22,7 @@ from distal.backends.llvm.layout import (
     BATCH,
     FRAME,
     JOB_FIELDS,
+    LEAVE,
     PIXELS,
     RENDER,
     RESOURCE_BYTES,
@@ -29,12 +32,14 @@ from distal.backends.llvm.layout import (
     kinds_in,
 )
 from distal.devices import cpu_memory, threads
+from distal.devices.background import Background
 from distal.devices.base import Cancel, Progress, Values
 from distal.devices.cache import Cache, default_folder
 from distal.devices.executable import Executable
-from distal.devices.features import CpuLevel, chosen_level
-from distal.devices.jit import compile_objects
-from distal.devices.kernel_key import kernel_key, object_key
+from distal.devices.features import chosen_level
+from distal.devices.kernel_key import is_chosen, optimization
+from distal.devices.memory_limit import is_limited
+from distal.devices.object_files import ObjectFiles
 from distal.devices.pool import PICTURES
 from distal.devices.resources import load
 from distal.ir.collection import paused_collection
@@ -47,6 +52,7 @@ RunPasses = Callable[[Module, Target, int], Module]
 
 # Parts of a picture begin at multiples of so many rows.
 ROWS: Final = TILE_HEIGHT
+_PLAIN: Final = 0  # LLVM's level of code generation for a new kernel's first code
 _LARGEST_SIDE: Final = 32768  # pixels; a picture's size in bytes fits 64 bits on all systems
 
 
@@ -73,60 +79,75 @@ def prepare(
     started = time.perf_counter()
     level = chosen_level(features)
     cache = Cache(default_folder()) if cache is None else cache
-    key = kernel_key(level, precision, print_identity(module))
-    kernel = _loaded(cache.load(key), cache)
-    hit = kernel is not None
-    if kernel is None:
+    files = ObjectFiles(level, precision, print_identity(module), cache)
+    best = optimization()
+    quick = _PLAIN if _is_tiered() else best
+    llvm_level, objects = best, files.load(best)
+    if not objects and quick != best:
+        llvm_level, objects = quick, files.load(quick)
+    hit = bool(objects)
+    if not hit:
         passes = passes or importlib.import_module("distal.compiler.driver").run_passes
         shaped, lanes = passes(module, TARGET, precision), level.lanes(precision)
         with paused_collection():
             texts, interface = emit_modules(shaped, lanes, most=threads.usable_threads())
-        kernel = _objects(texts, level, cache), {**interface, "lanes": lanes.count}
-        cache.store(key, _stored([object_key(level, t) for t in texts], kernel[1]))
-    code, interface = kernel
-    lanes = interface["lanes"]
+        files.texts, files.interface = texts, {**interface, "lanes": lanes.count}
+        llvm_level, objects = _new(files, best, quick)
+    lanes = files.interface["lanes"]
     stats = {
         "device": "cpu",
         "level": level.name,
         "lanes": lanes,
         "precision": precision,
         "cache_hit": hit,
+        "optimization": llvm_level,
         "compile_s": time.perf_counter() - started,
     }
     types = {r.name: r.type for r in module.resources}
-    return CpuKernel(Executable(*code), interface, precision, lanes, stats, types)
+    code = _Code(Executable(*objects), llvm_level)
+    kernel = CpuKernel(code, files.interface, precision, lanes, stats, types)
+    if llvm_level != best:
+        kernel.optimize(files, best, quick)
+    return kernel
 
 
-# Kernels as bytes of the cache
+def _new(files: ObjectFiles, best: int, quick: int) -> tuple[int, Sequence[bytes]]:
+    """Return a level and the object files of new modules; those of the best level are stored."""
+    objects = files.compiled(best)  # an unchanged module of a changed scene or compiler
+    if not objects and quick != best:
+        return quick, files.compile(quick)
+    objects = objects or files.compile(best)
+    files.store(best)
+    return best, objects
 
 
-def _objects(texts: Sequence[str], level: CpuLevel, cache: Cache) -> Sequence[bytes]:
-    """Return the object file of each LLVM text; compile those that the cache does not have."""
-    keys = [object_key(level, text) for text in texts]
-    known = {key: found for key in keys if (found := cache.load(key)) is not None}
-    missing = {k: t for k, t in zip(keys, texts, strict=True) if k not in known}
-    if missing:
-        for key, code in zip(missing, compile_objects(list(missing.values()), level), strict=True):
-            cache.store(key, code)
-            known[key] = code
-    return [known[key] for key in keys]
+def _is_tiered() -> bool:
+    """Return whether a new kernel's first code is not optimized.
 
-
-def _stored(objects: Sequence[str], interface: dict[str, Any]) -> bytes:
-    """Return a kernel's bytes: its interface, and the keys of its object files."""
-    return json.dumps({**interface, "objects": list(objects)}).encode()
-
-
-def _loaded(data: bytes | None, cache: Cache) -> tuple[Sequence[bytes], dict[str, Any]] | None:
-    if data is None:
-        return None
-    interface = json.loads(data)
-    code = [cache.load(key) for key in interface["objects"]]
-    found = [each for each in code if each is not None]
-    return (found, interface) if len(found) == len(code) else None
+    With one processor, or where LLVM needs a process of its own, the other code would wait for it.
+    """
+    return not is_chosen() and threads.usable_threads() > 1 and not is_limited()
 
 
 # Kernels as callable functions
+
+
+class _Code:
+    """The functions of object files in memory.
+
+    Attributes:
+        llvm_level: LLVM's level of code generation that made them.
+        is_pixelwise: Whether they map pixels in a picture's memory layout.
+        main: The kernel.
+        frame: The part that runs once for each frame.
+    """
+
+    def __init__(self, executable: Executable, llvm_level: int) -> None:
+        self.llvm_level = llvm_level
+        self.is_pixelwise = PIXELS in executable
+        (main,) = (name for name in (RENDER, PIXELS, BATCH) if name in executable)
+        self.main = executable.function(main)
+        self.frame = executable.function(FRAME) if FRAME in executable else None
 
 
 class CpuKernel:
@@ -134,7 +155,7 @@ class CpuKernel:
 
     def __init__(
         self,
-        executable: Executable,
+        code: _Code,
         interface: dict[str, Any],
         precision: int,
         lanes: int,
@@ -143,7 +164,9 @@ class CpuKernel:
     ) -> None:
         self.stats = stats
         self._resource_types = resource_types
-        self._executable = executable
+        self._code = code
+        self._optimizing: Background | None = None
+        self._running: set[_KernelCall] = set()
         self._interface = interface
         self._precision = precision
         self._lanes = lanes
@@ -151,10 +174,30 @@ class CpuKernel:
         self._uniforms = cpu_memory.UniformSlots(
             interface["uniforms"], interface["uniform_slots"], precision
         )
-        main = RENDER if self._image else PIXELS if PIXELS in executable else BATCH
-        self._pixelwise = main == PIXELS
-        self._main = executable.function(main)
-        self._frame = executable.function(FRAME) if FRAME in executable else None
+
+    def optimize(self, files: ObjectFiles, best: int, plain: int) -> None:
+        """Compile optimized code in the background; it is stored, and then takes over.
+
+        Args:
+            files: The kernel's object files.
+            best: LLVM's level of the optimized code.
+            plain: That of the code that runs until then.
+        """
+
+        def work() -> None:
+            files.store(plain, with_texts=True)  # for a process that begins before the end
+            code = _Code(Executable(*files.compile(best, together=False)), best)
+            files.store(best)
+            files.discard(plain)
+            self.take(code)
+
+        self._optimizing = Background(work, "optimizing a kernel")
+
+    def take(self, code: _Code) -> None:
+        """Run other code of the same kernel from the next tile on."""
+        self._code = code
+        for call in list(self._running):
+            call.leave()
 
     def render(
         self,
@@ -235,7 +278,7 @@ class CpuKernel:
         """
         assert not self._image, "an image has no points"
         points = cpu_memory.shared_length(args)
-        if self._pixelwise and points:
+        if self._code.is_pixelwise and points:
             rows = np.asarray(args[0], np.float32)
             return self._mapped(rows, uniforms, resources, threads, progress, cancel)
         stride = -(-points // self._lanes) * self._lanes
@@ -249,9 +292,10 @@ class CpuKernel:
         job.set(input=source.ctypes.data, output=target.ctypes.data, width=stride)
         job.set(tiles=tiles, stride=stride)
         if here and stride:
-            if self._frame is not None:
-                self._frame(job.address())
-            self._main(job.address())
+            code = self._code
+            if code.frame is not None:
+                code.frame(job.address())
+            code.main(job.address())
         elif stride:
             self._run(job, tiles, threads, progress, cancel)
         return cpu_memory.unpack_points(shape, target, points, stride)
@@ -301,17 +345,35 @@ class CpuKernel:
         cancel: Cancel | None,
     ) -> None:
         started = time.perf_counter()
-        if self._frame is not None:
-            self._run_frame(job, cancel)
+        if self._optimizing is not None:
+            self._optimizing.check()
+        self._run_frame(job, cancel)
         work = threads.Work(job.counter, job.stop, pieces)
-        used = threads.run(work, lambda: self._main(job.address()), count, progress, cancel)
+
+        levels: list[int] = []  # of the code that each thread ended with
+
+        def compute() -> None:
+            code = self._code
+            code.main(job.address())
+            if job.stop[0] == LEAVE:
+                code = self._code
+                code.main(job.address(1))
+            levels.append(code.llvm_level)
+
+        self._running.add(job)
+        try:
+            used = threads.run(work, compute, count, progress, cancel)
+        finally:
+            self._running.discard(job)
         self.stats["threads"] = used
+        self.stats["optimization"] = max(levels)
         self.stats["render_s"] = time.perf_counter() - started
 
     def _run_frame(self, job: _KernelCall, cancel: Cancel | None) -> None:
         """Run the per-frame part: directly, or in a watched thread if it may be long or large."""
-        frame = self._frame
-        assert frame is not None
+        frame = self._code.frame
+        if frame is None:
+            return
         if self._interface["frame_apart"]:
             work = threads.Work(job.counter, job.stop, 1)
             threads.run(work, lambda: frame(job.address()), 1, None, cancel)
@@ -320,7 +382,10 @@ class CpuKernel:
 
 
 class _KernelCall:
-    """The memory of one run; it must exist as long as a thread may access it."""
+    """The memory of one run; it must exist as long as a thread may access it.
+
+    It is two jobs that differ in their stop flags: the second one is for the code that takes over.
+    """
 
     def __init__(
         self,
@@ -331,9 +396,9 @@ class _KernelCall:
     ) -> None:
         self._held = held
         interface, precision = kernel._interface, kernel._precision
-        self.words = np.zeros(len(JOB_FIELDS), np.int64)
+        self.words = np.zeros((2, len(JOB_FIELDS)), np.int64)
         self.counter = np.zeros(1, np.int32)
-        self.stop = np.zeros(1, np.int32)
+        self.stop = np.zeros(2, np.int32)
         self._uniforms = kernel._uniforms.packed(uniforms)
         self._frame = np.zeros(max(1, interface["frame_slots"]), cpu_memory.float_type(precision))
         rows = interface["resources"]
@@ -351,15 +416,21 @@ class _KernelCall:
             frame=self._frame.ctypes.data,
             resources=self._resources.ctypes.data,
         )
+        self.words[1, JOB_FIELDS.index("stop")] += self.stop.itemsize
 
-    def address(self) -> int:
-        """Return the pointer that a kernel is called with."""
-        return int(self.words.ctypes.data)
+    def address(self, job: int = 0) -> int:
+        """Return the pointer that a kernel is called with, of the first or the second job."""
+        return int(self.words[job].ctypes.data)
+
+    def leave(self) -> None:
+        """End the first job after its current tiles, unless it is stopped."""
+        if self.stop[0] == 0:
+            self.stop[0] = LEAVE
 
     def set(self, **fields: int) -> None:
         """Set fields of the job."""
         for name, value in fields.items():
-            self.words[JOB_FIELDS.index(name)] = value
+            self.words[:, JOB_FIELDS.index(name)] = value
 
 
 def _array(source: Any, type: Type) -> NDArray[Any]:

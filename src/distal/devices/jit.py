@@ -73,42 +73,47 @@ def _passes(llvm: Any, machine: Any) -> tuple[Any, Any]:
     return manager, builder
 
 
-def compile_object(text: str, level: CpuLevel, *, assembly: bool = False) -> Any:
+def compile_object(
+    text: str, level: CpuLevel, llvm_level: int | None = None, *, assembly: bool = False
+) -> Any:
     """Return the object file of a module, or its assembly text.
 
     Args:
         text: The module in LLVM's language.
         level: The CPU feature level to compile for.
+        llvm_level: LLVM's level of code generation; None: ``optimization()``.
         assembly: Whether to return assembly text.
 
     Raises:
         PackageError: LLVM is missing or cannot be loaded.
         MemoryError: A limit of this process leaves too little memory for LLVM.
     """
+    chosen = optimization() if llvm_level is None else llvm_level
     if is_limited():
-        return _compiled_apart(text, level, assembly)
-    return _compiled(text, level, assembly)
+        return _compiled_apart(text, level, chosen, assembly)
+    return _compiled(text, level, chosen, assembly)
 
 
-def compile_objects(texts: Sequence[str], level: CpuLevel) -> list[bytes]:
+def compile_objects(texts: Sequence[str], level: CpuLevel, llvm_level: int) -> list[bytes]:
     """Return the object file of each module; they are compiled at the same time.
 
     Args:
         texts: The modules in LLVM's language.
         level: The CPU feature level to compile for.
+        llvm_level: LLVM's level of code generation.
 
     Raises:
         PackageError: LLVM is missing or cannot be loaded.
         MemoryError: A limit of this process leaves too little memory for LLVM.
     """
     if len(texts) == 1 or is_limited():
-        return [compile_object(text, level) for text in texts]
+        return [compile_object(text, level, llvm_level) for text in texts]
     llvm_binding()
     made: list[Future[bytes]] = [Future() for _ in texts]
 
     def work(i: int) -> None:
         try:
-            made[i].set_result(_compiled(texts[i], level, False))
+            made[i].set_result(_compiled(texts[i], level, llvm_level, False))
         except BaseException as error:
             made[i].set_exception(error)
 
@@ -122,11 +127,11 @@ def compile_objects(texts: Sequence[str], level: CpuLevel) -> list[bytes]:
     return [each.result() for each in made]
 
 
-def _compiled_apart(text: str, level: CpuLevel, assembly: bool) -> Any:
+def _compiled_apart(text: str, level: CpuLevel, llvm_level: int, assembly: bool) -> Any:
     """Compile in a separate process, because LLVM ends its process if it gets no memory."""
     path = os.pathsep.join(filter(None, sys.path))
     made = subprocess.run(
-        [sys.executable, "-c", _APART, level.name, str(int(assembly))],
+        [sys.executable, "-c", _APART, level.name, str(llvm_level), str(int(assembly))],
         input=text.encode(),
         capture_output=True,
         env={**os.environ, "PYTHONPATH": path},
@@ -140,14 +145,14 @@ def _compiled_apart(text: str, level: CpuLevel, assembly: bool) -> Any:
 
 def _serve() -> None:
     """Compile the text on stdin; runs in the process that ``_compiled_apart`` starts."""
-    name, assembly = sys.argv[1:]
+    name, llvm_level, assembly = sys.argv[1:]
     text = sys.stdin.buffer.read().decode()
-    made = _compiled(text, level_named(name), assembly == "1")
+    made = _compiled(text, level_named(name), int(llvm_level), assembly == "1")
     sys.stdout.buffer.write(made.encode() if isinstance(made, str) else made)
     sys.stdout.flush()
 
 
-def _compiled(text: str, level: CpuLevel, assembly: bool) -> Any:
+def _compiled(text: str, level: CpuLevel, llvm_level: int, assembly: bool) -> Any:
     llvm = llvm_binding()
     if level.architecture != architecture_here():
         # Initialise all targets, which takes a tenth of a second.
@@ -157,7 +162,7 @@ def _compiled(text: str, level: CpuLevel, assembly: bool) -> Any:
     # macOS reserves x18; on other systems, one register less of thirty does not matter.
     features = "+reserve-x18" if level.architecture == "aarch64" else ""
     machine = llvm.Target.from_triple(triple).create_target_machine(
-        cpu=level.cpu, features=features, opt=optimization(), codemodel="jitdefault"
+        cpu=level.cpu, features=features, opt=llvm_level, codemodel="jitdefault"
     )
     # A context of its own: several threads compile at the same time.
     module = llvm.parse_assembly(text, llvm.create_context())

@@ -31,19 +31,22 @@ _VERSION_FILE: Final = "_version.py"
 _LIBRARIES: Final = ("libllvmlite.so", "libllvmlite.dylib", "llvmlite.dll")
 
 
-def kernel_key(level: CpuLevel, precision: int, *compiled: str) -> str:
+def kernel_key(
+    level: CpuLevel, precision: int, *compiled: str, llvm_level: int | None = None
+) -> str:
     """Return the cache key of machine code.
 
     Args:
         level: The CPU level that it is compiled for.
         precision: Bits of a float or of a result.
         compiled: Texts that identify what is compiled.
+        llvm_level: LLVM's level of code generation; None: ``optimization()``.
     """
     parts = (
         compiled,
         level,
         precision,
-        optimization(),
+        optimization() if llvm_level is None else llvm_level,
         sys.platform,
         __version__,
         compiler_sources(),
@@ -93,9 +96,9 @@ def _recorded(package: Path, file: str, size: int) -> str:
     return ""
 
 
-def object_key(level: CpuLevel, text: str) -> str:
+def object_key(level: CpuLevel, text: str, llvm_level: int) -> str:
     """Return the cache key of an object file: a changed compiler may write the same LLVM text."""
-    parts = ("object", text, level, optimization(), sys.platform, llvm_fingerprint())
+    parts = ("object", text, level, llvm_level, sys.platform, llvm_fingerprint())
     return hashlib.sha256(repr(parts).encode()).hexdigest()
 
 
@@ -125,6 +128,11 @@ def optimization() -> int:
             f"{LEVEL_VARIABLE} is a level of LLVM's code generation, 0 to 3: '{level}'"
         )
     return int(level)
+
+
+def is_chosen() -> bool:
+    """Return whether ``DISTAL_LLVM_LEVEL`` names a level."""
+    return bool(os.environ.get(LEVEL_VARIABLE))
 
 
 @cache

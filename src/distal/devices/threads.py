@@ -36,7 +36,7 @@ class Work:
 
     Attributes:
         counter: The number of the next piece; the kernel advances it.
-        stop: Not 0 to stop the work.
+        stop: Flags; 1 in all of them stops the work.
         pieces: The number of pieces.
     """
 
@@ -88,7 +88,7 @@ def run(
         start_threads(workers, started)
         _watch(started, work, progress, cancel)
     except BaseException:
-        work.stop[0] = 1
+        work.stop[:] = 1
         raise
     finally:
         # Wait for the threads: they write into arrays that the caller may free.

@@ -62,5 +62,5 @@ def test_values_and_the_stored_kernel_are_those_of_one_module(
 def test_a_mistake_in_one_module_is_raised() -> None:
     good = "define void @f() { ret void }"
     with pytest.raises(RuntimeError, match="parsing error"):
-        compile_objects([good, "define void @g() {"], chosen_level())
-    assert compile_objects([good], chosen_level()) == [compile_object(good, chosen_level())]
+        compile_objects([good, "define void @g() {"], chosen_level(), 2)
+    assert compile_objects([good], chosen_level(), 2) == [compile_object(good, chosen_level())]

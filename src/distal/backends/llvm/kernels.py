@@ -117,16 +117,17 @@ class _Tiles:
         self.writer = writer
         counter, tiles = _field(writer, "counter", "ptr"), _field(writer, "tiles")
         self.next, self.done = writer.label("tile"), writer.label("done")
-        inside, going = writer.label("inside"), writer.label("going")
+        going, inside = writer.label("going"), writer.label("inside")
         writer.jump(self.next)
         writer.begin(self.next)
+        # Before the tile is taken: after LEAVE, other code takes it.
+        stop = writer.value("load volatile i32, ptr %stop")
+        writer.branch(writer.value(f"icmp eq i32 {stop}, 0"), going, self.done)
+        writer.begin(going)
         self.index = writer.value(f"atomicrmw add ptr {counter}, i32 1 monotonic")
         some = writer.value(f"icmp ult i32 {self.index}, {tiles}")
         writer.branch(some, inside, self.done)
         writer.begin(inside)
-        stop = writer.value("load volatile i32, ptr %stop")
-        writer.branch(writer.value(f"icmp eq i32 {stop}, 0"), going, self.done)
-        writer.begin(going)
 
     def end(self) -> None:
         """End the loop's body: continue with the next tile."""

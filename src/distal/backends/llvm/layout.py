@@ -23,7 +23,7 @@ PIXELS: Final = "distal_pixels"
 # The fields of a job, the argument of a kernel: eight bytes each, in this order.
 JOB_FIELDS: Final = (
     "counter",  # pointer: the next tile
-    "stop",  # pointer: not 0 stops the work
+    "stop",  # pointer: 0, STOP or LEAVE
     "uniforms",  # pointer
     "frame",  # pointer
     "resources",  # pointer: four eight-byte numbers each: data, width or count, height, depth
@@ -37,6 +37,9 @@ JOB_FIELDS: Final = (
 )
 JOB_OFFSET: Final = {name: 8 * i for i, name in enumerate(JOB_FIELDS)}
 RESOURCE_BYTES: Final = 32
+
+STOP: Final = 1  # ends the work at once; tiles remain incomplete
+LEAVE: Final = 2  # ends it after the tiles that are being computed
 
 TILE_WIDTH, TILE_HEIGHT = 64, 16  # pixels; multiples of every block's sides
 TILE_BLOCKS = 64  # blocks of points in a tile of a batch

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from distal.backends.llvm.costs import constant_rounds
 from distal.backends.llvm.lanes import Leaf, Leaves, Stored
+from distal.backends.llvm.layout import STOP
 from distal.backends.llvm.storage import Mask
 from distal.backends.llvm.uniformity import reads_in
 from distal.ir.nodes import Assign, Break, CompareOp, For, If, Stmt, While
@@ -308,7 +309,7 @@ class Loops:
         return self.arithmetic.spread(self.arithmetic.both(live, self.arithmetic.invert(leave)))
 
     def _polled(self) -> str:
-        """Return a test that the stop flag is not set, for loops that may run long."""
+        """Return a test that the work is not to stop, for loops that may run long."""
         self.expressions.program.polls = True
         flag = self.writer.value("load volatile i32, ptr %stop")
-        return self.writer.value(f"icmp eq i32 {flag}, 0")
+        return self.writer.value(f"icmp ne i32 {flag}, {STOP}")
