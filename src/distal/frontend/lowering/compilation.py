@@ -251,9 +251,7 @@ class Compilation:
                 f"their labels: '{known[0].label}' and '{parameter.label}', with different ranges"
             )
             labels = [Label(p, "the first is here") for p in (known[0].span,) if p is not None]
-            raise CompileError.at(
-                ErrorCode.PARAMETER, message, parameter.span, hint, tuple(labels)
-            )
+            raise CompileError.at(ErrorCode.PARAMETER, message, parameter.span, hint, tuple(labels))
         if known is None:
             declaration = UniformDeclaration(
                 name,
