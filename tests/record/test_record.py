@@ -15,7 +15,7 @@ import pytest
 
 from tools.mutation.project import Project
 from tools.record import reach
-from tools.record.choice import Cover, chosen, cover
+from tools.record.choice import Cover, chosen, cover, pinned
 from tools.record.reach import parts
 from tools.record.rows import PATH, ROOT, Record, left_out, load, merged, raw_rows
 
@@ -151,10 +151,12 @@ def test_pins_stay_in_a_cover():
 
 def test_the_largest_cover_that_the_time_allows_is_chosen():
     record = random_record(2, tests=40)
-    once, twice = (record.seconds(cover(record, (), times)) for times in (1, 2))
-    assert once < twice
-    assert record.seconds(chosen(record, 5, twice)) == pytest.approx(twice)
-    assert record.seconds(chosen(record, 5, (once + twice) / 2)) == pytest.approx(once)
+    pins = pinned(record)
+    once, twice, thrice = (cover(record, pins, times) for times in (1, 2, 3))
+    assert record.seconds(pins) < record.seconds(once) < record.seconds(twice)
+    assert record.seconds(twice) < record.seconds(thrice)
+    assert chosen(record, 5, record.seconds(twice)) == twice
+    assert chosen(record, 5, record.seconds(twice) - 1e-6) == once
     with pytest.raises(ValueError, match="s run each function once; 0 allowed"):
         chosen(record, 5, 0.0)
 

@@ -16,7 +16,7 @@ from distal.forking import new_lock
 _ONE_AT_A_TIME = new_lock()
 
 
-class Background:
+class BackgroundWork:
     """Work that has been started.
 
     Args:

@@ -32,7 +32,7 @@ from distal.backends.llvm.layout import (
     kinds_in,
 )
 from distal.devices import cpu_memory, threads
-from distal.devices.background import Background
+from distal.devices.background import BackgroundWork
 from distal.devices.base import Cancel, Progress, Values
 from distal.devices.cache import Cache, default_folder
 from distal.devices.executable import Executable
@@ -104,7 +104,7 @@ def prepare(
         "compile_s": time.perf_counter() - started,
     }
     types = {r.name: r.type for r in module.resources}
-    code = _Code(Executable(*objects), llvm_level)
+    code = _LoadedCode(Executable(*objects), llvm_level)
     kernel = CpuKernel(code, files.interface, precision, lanes, stats, types)
     if llvm_level != best:
         kernel.optimize(files, best, quick)
@@ -132,7 +132,7 @@ def _is_tiered() -> bool:
 # Kernels as callable functions
 
 
-class _Code:
+class _LoadedCode:
     """The functions of object files in memory.
 
     Attributes:
@@ -155,7 +155,7 @@ class CpuKernel:
 
     def __init__(
         self,
-        code: _Code,
+        code: _LoadedCode,
         interface: dict[str, Any],
         precision: int,
         lanes: int,
@@ -165,7 +165,7 @@ class CpuKernel:
         self.stats = stats
         self._resource_types = resource_types
         self._code = code
-        self._optimizing: Background | None = None
+        self._optimizing: BackgroundWork | None = None
         self._running: set[_KernelCall] = set()
         self._interface = interface
         self._precision = precision
@@ -186,14 +186,14 @@ class CpuKernel:
 
         def work() -> None:
             files.store(plain, with_texts=True)  # for a process that begins before the end
-            code = _Code(Executable(*files.compile(best, together=False)), best)
+            code = _LoadedCode(Executable(*files.compile(best, together=False)), best)
             files.store(best)
             files.discard(plain)
             self.take(code)
 
-        self._optimizing = Background(work, "optimizing a kernel")
+        self._optimizing = BackgroundWork(work, "optimizing a kernel")
 
-    def take(self, code: _Code) -> None:
+    def take(self, code: _LoadedCode) -> None:
         """Run other code of the same kernel from the next tile on."""
         self._code = code
         for call in list(self._running):

@@ -11,7 +11,7 @@ import pytest
 
 import distal
 from distal.compiler import driver
-from distal.devices import cpu, kernel_key, levels
+from distal.devices import cpu, kernel_key, levels, object_files
 from distal.devices.cache import Cache
 from distal.devices.features import FEATURES_VARIABLE, LEVELS, host_levels
 from distal.devices.kernel_key import kernel_key as key_of
@@ -105,9 +105,10 @@ def test_a_changed_compiler_that_writes_the_same_text_reuses_its_object(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     cache = Cache(tmp_path)
+    monkeypatch.setenv("DISTAL_LLVM_LEVEL", "2")
     cpu.prepare(lower(slope), cache=cache)
     monkeypatch.setattr(kernel_key, "compiler_sources", lambda: "another")
-    monkeypatch.setattr(cpu, "compile_objects", None)  # is not called
+    monkeypatch.setattr(object_files, "compile_objects", None)  # is not called
     kernel = cpu.prepare(lower(slope), cache=cache)
     assert not kernel.stats["cache_hit"]
     assert kernel.render(9, 7, {}, {}).shape == (7, 9, 4)
@@ -154,9 +155,10 @@ def test_the_limit_of_the_cache_can_be_set(monkeypatch: pytest.MonkeyPatch, tmp_
 
 def test_the_level_of_code_generation_can_be_set(monkeypatch: pytest.MonkeyPatch) -> None:
     level, keys = LEVELS[0], []
-    for chosen in ("0", "2"):
-        monkeypatch.setenv("DISTAL_LLVM_LEVEL", chosen)
-        keys += [key_of(level, 32, "text"), kernel_key.object_key(level, "text")]
+    for chosen in (0, 2):
+        monkeypatch.setenv("DISTAL_LLVM_LEVEL", str(chosen))
+        assert kernel_key.optimization() == chosen
+        keys += [key_of(level, 32, "text"), kernel_key.object_key(level, "text", chosen)]
     assert len(set(keys)) == 4
     monkeypatch.delenv("DISTAL_LLVM_LEVEL")
     assert key_of(level, 32, "text") == keys[2]

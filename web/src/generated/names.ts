@@ -308,7 +308,7 @@ export const LANGUAGE: Names = {
   "LangForm": ["(name, signature, doc)", "A call with special rules, such as select or gradient; for scene code only."],
   "LangFunction": ["(row)", ""],
   "Numbers": ["", ""],
-  "Parameter": ["(name, label, kind, default, low=None, high=None, step=None, log=False, group='', help='', options=())", "One adjustable value of a scene. Operators and built-ins applied to it return expressions."],
+  "Parameter": ["(name, label, kind, default, low=None, high=None, step=None, log=False, group='', help='', options=(), \u2026)", "One adjustable value of a scene. Operators and built-ins applied to it return expressions."],
   "SoundFile": ["(path, loop=True)", "A sound from a file, with the texels of microphone at the time of the frame."],
   "Texture2D": ["(data, wrap='repeat')", "A picture, sampled by a vec2: (0, 0) is the lower left corner, (1, 1) the upper right."],
   "Texture3D": ["(data, wrap='repeat', axes='zyx')", "A volume, sampled by a vec3 from (0, 0, 0) to (1, 1, 1)."],
