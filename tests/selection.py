@@ -17,7 +17,7 @@ from __future__ import annotations
 import os
 import zlib
 from collections import defaultdict
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable, Iterable, Mapping
 from collections.abc import Set as AbstractSet
 from pathlib import Path
 from typing import Any, Final
@@ -45,8 +45,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     is_named = any("[" in word for word in config.invocation_params.args)
     if not (is_named or all_cases()):
         _leave_out(config, items, "cases", left_out(items))
-    if os.environ.get(TESTS):
-        _leave_out(config, items, "tests", not_chosen(os.environ[TESTS]))
+    plan = rows.plan()
+    if choice := os.environ.get(TESTS):
+        names = Path(choice).read_text("utf-8").splitlines() if choice != CHOSEN else plan.left_out
+        _leave_out(config, items, "tests", frozenset(names))
+    if workers := int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "0")):
+        items[:] = in_order(items, plan.seconds, workers)
 
 
 def _leave_out(
@@ -57,11 +61,23 @@ def _leave_out(
     config.stash[_LEFT_OUT][what] = before - len(items)
 
 
-def not_chosen(choice: str) -> AbstractSet[str]:
-    """The tests that a value of ``DISTAL_TESTS`` leaves out."""
-    if choice == CHOSEN:
-        return rows.left_out()
-    return set(Path(choice).read_text("utf-8").splitlines())
+def in_order(
+    items: Iterable[pytest.Item], seconds: Mapping[str, float], workers: int
+) -> list[pytest.Item]:
+    """The tests in the order of as many parts as there are workers, each with long files first.
+
+    A worker begins with a part, and takes of others' ends when it is through: the last tests of a
+    run are short.
+    """
+    files: dict[str, list[pytest.Item]] = defaultdict(list)
+    for item in items:
+        files[str(item.path)].append(item)
+
+    def mean(tests: list[pytest.Item]) -> float:
+        return sum(seconds.get(test.nodeid, 0.0) for test in tests) / len(tests)
+
+    order = sorted(files.values(), key=mean, reverse=True)
+    return [test for k in range(workers) for tests in order[k::workers] for test in tests]
 
 
 def all_cases() -> bool:

@@ -95,7 +95,9 @@ def test_the_slope_is_an_estimate_or_the_authors():
     assert (estimated.slope, estimated.node.estimate) == (1.0, True)
     found = check(estimated)
     assert found.holds
-    assert [f.code for f in found.findings if f.severity.value == "warning"] == ["slope-exceeded"]
+    assert [f.diagnostic.code for f in found.findings if f.severity.value == "warning"] == [
+        "slope-exceeded"
+    ]
     given = Shape.from_function(ball, factor=3.0, normalize=True, bounds=BOX, slope=1.5)
     assert (given.slope, given.node.estimate) == (1.5, False)
     assert check(given).holds

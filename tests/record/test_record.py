@@ -14,10 +14,10 @@ from pathlib import Path
 import pytest
 
 from tools.mutation.project import Project
-from tools.record import reach
+from tools.record import packages, reach
 from tools.record.choice import Cover, chosen, cover, pinned
 from tools.record.reach import parts
-from tools.record.rows import PATH, ROOT, Record, left_out, load, merged, raw_rows
+from tools.record.rows import PATH, ROOT, Record, load, merged, plan, raw_rows
 
 SOURCE = '''\
 """Made for the test."""
@@ -174,7 +174,8 @@ def test_a_record_is_the_same_after_it_was_kept(tmp_path):
     path = tmp_path / "rows.xz"
     kept.save(path)
     assert load(path) == kept
-    assert left_out(path) == set([*record.rows][2:])
+    assert plan(path).left_out == set([*record.rows][2:])
+    assert plan(path).seconds == {name: row.seconds for name, row in record.rows.items()}
     first = path.read_bytes()
     load(path).save(path)
     assert path.read_bytes() == first
@@ -318,6 +319,17 @@ def test_the_tests_of_make_test_run_every_function_that_any_test_runs(record):
 def test_most_functions_of_the_source_are_in_the_record(record):
     now = set(reach.digests())
     assert len(now & set(record.functions)) > 0.8 * len(now)
+
+
+def test_the_map_of_packages_names_folders_that_run_most_of_them(record):
+    rows = packages.rows_of((ROOT / "CONTRIBUTING.md").read_text("utf-8"))
+    here = {p.stem for p in (ROOT / "src/distal").iterdir() if p.suffix == ".py" or p.is_dir()}
+    functions = packages.functions_of(record)
+    assert rows.keys() == functions.keys()
+    assert rows.keys() <= here
+    for package, folders in rows.items():
+        assert all((ROOT / folder).exists() for folder in folders), package
+        assert packages.share(record, functions[package], folders) > 0.9, package
 
 
 def test_functions_are_named_as_python_names_them():

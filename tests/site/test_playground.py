@@ -20,6 +20,7 @@ from distal.editor.messages import LookRequest
 from distal.editor.worker import StudioWorker
 from distal.example_files import all_examples, gallery
 from tests.browser import BrowserUnavailableError, browser
+from tests.made_once import made_once
 from tools.site import playground
 
 SLOW_MS = 120_000
@@ -51,9 +52,10 @@ class Quiet(http.server.SimpleHTTPRequestHandler):
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory) -> Path:
-    made = tmp_path_factory.mktemp("site") / "playground"
-    playground.build(made, [*NAMES, *KEEP_FRAMES])
-    return made
+    def build(made: Path) -> None:
+        playground.build(made / "playground", [*NAMES, *KEEP_FRAMES])
+
+    return made_once(tmp_path_factory, "pages-of-the-playground", build) / "playground"
 
 
 @pytest.fixture(scope="module")

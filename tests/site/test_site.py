@@ -14,6 +14,7 @@ import pytest
 from distal.editor.links import shared_by
 from tests.accessibility import needs_axe, violations
 from tests.browser import BrowserUnavailableError, offline_page
+from tests.made_once import made_once
 
 ROOT = Path(__file__).parents[2]
 LINK = re.compile(r'(?:href|src)="([^"]+)"')
@@ -23,14 +24,16 @@ SCRIPT = re.compile(r"<script.*?</script>", re.DOTALL)
 @pytest.fixture(scope="module")
 def site(tmp_path_factory) -> Path:
     """The site with few scenes and lessons, and without the playground."""
-    folder = tmp_path_factory.mktemp("site") / "site"
-    few = ("--examples", "bunny,melting", "--lessons", "1,6", "--no-playground")
-    words = [sys.executable, ROOT / "tools" / "build_site.py", folder, *few]
     current = tmp_path_factory.mktemp("current")
-    subprocess.run(words, cwd=current, check=True, timeout=600)
-    left = sorted(path.name for path in current.iterdir())
-    assert left == [], f"blocks of the documents were run in the current folder: {left}"
-    return folder
+
+    def build(folder: Path) -> None:
+        few = ("--examples", "bunny,melting", "--lessons", "1,6", "--no-playground")
+        words = [sys.executable, ROOT / "tools" / "build_site.py", folder / "site", *few]
+        subprocess.run(words, cwd=current, check=True, timeout=600)
+        left = sorted(path.name for path in current.iterdir())
+        assert left == [], f"blocks of the documents were run in the current folder: {left}"
+
+    return made_once(tmp_path_factory, "few-pages", build) / "site"
 
 
 def links_of(page: Path):

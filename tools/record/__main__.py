@@ -20,9 +20,11 @@ from typing import Final
 
 from tools.record import monitor
 from tools.record.choice import chosen
+from tools.record.packages import with_table
 from tools.record.reach import digests, tests_for
 from tools.record.rows import PATH, ROOT, Record, load, merged, raw_rows
 
+GUIDE: Final = ROOT / "CONTRIBUTING.md"
 SHOWN: Final = 12  # names of tests, before the others are counted
 
 
@@ -44,6 +46,7 @@ def main() -> int:
     assert before is not None, "there is no record"
     found = replace(before, chosen=frozenset(chosen(before, options.times, options.seconds)))
     found.save()
+    GUIDE.write_text(with_table(GUIDE.read_text("utf-8"), found), "utf-8")
     print(
         f"{len(found.rows)} tests, {found.seconds(found.rows):.0f} s of the processor,"
         f" {len(found.functions)} functions; make test: {len(found.chosen)} tests,"
@@ -59,7 +62,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("action", choices=("all", "choose", "read", "changed"))
     parser.add_argument("revision", nargs="?", default="HEAD", metavar="REV or FOLDER")
     parser.add_argument("--times", type=int, default=3, help="runs of each function at most")
-    parser.add_argument("--seconds", type=float, default=700.0, help="of the processor at most")
+    parser.add_argument("--seconds", type=float, default=900.0, help="of the processor at most")
     parser.add_argument("--workers", default="3")
     return parser.parse_args()
 

@@ -77,3 +77,9 @@ def rows_of(text: str) -> dict[str, list[str]]:
     lines = text.partition(HEAD)[2].partition("\n\n")[0].splitlines()
     cells = (line.strip("|").replace("`", "").split("|") for line in lines)
     return {package.strip(): [f.strip() for f in rest.split(",")] for package, rest in cells}
+
+
+def with_table(text: str, record: Record) -> str:
+    """Return a document with the table of a record in the place of its own."""
+    start, _, rest = text.partition(HEAD)
+    return start + table(record) + "\n" + rest.partition("\n\n")[2]

@@ -87,9 +87,24 @@ class Record:
         path.write_bytes(b"".join(lzma.compress(p, preset=9 | lzma.PRESET_EXTREME) for p in parts))
 
 
-def left_out(path: Path = PATH) -> set[str]:
-    """Return the tests that ``make test`` does not run, from the header."""
-    return {name for name, _, is_chosen in _read(path)[0]["tests"] if not is_chosen}
+@dataclass(frozen=True)
+class Plan:
+    """What a run of the tests needs of the record.
+
+    Attributes:
+        seconds: Of each test.
+        left_out: The tests that ``make test`` does not run.
+    """
+
+    seconds: Mapping[str, float]
+    left_out: frozenset[str]
+
+
+def plan(path: Path = PATH) -> Plan:
+    """Return what the header says, which is read in an instant."""
+    tests = _read(path)[0]["tests"]
+    left_out = frozenset(name for name, _, is_chosen in tests if not is_chosen)
+    return Plan({name: seconds for name, seconds, _ in tests}, left_out)
 
 
 def load(path: Path = PATH) -> Record:

@@ -124,7 +124,8 @@ def test_tasks_of_one_event_loop_render_in_threads():
         tasks = [asyncio.to_thread(s.render, size=(4, 3), samples=1) for s in scenes * 2]
         return await asyncio.gather(*tasks)
 
-    made = asyncio.run(all_of_them())
+    with ThreadPoolExecutor(1) as pool:  # in this thread another test's loop may run
+        made = pool.submit(lambda: asyncio.run(all_of_them())).result()
     for first, second in zip(made[:3], made[3:], strict=True):
         assert (first.array == second.array).all()
 
