@@ -28,6 +28,7 @@ class ObjectFiles:
     def __init__(self, level: CpuLevel, precision: int, identity: str, cache: Cache) -> None:
         self._level, self._precision, self._identity = level, precision, identity
         self._cache = cache
+        self._keys: dict[int, list[str]] = {}  # hashing a megabyte of text takes 5 ms
         self.texts: Sequence[str] = ()
         self.interface: dict[str, Any] = {}
 
@@ -84,7 +85,10 @@ class ObjectFiles:
         return objects if len(objects) == len(keys) else ()
 
     def _object_keys(self, llvm_level: int) -> list[str]:
-        return [object_key(self._level, text, llvm_level) for text in self.texts]
+        if llvm_level not in self._keys:
+            keys = [object_key(self._level, text, llvm_level) for text in self.texts]
+            self._keys[llvm_level] = keys
+        return self._keys[llvm_level]
 
     def _key(self, llvm_level: int) -> str:
         return kernel_key(self._level, self._precision, self._identity, llvm_level=llvm_level)
