@@ -36,7 +36,7 @@ CHAIN = {
     "distal.images.picture.Picture",
     "executor().kernels.kernel": "def (lowered: distal.runtime.lowered.Lowered, device: str, "
     "precision: int) -> distal.devices.base.Kernel",
-    "kernels.DEVICES": "typing.Mapping[str, def (distal.ir.nodes.Module, int, str | None) -> "
+    "kernels.DEVICES": "typing.Mapping[str, def (distal.ir.nodes.Module, int, str | None, bool) -> "
     "distal.devices.base.Kernel]",
     "kernels.cpu.prepare(module)": "distal.devices.cpu.CpuKernel",
     "kernels.gpu.prepare(module)": "distal.devices.gpu.GpuKernel",

@@ -62,6 +62,8 @@ def prepare(
     precision: int = 32,
     features: str | None = None,
     cache: Cache | None = None,
+    *,
+    is_long: bool = False,
 ) -> CpuKernel:
     """Compile a module, or load its kernel from the cache.
 
@@ -71,6 +73,7 @@ def prepare(
         precision: Bits of a float, 32 or 64.
         features: The name of a CPU feature level; None: the best one of this processor.
         cache: Where kernels are stored; None: the user's folder.
+        is_long: Whether the first run takes longer than the compiler: optimized code runs at once.
 
     Raises:
         CompileError: The CPU cannot run the scene.
@@ -81,7 +84,7 @@ def prepare(
     cache = Cache(default_folder()) if cache is None else cache
     files = ObjectFiles(level, precision, print_identity(module), cache)
     best = optimization()
-    quick = _PLAIN if _is_tiered() else best
+    quick = _PLAIN if not is_long and _is_tiered() else best
     llvm_level, objects = best, files.load(best)
     if not objects and quick != best:
         llvm_level, objects = quick, files.load(quick)

@@ -60,6 +60,8 @@ else:
 
 # The fewest rows of ``PythonExecutor.evaluate`` that several threads evaluate.
 _ROWS_OF_A_THREAD: Final = 16384
+# Pixels, times samples, that take about as long as LLVM's optimized code generation.
+_PIXELS_OF_A_LONG_RUN: Final = 2**17
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,7 +228,10 @@ class PythonExecutor(TapeExecutor):
                 kept = film.PASS_NUMBERS if is_in_passes else ()
                 parts = tuple(part.frozen(numbers, kept) for part in parts)
             if options.cluster is None:
-                kernels = [self.kernels.kernel(part, options.device, 32) for part in parts]
+                is_long = _computed_pixels(image, options) > _PIXELS_OF_A_LONG_RUN
+                kernels = [
+                    self.kernels.kernel(part, options.device, 32, is_long=is_long) for part in parts
+                ]
             else:
                 # What follows the first program is fast: it is not worth sending pixels there.
                 kernels = [cast("Kernel", cluster_kernels.kernel(options.cluster, parts[0]))]
@@ -471,6 +476,13 @@ def _preview_of(
         preview(Picture(passes.shown(linear), stats=exposed.figures(), light=linear))
 
     return show
+
+
+def _computed_pixels(image: Image | Composed, options: RenderOptions) -> int:
+    """Return how often the function of a picture is computed, roughly."""
+    width, height = options.size
+    refined = isinstance(image, Composed) and image.refined
+    return width * height * (options.samples or (PATH_SAMPLES if refined else 1))
 
 
 def _layers(exposed: accumulation.Film) -> dict[str, NDArray[Any]]:

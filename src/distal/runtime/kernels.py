@@ -28,17 +28,17 @@ else:
 
 KERNELS_KEPT: Final = 128  # limits the memory of a session in which a scene is edited for hours
 
-# Compiles a module for a precision in bits and, on a GPU, for an adapter.
-Prepare: TypeAlias = Callable[[Module, int, str | None], Kernel]
+# Compiles a module for a precision in bits, on a GPU for an adapter, on a CPU for a long first run.
+Prepare: TypeAlias = Callable[[Module, int, str | None, bool], Kernel]
 DEVICES: Final[Mapping[str, Prepare]] = {
-    CPU: lambda module, bits, _: cpu.prepare(module, precision=bits),
-    GPU: lambda module, bits, adapter: gpu.prepare(
+    CPU: lambda module, bits, _, is_long: cpu.prepare(module, precision=bits, is_long=is_long),
+    GPU: lambda module, bits, adapter, _: gpu.prepare(
         module, precision=bits, path="compute", adapter=adapter
     ),
-    GPU_FRAGMENT: lambda module, bits, adapter: gpu.prepare(
+    GPU_FRAGMENT: lambda module, bits, adapter, _: gpu.prepare(
         module, precision=bits, path="fragment", adapter=adapter
     ),
-    REFERENCE: lambda module, bits, _: reference.prepare(module, precision=bits),
+    REFERENCE: lambda module, bits, _, __: reference.prepare(module, precision=bits),
 }
 
 
@@ -56,13 +56,17 @@ class KernelCache:
     def __len__(self) -> int:
         return len(self._kernels)
 
-    def kernel(self, lowered: Lowered, device: str, precision: int) -> Kernel:
+    def kernel(
+        self, lowered: Lowered, device: str, precision: int, *, is_long: bool = False
+    ) -> Kernel:
         """Return the kernel of a function; compile it if it is not in the cache.
 
         Args:
             lowered: The function.
             device: A name of ``DEVICES``; for a GPU, an adapter may follow after a colon.
             precision: Bits of a float, 32 or 64.
+            is_long: Whether the first run takes longer than the compiler; a CPU then has optimized
+                code at once.
 
         Raises:
             ValueError: There is no such device.
@@ -82,7 +86,7 @@ class KernelCache:
                 return kernel
 
         def made() -> Kernel:
-            kernel = DEVICES[name](lowered.module, precision, adapter or None)
+            kernel = DEVICES[name](lowered.module, precision, adapter or None, is_long)
             with self._lock:
                 self._kernels[key] = kernel
                 while len(self._kernels) > KERNELS_KEPT:
