@@ -6,8 +6,7 @@ wait for it. One piece of work runs at a time, so that others keep their process
 
 from __future__ import annotations
 
-import os
-import sys
+import atexit
 import threading
 import warnings
 from collections.abc import Callable
@@ -17,8 +16,9 @@ from distal.devices.threads import start_threads
 from distal.forking import new_lock
 
 _ONE_AT_A_TIME: Final = new_lock()
-# On two busy processors the work has a quarter of one: it neither delays nor waits for long.
-_NICENESS: Final = 5
+# Held by what an exit must not interrupt, for milliseconds: LLVM's loader. An exit keeps it.
+UNINTERRUPTED: Final = new_lock()
+atexit.register(UNINTERRUPTED.acquire)
 
 
 class BackgroundWork:
@@ -58,17 +58,8 @@ class BackgroundWork:
 
     def _run(self) -> None:
         try:
-            _give_way()
             with _ONE_AT_A_TIME:
                 self._work()
         except BaseException as error:
             self._failure = error
         self._ended = True
-
-
-def _give_way() -> None:
-    """Lower the priority of this thread, where threads have their own."""
-    if sys.platform == "linux":
-        thread = threading.get_native_id()
-        nice = os.getpriority(os.PRIO_PROCESS, thread) + _NICENESS
-        os.setpriority(os.PRIO_PROCESS, thread, min(nice, 19))

@@ -10,6 +10,7 @@ code computes the same bits, is compiled beside, and takes over between two tile
 from __future__ import annotations
 
 import importlib
+import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
@@ -32,7 +33,7 @@ from distal.backends.llvm.layout import (
     kinds_in,
 )
 from distal.devices import cpu_memory, threads
-from distal.devices.background import BackgroundWork
+from distal.devices.background import UNINTERRUPTED, BackgroundWork
 from distal.devices.base import Cancel, Progress, Values
 from distal.devices.cache import Cache, default_folder
 from distal.devices.executable import Executable
@@ -53,6 +54,8 @@ RunPasses = Callable[[Module, Target, int], Module]
 # Parts of a picture begin at multiples of so many rows.
 ROWS: Final = TILE_HEIGHT
 _PLAIN: Final = 0  # LLVM's level of code generation for a new kernel's first code
+# On two busy processors the optimizing process has a quarter of one.
+_NICENESS: Final = 5
 _LARGEST_SIDE: Final = 32768  # pixels; a picture's size in bytes fits 64 bits on all systems
 
 
@@ -127,9 +130,12 @@ def _new(files: ObjectFiles, best: int, quick: int) -> tuple[int, Sequence[bytes
 def _is_tiered() -> bool:
     """Return whether a new kernel's first code is not optimized.
 
-    With one processor, or where LLVM needs a process of its own, the other code would wait for it.
+    With one processor, or little memory, the other code would wait for it; a frozen program cannot
+    start Python.
     """
-    return not is_chosen() and threads.usable_threads() > 1 and not is_limited()
+    can_start_python = bool(sys.executable) and not hasattr(sys, "frozen")
+    several = threads.usable_threads() > 1
+    return not is_chosen() and several and can_start_python and not is_limited()
 
 
 # Kernels as callable functions
@@ -189,7 +195,9 @@ class CpuKernel:
 
         def work() -> None:
             files.store(plain, with_texts=True)  # for a process that begins before the end
-            code = _LoadedCode(Executable(*files.compile(best, together=False)), best)
+            objects = files.compile(best, niceness=_NICENESS)
+            with UNINTERRUPTED:
+                code = _LoadedCode(Executable(*objects), best)
             files.store(best)
             files.discard(plain)
             self.take(code)

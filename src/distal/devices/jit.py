@@ -90,7 +90,10 @@ def compile_object(
     """
     chosen = optimization() if llvm_level is None else llvm_level
     if is_limited():
-        return _compiled_apart(text, level, chosen, assembly)
+        try:
+            return compile_apart(text, level, chosen, assembly=assembly)
+        except ChildProcessError as error:
+            raise MemoryError(f"LLVM cannot compile the scene within ulimit{error}") from None
     return _compiled(text, level, chosen, assembly)
 
 
@@ -127,25 +130,44 @@ def compile_objects(texts: Sequence[str], level: CpuLevel, llvm_level: int) -> l
     return [each.result() for each in made]
 
 
-def _compiled_apart(text: str, level: CpuLevel, llvm_level: int, assembly: bool) -> Any:
-    """Compile in a separate process, because LLVM ends its process if it gets no memory."""
+def compile_apart(
+    text: str, level: CpuLevel, llvm_level: int, *, assembly: bool = False, niceness: int = 0
+) -> Any:
+    """Return what ``compile_object`` returns, compiled in a process of its own.
+
+    LLVM ends its process if it gets no memory, and a process that ends while a thread is in LLVM
+    crashes.
+
+    Args:
+        text: The module in LLVM's language.
+        level: The CPU feature level to compile for.
+        llvm_level: LLVM's level of code generation.
+        assembly: Whether to return assembly text.
+        niceness: How much the process gives way to others; if it does, ctrl-C does not end it.
+
+    Raises:
+        ChildProcessError: The process ended without a result.
+    """
     path = os.pathsep.join(filter(None, sys.path))
+    words = (level.name, str(llvm_level), str(int(assembly)), str(niceness))
     made = subprocess.run(
-        [sys.executable, "-c", _APART, level.name, str(llvm_level), str(int(assembly))],
+        [sys.executable, "-c", _APART, *words],
         input=text.encode(),
         capture_output=True,
         env={**os.environ, "PYTHONPATH": path},
+        start_new_session=niceness > 0,
     )
     if made.returncode != 0:
         last = made.stderr.decode("utf-8", "replace").strip().splitlines()[-1:]
-        why = f" ({printable(last[0])})" if last else ""
-        raise MemoryError(f"LLVM cannot compile the scene within ulimit{why}")
+        raise ChildProcessError(f" ({printable(last[0])})" if last else "")
     return made.stdout.decode() if assembly else made.stdout
 
 
 def _serve() -> None:
-    """Compile the text on stdin; runs in the process that ``_compiled_apart`` starts."""
-    name, llvm_level, assembly = sys.argv[1:]
+    """Compile the text on stdin; runs in the process that ``compile_apart`` starts."""
+    name, llvm_level, assembly, niceness = sys.argv[1:]
+    if hasattr(os, "nice"):
+        os.nice(int(niceness))
     text = sys.stdin.buffer.read().decode()
     made = _compiled(text, level_named(name), int(llvm_level), assembly == "1")
     sys.stdout.buffer.write(made.encode() if isinstance(made, str) else made)

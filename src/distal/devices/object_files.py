@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import json
 import zlib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from distal.devices.cache import Cache
 from distal.devices.features import CpuLevel
-from distal.devices.jit import compile_objects
+from distal.devices.jit import compile_apart, compile_objects
 from distal.devices.kernel_key import kernel_key, object_key
 
 
@@ -46,22 +46,27 @@ class ObjectFiles:
         """Return the object files of the modules if the cache has all of them; else nothing."""
         return self._stored(self._object_keys(llvm_level))
 
-    def compile(self, llvm_level: int, *, together: bool = True) -> Sequence[bytes]:
+    def compile(self, llvm_level: int, *, niceness: int = 0) -> Sequence[bytes]:
         """Return the object files of the modules; compile and store those that are missing.
 
         Args:
             llvm_level: LLVM's level.
-            together: Whether to compile them at the same time.
+            niceness: Above 0, processes that give way to others compile one module at a time.
         """
         keys = self._object_keys(llvm_level)
         objects = {key: found for key in keys if (found := self._cache.load(key)) is not None}
         missing = {k: t for k, t in zip(keys, self.texts, strict=True) if k not in objects}
-        for some in [list(missing)] if together else [[key] for key in missing]:
-            texts = [missing[key] for key in some]
-            made = compile_objects(texts, self._level, llvm_level) if texts else []
-            for key, code in zip(some, made, strict=True):
-                self._cache.store(key, code)
-                objects[key] = code
+        made: Iterable[bytes] = ()
+        if niceness:
+            made = (
+                compile_apart(text, self._level, llvm_level, niceness=niceness)
+                for text in missing.values()
+            )
+        elif missing:
+            made = compile_objects(list(missing.values()), self._level, llvm_level)
+        for key, code in zip(missing, made, strict=True):
+            self._cache.store(key, code)
+            objects[key] = code
         return [objects[key] for key in keys]
 
     def store(self, llvm_level: int, *, with_texts: bool = False) -> None:

@@ -135,14 +135,10 @@ def no_passes(*_):
 
 
 def fail_to_optimize(monkeypatch, error):
-    compile_objects = object_files.compile_objects
+    def compiled(*_, **__):
+        raise error
 
-    def compiled(texts, level, llvm_level):
-        if llvm_level != 0:
-            raise error
-        return compile_objects(texts, level, llvm_level)
-
-    monkeypatch.setattr(object_files, "compile_objects", compiled)
+    monkeypatch.setattr(object_files, "compile_apart", compiled)
 
 
 def test_a_process_that_ended_early_left_its_first_code(tmp_path, monkeypatch):
@@ -234,12 +230,8 @@ import distal, sys, time
 from distal.devices import cpu, object_files
 from distal.devices.cache import Cache
 from distal.frontend import lower
-compile_objects = object_files.compile_objects
-def slow(texts, level, llvm_level):
-    time.sleep(60.0 if llvm_level else 0.0)
-    return compile_objects(texts, level, llvm_level)
 if sys.argv[1] == "waiting":
-    object_files.compile_objects = slow
+    object_files.compile_apart = lambda *_, **__: time.sleep(60.0)
 kernel = cpu.prepare(lower(distal.load("example:raymarcher")), cache=Cache(None))
 assert kernel.stats["optimization"] == 0
 assert kernel._optimizing._thread.is_alive()
