@@ -4,7 +4,7 @@ The reference measures the slopes of the plain field; its own gradients and thos
 are held against them. Points at creases, jumps and where the field bends too fast to measure are
 told by the field's values alone (``differences``) and left out; a tenth of them at most.
 ``DISTAL_GRADIENT_FIELDS`` is how many fields are made. The CPU device compiles a twelfth of them,
-a third of them in ``make test-all``.
+a third of them in ``make sweep``.
 """
 
 from __future__ import annotations
