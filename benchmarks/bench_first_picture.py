@@ -2,7 +2,7 @@
 
 The kernel cache is empty. In turn with plain code first (the default) and with optimized code alone
 (``DISTAL_LLVM_LEVEL=2``): the least and the median by the clock, and the time of the processors
-without that of the threads that optimize. Other work on the machine changes the latter less.
+without that of the process that optimizes. Other work on the machine changes the latter less.
 
     python benchmarks/bench_first_picture.py [--cases first long] [--runs 7]
 """
@@ -25,36 +25,17 @@ CASES = {
 LEVELS = {"plain first": "", "optimized alone": "2"}
 
 MEASURED = """
-import json, sys, threading, time
-from time import perf_counter, process_time, thread_time
+import json, sys, time
+from time import perf_counter, process_time
 
 begin = perf_counter(), process_time()
-beside = []  # what the threads that optimize have used
-running = []
+from distal import *
 
 
 def elapsed(since):
-    used = sum(beside) + sum(time.clock_gettime(clock) for clock in running)
-    return perf_counter() - since[0], process_time() - since[1] - used
+    return perf_counter() - since[0], process_time() - since[1]
 
 
-from distal import *
-from distal.devices import background
-
-work = background.Background._run
-
-
-def timed(self):
-    clock = time.pthread_getcpuclockid(threading.get_ident())
-    running.append(clock)
-    try:
-        work(self)
-    finally:
-        running.remove(clock)
-        beside.append(thread_time())
-
-
-background.Background._run = timed
 if sys.argv[1] == "long":
     load("example:sea").render((960, 540))
     seconds = elapsed(begin)
@@ -63,7 +44,7 @@ else:
     seconds = elapsed(begin)
 if sys.argv[1] == "second":
     time.sleep(1.5)  # the first structure has been optimized
-    begin = perf_counter(), process_time() - sum(beside)
+    begin = perf_counter(), process_time()
     (Torus(1, 0.3) | Box(1)).render((64, 48))
     seconds = elapsed(begin)
 print(json.dumps(seconds))
