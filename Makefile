@@ -30,8 +30,8 @@ BIN := $(VENV)/bin
 # The first interpreter that is new enough; `make PYTHON=... test` overrides it.
 PYTHON ?= $(shell for p in python3 python3.11 python3.12 python3.13 python3.14 python; do \
 	"$$p" -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && echo "$$p" && break; done)
-# One more than two processors: a worker waits for browsers and other processes half of its time.
-WORKERS ?= 3
+# Twice two processors: a worker waits for browsers and other processes half of its time.
+WORKERS ?= 4
 REV ?= HEAD
 SWEEP ?= 5000
 SAMPLES ?= 40

@@ -35,7 +35,7 @@ CHAIN = {
     "distal.lang.composed.Composed, options: distal.lang.render_options.RenderOptions) -> "
     "distal.images.picture.Picture",
     "executor().kernels.kernel": "def (lowered: distal.runtime.lowered.Lowered, device: str, "
-    "precision: int) -> distal.devices.base.Kernel",
+    "precision: int, *, is_long: bool =) -> distal.devices.base.Kernel",
     "kernels.DEVICES": "typing.Mapping[str, def (distal.ir.nodes.Module, int, str | None, bool) -> "
     "distal.devices.base.Kernel]",
     "kernels.cpu.prepare(module)": "distal.devices.cpu.CpuKernel",

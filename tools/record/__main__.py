@@ -63,7 +63,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("revision", nargs="?", default="HEAD", metavar="REV or FOLDER")
     parser.add_argument("--times", type=int, default=3, help="runs of each function at most")
     parser.add_argument("--seconds", type=float, default=900.0, help="of the processor at most")
-    parser.add_argument("--workers", default="3")
+    parser.add_argument("--workers", default="4")
     return parser.parse_args()
 
 

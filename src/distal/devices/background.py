@@ -1,7 +1,7 @@
 """Work in a thread beside the calls that its result will make faster.
 
 Input: what to do. Output: nothing; the work hands its result on. An exiting interpreter does not
-wait for it. One piece of work runs at a time, so that others keep their processors.
+wait for it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from typing import Final
 from distal.devices.threads import start_threads
 from distal.forking import new_lock
 
-_ONE_AT_A_TIME: Final = new_lock()
+# For what takes long: others keep their processors.
+ONE_AT_A_TIME: Final = new_lock()
 # Held by what an exit must not interrupt, for milliseconds: LLVM's loader. An exit keeps it.
 UNINTERRUPTED: Final = new_lock()
 atexit.register(UNINTERRUPTED.acquire)
@@ -58,8 +59,7 @@ class BackgroundWork:
 
     def _run(self) -> None:
         try:
-            with _ONE_AT_A_TIME:
-                self._work()
+            self._work()
         except BaseException as error:
             self._failure = error
         self._ended = True

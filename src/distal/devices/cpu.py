@@ -33,7 +33,7 @@ from distal.backends.llvm.layout import (
     kinds_in,
 )
 from distal.devices import cpu_memory, threads
-from distal.devices.background import UNINTERRUPTED, BackgroundWork
+from distal.devices.background import ONE_AT_A_TIME, UNINTERRUPTED, BackgroundWork
 from distal.devices.base import Cancel, Progress, Values
 from distal.devices.cache import Cache, default_folder
 from distal.devices.executable import Executable
@@ -54,6 +54,8 @@ RunPasses = Callable[[Module, Target, int], Module]
 # Parts of a picture begin at multiples of so many rows.
 ROWS: Final = TILE_HEIGHT
 _PLAIN: Final = 0  # LLVM's level of code generation for a new kernel's first code
+# A program that draws a few small pictures ends before, or has both processors until then.
+_DELAY_S: Final = 1.0
 # On two busy processors the optimizing process has a quarter of one.
 _NICENESS: Final = 5
 _LARGEST_SIDE: Final = 32768  # pixels; a picture's size in bytes fits 64 bits on all systems
@@ -195,7 +197,9 @@ class CpuKernel:
 
         def work() -> None:
             files.store(plain, with_texts=True)  # for a process that begins before the end
-            objects = files.compile(best, niceness=_NICENESS)
+            time.sleep(_DELAY_S)
+            with ONE_AT_A_TIME:
+                objects = files.compile(best, niceness=_NICENESS)
             with UNINTERRUPTED:
                 code = _LoadedCode(Executable(*objects), best)
             files.store(best)

@@ -36,6 +36,7 @@ def scene(frame: Frame) -> vec4:
 def several_processors(monkeypatch):
     monkeypatch.delenv(LEVEL_VARIABLE, raising=False)
     monkeypatch.setattr("distal.devices.threads.usable_threads", lambda: 2)
+    monkeypatch.setattr(cpu, "_DELAY_S", 0.0)
 
 
 @pytest.fixture
@@ -45,12 +46,12 @@ def held():
     class Held:
         def __init__(self):
             self.count = 1
-            background._ONE_AT_A_TIME.acquire()
+            background.ONE_AT_A_TIME.acquire()
 
         def free(self):
             if self.count:
                 self.count = 0
-                background._ONE_AT_A_TIME.release()
+                background.ONE_AT_A_TIME.release()
 
     lock = Held()
     yield lock

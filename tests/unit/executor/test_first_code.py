@@ -22,8 +22,8 @@ def test_long_runs_begin_with_optimized_code(size, samples, level, monkeypatch):
     monkeypatch.delenv(LEVEL_VARIABLE, raising=False)
     monkeypatch.setenv("DISTAL_CACHE_DIR", "off")
     monkeypatch.setattr("distal.devices.threads.usable_threads", lambda: 2)
-    monkeypatch.setattr("distal.devices.background.Background._start", lambda _: None)
-    monkeypatch.setattr("distal.devices.background.Background.check", lambda _: None)
+    monkeypatch.setattr("distal.devices.background.BackgroundWork._start", lambda _: None)
+    monkeypatch.setattr("distal.devices.background.BackgroundWork.check", lambda _: None)
     monkeypatch.setitem(runtime_access._EXECUTOR, "", PythonExecutor())
     picture = slope.render(size, samples=samples, device="cpu")
     assert picture.stats["optimization"] == level
