@@ -45,7 +45,7 @@ SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers g
 	chromium xvfb xdotool imagemagick
 
 # A worker begins with a part of the files, and so compiles few programs that another compiles too.
-UNITS = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -rs
+UNITS = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -rfEs
 
 .PHONY: picture test test-all test-for record lint style units system bench site sweep sweep-fields sweep-threads sweep-segments sweep-meshes parity mutate versions clean
 .NOTPARALLEL:

@@ -18,7 +18,14 @@ from typer.models import CommandInfo
 import distal
 from distal.cli import COMMANDS, SHORT
 from distal.cli.arguments import UsageError, check_is_not_scene, read_scene
-from distal.cli.base import SceneArgument, answer, application, load, reporting
+from distal.cli.base import (
+    SceneArgument,
+    answer,
+    application,
+    check_cache,
+    load,
+    reporting,
+)
 from distal.compiler.driver import COMPILE_TARGETS, IR_TARGET
 from distal.example_files import EXAMPLE_PREFIX, all_examples
 from distal.export.texts import with_header, write_files
@@ -67,6 +74,7 @@ def compile(
             raise UsageError(f"'{output}' is where the interface or the vertex stage goes")
         check_is_not_scene(output, scene)
         check_destination(output)
+    check_cache()
     artifact = distal.compile(load(scene), target=target.value, after=after)
     text = with_header(artifact, target.value, _file_name(scene))
     if output is None:

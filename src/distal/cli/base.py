@@ -352,13 +352,29 @@ def check_processor() -> None:
     """Check that the processor can run the code of the CPU device.
 
     Raises:
-        UsageError: It cannot, or ``DISTAL_CPU`` names a level that it lacks.
+        UsageError: It cannot, or a variable of the environment has a value that it must not have.
     """
     from distal.devices.features import chosen_level
 
+    _checked(chosen_level)
+    check_cache()
+
+
+def check_cache() -> None:
+    """Check the variables of the environment that the cache of kernels and texts reads.
+
+    Raises:
+        UsageError: One has a value that it must not have.
+    """
+    from distal.devices.cache import size_limit
+    from distal.devices.kernel_key import optimization
+
+    _checked(size_limit)
+    _checked(optimization)
+
+
+def _checked(read: Callable[[], object]) -> None:
     try:
-        chosen_level()
-    except (
-        ValueError
-    ) as error:  # a processor too old, or a level in DISTAL_CPU that it does not have
+        read()
+    except ValueError as error:
         raise UsageError(str(error)) from None

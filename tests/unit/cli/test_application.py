@@ -170,6 +170,26 @@ def test_a_processor_that_cannot_is_one_line(scene, run, monkeypatch):
 
 
 @pytest.mark.parametrize(
+    "words",
+    [("render", "s.py", "-o", "a.png"), ("compile", "example:planet", "--target", "glsl-es300")],
+    ids=["render", "compile"],
+)
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("DISTAL_CACHE_MIB", "DISTAL_CACHE_MIB is a whole number of MiB: 'much'"),
+        ("DISTAL_LLVM_LEVEL", "DISTAL_LLVM_LEVEL is a level of LLVM's code generation, 0 to 3"),
+    ],
+)
+def test_a_variable_with_another_value_is_one_line(scene, run, monkeypatch, words, name, message):
+    monkeypatch.setenv(name, "much")
+    result = run(*words)
+    assert result.exit_code == 2
+    assert message in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
     ("source", "file"),
     [("a/s.py", "s.png"), ("s.py:picture", "s_picture.png"), ("example:sea", "sea.png")],
 )
