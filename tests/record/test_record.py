@@ -204,8 +204,9 @@ def test_what_tests_run_is_recorded_in_children_and_forks_too(tmp_path):
     (package / "made.py").write_text(SOURCE)
     (tmp_path / "tests/test_made.py").write_text(TESTS)
     paths = [ROOT / "tools/record/in_children", tmp_path / "src", ROOT / "src", ROOT]
+    outside = {k: v for k, v in os.environ.items() if k != "DISTAL_RECORD_TEST"}
     environment = {
-        **os.environ,
+        **outside,
         "PYTHONPATH": os.pathsep.join(map(str, paths)),
         "DISTAL_RECORD": str(out),
         "DISTAL_RECORD_SOURCE": f"{tmp_path / 'src'}{os.sep}",
