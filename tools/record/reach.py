@@ -34,19 +34,25 @@ def parts(text: str) -> tuple[dict[str, str], dict[str, ast.stmt]]:
     """Return the text of each function by name, and the other statements of a module by text."""
     functions: dict[str, str] = {}
     others: dict[str, ast.stmt] = {}
+    lines = text.splitlines()
+
+    def first(node: ast.stmt) -> int:
+        return min([node.lineno, *(d.lineno for d in getattr(node, "decorator_list", ()))]) - 1
+
+    def source(node: ast.stmt) -> str:
+        return "\n".join(lines[first(node) : node.end_lineno])
 
     def walk(body: list[ast.stmt], prefix: str) -> None:
         for node in body:
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
                 name = prefix + node.name  # overloads of one name are one function
-                functions[name] = functions.get(name, "") + ast.unparse(node)
+                functions[name] = functions.get(name, "") + source(node)
             elif isinstance(node, ast.ClassDef):
                 walk(node.body, f"{prefix}{node.name}.")
-                head = ast.ClassDef(node.name, node.bases, node.keywords, [], node.decorator_list)
-                head.body = [ast.Pass()]
-                others[prefix + ast.unparse(head)] = node
+                head = lines[first(node) : max(first(node.body[0]), node.lineno)]
+                others[prefix + "\n".join(head)] = node
             elif not isinstance(node, ast.Import | ast.ImportFrom) and not _is_docstring(node):
-                others[prefix + ast.unparse(node)] = node
+                others[prefix + source(node)] = node
 
     walk(ast.parse(text).body, "")
     return functions, others
