@@ -152,8 +152,13 @@ class _Chooser:
 
 
 def mutated_copy(project: Project, mutation: Mutation, folder: Path) -> Path:
-    """Copy the source into a folder, with the mutation; return where it is."""
-    made = folder / "src"
+    """Copy the source into a folder, with the mutation, beside all else; return where it is."""
+    tree = folder / "tree"
+    tree.mkdir()
+    for path in project.root.iterdir():  # the source finds the examples beside itself
+        if path != project.source:
+            (tree / path.name).symlink_to(path)
+    made = tree / project.source.name
     shutil.copytree(
         project.source, made, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info")
     )
