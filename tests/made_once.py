@@ -27,8 +27,9 @@ def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path],
         folder.mkdir()
     except FileExistsError:
         until = time.monotonic() + LIMIT_S
-        while not ready.exists() and time.monotonic() < until:
+        while not ready.exists():
             assert not failed.exists(), f"another worker could not make '{name}'"
+            assert time.monotonic() < until, f"another worker still makes '{name}'"
             time.sleep(0.1)
         return folder
     try:

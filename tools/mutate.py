@@ -145,14 +145,14 @@ def _run_all(
 ) -> list[Outcome]:
     outcomes: list[Outcome] = []
     missed: list[Outcome] = []
-    chosen_ones = selection.record.chosen
+    of_make_test = selection.record.chosen
     begin = time.monotonic()
     for number, mutation in enumerate(chosen, 1):
         if options.minutes and time.monotonic() - begin > 60.0 * options.minutes:
             print(f"stopped after {options.minutes:g} minutes")
             break
         tests = selection.tests(mutation)
-        first = {n: s for n, s in tests.items() if n in chosen_ones} if options.proof else tests
+        first = {n: s for n, s in tests.items() if n in of_make_test} if options.proof else tests
         outcome = run(project, mutation, first)
         if options.proof and outcome.verdict in (SURVIVED, UNTESTED):
             rest = run(project, mutation, {n: s for n, s in tests.items() if n not in first})

@@ -17,7 +17,7 @@ from tools.mutation.project import Project
 from tools.record import packages, reach
 from tools.record.choice import Cover, chosen, cover, pinned
 from tools.record.reach import parts
-from tools.record.rows import PATH, ROOT, Record, load, merged, plan, raw_rows
+from tools.record.rows import PATH, ROOT, Plan, Record, load, merged, plan, raw_rows
 
 SOURCE = '''\
 """Made for the test."""
@@ -181,6 +181,10 @@ def test_a_record_is_the_same_after_it_was_kept(tmp_path):
     assert path.read_bytes() == first
 
 
+def test_without_a_record_nothing_is_left_out(tmp_path):
+    assert plan(tmp_path / "rows.xz") == Plan({}, frozenset())
+
+
 def test_new_rows_replace_old_ones_and_the_rest_stays():
     before = merged({"a": (1.0, {"f", "g"}), "b": (2.0, {"g"})}, {"f": "1", "g": "1"}, None)
     after = merged({"a": (3.0, {"f", "h"})}, {"f": "2", "g": "2", "h": "2"}, before)
@@ -192,6 +196,12 @@ def test_new_rows_replace_old_ones_and_the_rest_stays():
     assert after.digests == {"f": "2", "g": "1", "h": "2"}
     assert after.running(["g"]) == {"b"}
     assert after.running(["f", "unknown"]) == {"a"}
+    assert after.chosen == frozenset()
+
+
+def test_make_test_runs_a_test_that_is_new_to_the_record():
+    before = merged({"a": (1.0, {"f"})}, {"f": "1"}, None)
+    assert merged({"a": (1.0, {"f"}), "b": (1.0, {"f"})}, {"f": "1"}, before).chosen == {"b"}
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")

@@ -39,7 +39,7 @@ def main() -> int:
     code = 0
     if options.action == "all":
         with tempfile.TemporaryDirectory(prefix="distal-record-") as folder:
-            code = _run(["--dist", "worksteal"], folder, options.workers)
+            code = _run(folder, options.workers)
             before = merged(raw_rows(Path(folder)), digests(), None)
     if options.action == "read":
         before = merged(raw_rows(Path(options.revision)), digests(), before)
@@ -67,7 +67,7 @@ def _options() -> argparse.Namespace:
     return parser.parse_args()
 
 
-def _run(words: list[str], folder: str, workers: str, **environment: str) -> int:
+def _run(folder: str, workers: str, **environment: str) -> int:
     """Run pytest with the recorder; return its status."""
     inside = [str(Path(__file__).parent / "in_children"), os.environ.get("PYTHONPATH", "")]
     added = {
@@ -76,7 +76,8 @@ def _run(words: list[str], folder: str, workers: str, **environment: str) -> int
         "PYTHONPATH": os.pathsep.join(filter(None, inside)),
         "DISTAL_CACHE_DIR": "off",  # on a hit, what compiles does not run
     }
-    command = [sys.executable, "-m", "pytest", "-p", "tools.record.plugin", "-n", workers, *words]
+    recorder = ["-p", "tools.record.plugin", "-n", workers, "--dist", "worksteal", "-rfEs"]
+    command = [sys.executable, "-m", "pytest", *recorder]
     made = subprocess.run(command, cwd=ROOT, env={**os.environ, **added, **environment})
     return made.returncode
 
@@ -90,7 +91,7 @@ def _changed(before: Record, revision: str, workers: str) -> int:
         names = Path(folder) / "names"
         # Tests that the record does not know are new: they are in it as all that is not known.
         names.write_text("\n".join(sorted(before.rows.keys() - found)), "utf-8")
-        code = _run(["-rs"], folder, workers, DISTAL_TESTS=str(names))
+        code = _run(folder, workers, DISTAL_TESTS=str(names))
         merged(raw_rows(Path(folder)), digests(), before).save()
     return 0 if code == 5 else code  # 5: no test is reached
 

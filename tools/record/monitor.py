@@ -66,8 +66,8 @@ class Monitor:
         os.write(self._file, f"test {os.environ.get(TEST, '')}\n".encode())
 
     def names(self) -> set[str]:
-        """Return the functions since the last ``begin``."""
-        return {name for name in map(self._name, self.seen) if not name.endswith(":<module>")}
+        """Return the functions since the last ``begin``, without what has no name of its own."""
+        return {name for name in map(self._name, self.seen) if ":<" not in name}
 
     def _started(self, code: CodeType, offset: int) -> Any:
         if sys is None:  # the interpreter ends

@@ -21,11 +21,11 @@ from tools.record.rows import ROOT, Record
 OTHERS: Final[dict[str, tuple[str, ...]]] = {
     "web/": ("tests/page", "tests/editor", "tests/site", "tests/notebook", "tests/lessons"),
     "lessons/": ("tests/lessons",),
-    "docs/": ("tests/meta", "tests/names"),
+    "docs/": ("tests/meta", "tests/names", "tests/errors"),
     "README.md": ("tests/meta",),
     "ARCHITECTURE.md": ("tests/meta",),
     "examples/": ("tests/pictures", "tests/meta", "tests/golden"),
-    "tools/": ("tests/meta", "tests/mutation", "tests/site"),
+    "tools/": ("tests/meta", "tests/mutation", "tests/record", "tests/site"),
     "pyproject.toml": ("tests/meta", "tests/unit/test_packages.py"),
 }
 

@@ -101,8 +101,8 @@ class Plan:
 
 
 def plan(path: Path = PATH) -> Plan:
-    """Return what the header says, which is read in an instant."""
-    tests = _read(path)[0]["tests"]
+    """Return what the header says, which is read in an instant; nothing if there is no record."""
+    tests = _read(path)[0]["tests"] if path.exists() else []
     left_out = frozenset(name for name, _, is_chosen in tests if not is_chosen)
     return Plan({name: seconds for name, seconds, _ in tests}, left_out)
 
@@ -138,7 +138,7 @@ def raw_rows(folder: Path) -> dict[str, tuple[float, set[str]]]:
         test, *names = path.read_text("utf-8").splitlines()
         owner = test.partition(" ")[2]
         if owner in rows:
-            rows[owner][1].update(n for n in names if ".py:" in n and not n.endswith(":<module>"))
+            rows[owner][1].update(n for n in names if ".py:" in n and ":<" not in n)
     return rows
 
 
@@ -169,7 +169,9 @@ def merged(
         for test, (seconds, functions) in rows.items()
     }
     digests = {name: digests[name] for name in order if name in digests}
-    return Record(order, masks, digests, before.chosen if before else frozenset())
+    # A test that is new to the record is run by ``make test`` until one chooses again.
+    chosen = before.chosen | (found.keys() - before.rows.keys()) if before else frozenset()
+    return Record(order, masks, digests, chosen)
 
 
 def _mask(places: Iterable[int]) -> int:

@@ -38,9 +38,10 @@ def kept_text(module: Module, target: Target, make: Callable[[], Artifact]) -> A
     """Return the program of a module for a target; ``make`` makes it if it is not kept."""
     if TEXT_TARGETS.get(target.name) is not target or target.name in _WITH_DATA:
         return make()  # a target with instruments of its own
-    if sys.platform == "emscripten" or cache.default_folder() is None:
+    folder = None if sys.platform == "emscripten" else cache.default_folder()
+    if folder is None:
         return make()
-    store = cache.Cache(cache.default_folder())
+    store = cache.Cache(folder)
     files: dict[str, int] = {}
     places = [(files.setdefault(f, len(files)), line) for f, line in _places(module)]
     names = [PurePath(f.replace("\\", "/")).name for f in files]

@@ -38,7 +38,7 @@ from distal.devices.base import Cancel, Progress, Values
 from distal.devices.cache import Cache, default_folder
 from distal.devices.executable import Executable
 from distal.devices.features import chosen_level
-from distal.devices.kernel_key import is_chosen, optimization
+from distal.devices.kernel_key import is_level_named, optimization
 from distal.devices.memory_limit import is_limited
 from distal.devices.object_files import ObjectFiles
 from distal.devices.pool import PICTURES
@@ -137,7 +137,7 @@ def _is_tiered() -> bool:
     """
     can_start_python = bool(sys.executable) and not hasattr(sys, "frozen")
     several = threads.usable_threads() > 1
-    return not is_chosen() and several and can_start_python and not is_limited()
+    return not is_level_named() and several and can_start_python and not is_limited()
 
 
 # Kernels as callable functions

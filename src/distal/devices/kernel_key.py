@@ -130,7 +130,7 @@ def optimization() -> int:
     return int(level)
 
 
-def is_chosen() -> bool:
+def is_level_named() -> bool:
     """Return whether ``DISTAL_LLVM_LEVEL`` names a level."""
     return bool(os.environ.get(LEVEL_VARIABLE))
 
