@@ -8,6 +8,7 @@ studio; a test fails when it was forgotten.
 from __future__ import annotations
 
 import ast
+import enum
 import inspect
 import json
 from pathlib import Path
@@ -71,6 +72,8 @@ def _arguments(value: Any) -> str:
     """Return the arguments in parentheses, without types; "" for what is not called."""
     if not callable(value):
         return ""
+    if isinstance(value, enum.EnumType):
+        return "(value)"  # what Python says of it depends on its version
     try:
         parameters = inspect.signature(value).parameters.values()
     except (TypeError, ValueError):

@@ -78,7 +78,7 @@ Texture3D(np.zeros((3, 4, 5)), axes="xyz", wrap="clamp")
 
 # Values.
 near: float = moved((0.0, 0.0, 0.0), params={"Size": 0.2}) + moved(vec3(0.0))
-many: float = moved(np.zeros((4, 3))).min() + moved([(0, 0, 0), (1, 1, 1)]).max()
+many: float = float(moved(np.zeros((4, 3))).min()) + float(moved([(0, 0, 0), (1, 1, 1)]).max())
 up: float = moved.gradient((0, 0, 0)).y + Circle().gradient((0.0, 0.0)).x
 low, high = moved.bounds(params={"Size": 1})
 width: float = high[0] - low[0]

@@ -303,7 +303,7 @@ export const LANGUAGE: Names = {
   "Func": ["(overload)", "A function of scene code, callable from scene code and, through the executor, from Python."],
   "Image": ["(overload)", "A picture: a function from a Frame to the color of one pixel."],
   "ImageInput": ["(data, wrap='repeat')", "A picture that whoever sees a page replaces by one of their own, by dropping a file on it."],
-  "Key": ["(value, names=None, module=None, qualname=None, type=None, start=1, boundary=None)", "The codes of some keys, as browsers and Shadertoy number them; letters are ord(\"A\")."],
+  "Key": ["(value)", "The codes of some keys, as browsers and Shadertoy number them; letters are ord(\"A\")."],
   "Keys": ["(held=frozenset(), pressed=frozenset(), toggled=frozenset())", "The state of the keyboard in one frame, as codes of keys."],
   "LangForm": ["(name, signature, doc)", "A call with special rules, such as select or gradient; for scene code only."],
   "LangFunction": ["(row)", ""],
