@@ -35,7 +35,7 @@ from tools.mutation.running import (  # noqa: E402
     TIMED_OUT,
     UNTESTED,
     Outcome,
-    run,
+    Runner,
 )
 from tools.mutation.selection import Selection  # noqa: E402
 from tools.mutation.survivors import Accepted, accepted, entry_text, stale  # noqa: E402
@@ -146,6 +146,7 @@ def _run_all(
     outcomes: list[Outcome] = []
     missed: list[Outcome] = []
     of_make_test = selection.record.chosen
+    runner = Runner(project)
     begin = time.monotonic()
     for number, mutation in enumerate(chosen, 1):
         if options.minutes and time.monotonic() - begin > 60.0 * options.minutes:
@@ -153,9 +154,9 @@ def _run_all(
             break
         tests = selection.tests(mutation)
         first = {n: s for n, s in tests.items() if n in of_make_test} if options.proof else tests
-        outcome = run(project, mutation, first)
+        outcome = runner.run(mutation, first)
         if options.proof and outcome.verdict in (SURVIVED, UNTESTED):
-            rest = run(project, mutation, {n: s for n, s in tests.items() if n not in first})
+            rest = runner.run(mutation, {n: s for n, s in tests.items() if n not in first})
             if rest.verdict in (KILLED, TIMED_OUT):
                 missed.append(rest)
             outcome = rest if rest.verdict != UNTESTED else outcome

@@ -65,7 +65,9 @@ def __getattr__(name: str) -> Any:
     if name not in _MODULE_OF:
         raise AttributeError(_unknown(name))
     try:
-        value = getattr(importlib.import_module(_MODULE_OF[name]), name)
+        # Of what modules define, nothing is ever garbage.
+        with importlib.import_module("distal.ir.collection").paused_collection():
+            value = getattr(importlib.import_module(_MODULE_OF[name]), name)
     except ModuleNotFoundError as error:
         # So that ``from distal import *`` works wherever scenes compile.
         return importlib.import_module("distal.packages").stand_in(name, error)

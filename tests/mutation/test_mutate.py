@@ -57,6 +57,10 @@ def test_scene_code():
     run_in_vain(2, 3)
     scene_code_in_vain(1, 2)
     assert scene_code(1, 3) == 3
+
+
+def test_broken():
+    assert run_in_vain(2, 3) == 7
 """
 VERDICTS = {
     ("covered", "return a - b"): "killed",
@@ -81,6 +85,7 @@ def small(tmp_path_factory):
     ran = {
         "test_covered": ["covered"],
         "test_scene_code": ["run_in_vain", "scene_code_in_vain", "scene_code"],
+        "test_broken": ["run_in_vain"],
     }
     rows = {
         f"tests/test_made.py::{test}": (0.1, {f"small/made.py:{name}" for name in names})
@@ -121,6 +126,7 @@ def test_what_no_test_notices_is_reported(small, tmp_path):
         if f" {m.function}: {m.was} => {m.becomes} [" in line
     }
     assert (code, verdicts) == (1, VERDICTS), said
+    assert said.count("test_broken fails without a mutation: it is left out") == 1
     reported = said.partition("small: ")[2]
     assert 'becomes = "return x | y"' in reported
     assert 'becomes = "return a / b"' in reported

@@ -30,15 +30,23 @@ pytest.importorskip("wgpu")  # not for the first time in place of a broken one
 def broken(tmp_path, monkeypatch):
     """Put a package of a given text in the place of the real one."""
 
+    replaced = []
+
+    def loaded():
+        return [name for name in sys.modules if name.partition(".")[0] in replaced]
+
     def put(module, text):
         folder = tmp_path / module
         folder.mkdir()
         (folder / "__init__.py").write_text(text)
         monkeypatch.syspath_prepend(tmp_path)
-        for name in [n for n in sys.modules if n.partition(".")[0] == module]:
+        replaced.append(module)
+        for name in loaded():
             monkeypatch.delitem(sys.modules, name)
 
-    return put
+    yield put
+    for name in loaded():  # the broken one; that from before comes back after this
+        del sys.modules[name]
 
 
 @pytest.mark.parametrize("kind", FAILURES)

@@ -4,8 +4,10 @@ Input: a mutation and its tests. Output: whether a test failed, and which. The c
 processes that it starts import a copy of the source with the mutated text; the source itself stays
 as it is.
 
-The kernel cache is a folder of the child's own. Its key names the compiler's files, and so a
-mutated compiler makes its own kernels; a mutation of scene code changes the module that is hashed.
+The kernel cache is a folder of the child's own: nothing that another compiler made is found.
+
+A test that fails under these conditions without a mutation says nothing: who kills is tried so,
+once, and what it killed is given to the other tests.
 """
 
 from __future__ import annotations
@@ -26,7 +28,12 @@ from tools.mutation.operators import Mutation
 from tools.mutation.project import Project
 
 KILLED, SURVIVED, TIMED_OUT, UNTESTED = "killed", "survived", "timed out", "no test"
-MEMORY_BYTES = 16 * 2**30  # of addresses: a mutated size must not take the machine with it
+# Of what is written: a mutated size must not take the machine with it. Addresses are not limited:
+# WebAssembly reserves more than there is memory.
+MEMORY_BYTES = 16 * 2**30
+# No test is left if a mutation of a test's parameters changes the names of all.
+_PASSED = (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED)
+_COLLECTION = " (collection)"
 _WAITING_S = 300.0  # for a process that waits for ever, and so uses no time
 
 
@@ -49,16 +56,44 @@ class Outcome:
     seconds: float = 0.0
 
 
-def run(project: Project, mutation: Mutation, tests: Mapping[str, float]) -> Outcome:
-    """Run tests with a mutation in place, until one fails.
+class Runner:
+    """Runs tests with mutations of a project."""
 
-    Args:
-        project: What is mutated.
-        mutation: The mutation.
-        tests: Names in order, each with the processor time that it takes.
-    """
-    if not tests:
-        return Outcome(mutation, UNTESTED)
+    def __init__(self, project: Project) -> None:
+        self._project = project
+        self._sound: dict[str, bool] = {}
+
+    def run(self, mutation: Mutation, tests: Mapping[str, float]) -> Outcome:
+        """Run tests with a mutation in place, until one fails that passes without it.
+
+        Args:
+            mutation: The mutation.
+            tests: Names in order, each with the processor time that it takes.
+        """
+        if not tests:
+            return Outcome(mutation, UNTESTED)
+        verdict, by, seconds = _run(self._project, mutation, tests)
+        # A file that cannot be imported is told in place of a test.
+        file = by.removesuffix(_COLLECTION)
+        test = next((n for n in tests if n == by or n.partition("::")[0] == file), "")
+        if verdict == KILLED and test and not self._is_sound(test, tests[test]):
+            return self.run(mutation, {n: s for n, s in tests.items() if n != test})
+        return Outcome(mutation, verdict, by, len(tests), seconds)
+
+    def _is_sound(self, test: str, seconds: float) -> bool:
+        """Whether a test passes without a mutation."""
+        if test not in self._sound:
+            verdict, _, _ = _run(self._project, None, {test: seconds})
+            self._sound[test] = verdict == SURVIVED
+            if not self._sound[test]:
+                print(f"     {test} fails without a mutation: it is left out", flush=True)
+        return self._sound[test]
+
+
+def _run(
+    project: Project, mutation: Mutation | None, tests: Mapping[str, float]
+) -> tuple[str, str, float]:
+    """Run tests; return the verdict, the test that failed, and how long it took."""
     begin = time.monotonic()
     folder = Path(tempfile.mkdtemp(prefix="mutate-"))
     try:
@@ -73,9 +108,8 @@ def run(project: Project, mutation: Mutation, tests: Mapping[str, float]) -> Out
         shutil.rmtree(folder, ignore_errors=True)
     seconds = time.monotonic() - begin
     if not in_time or code == -signal.SIGPROF:
-        return Outcome(mutation, TIMED_OUT, by, len(tests), seconds)
-    verdict = SURVIVED if code == 0 else KILLED
-    return Outcome(mutation, verdict, by or f"exit {code}", len(tests), seconds)
+        return TIMED_OUT, by, seconds
+    return SURVIVED if code in _PASSED else KILLED, by or f"exit {code}", seconds
 
 
 def _wait(child: int, until: float) -> tuple[bool, int]:
@@ -93,11 +127,13 @@ def _limit(seconds: float) -> float:
     return 5.0 + 10.0 * seconds
 
 
-def _child(project: Project, mutation: Mutation, tests: Mapping[str, float], folder: Path) -> None:
+def _child(
+    project: Project, mutation: Mutation | None, tests: Mapping[str, float], folder: Path
+) -> None:
     code = 3
     try:
         os.setpgid(0, 0)
-        resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
+        resource.setrlimit(resource.RLIMIT_DATA, (MEMORY_BYTES, MEMORY_BYTES))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         os.chdir(project.root)
         log = os.open(folder / "log", os.O_WRONLY | os.O_CREAT)
@@ -124,13 +160,9 @@ class _Chooser:
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        """Keep what was chosen. A test that is no longer there was changed by the mutation."""
+        """Keep what was chosen. A mutation of a test's parameters may give it another name."""
         found = {item.nodeid: item for item in items if item.nodeid in self.tests}
-        if len(found) < len(self.tests):
-            missing = next(name for name in self.tests if name not in found)
-            self.said.write_text(f"{missing} (not collected)", encoding="utf-8")
-            os._exit(1)
-        items[:] = [found[name] for name in self.tests]
+        items[:] = [found[name] for name in self.tests if name in found]
 
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
         """A signal that nothing catches ends the process, wherever it is.
@@ -148,11 +180,11 @@ class _Chooser:
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         """Or that could not be collected."""
         if report.failed and not self.said.exists():
-            self.said.write_text(f"{report.nodeid} (collection)", encoding="utf-8")
+            self.said.write_text(f"{report.nodeid}{_COLLECTION}", encoding="utf-8")
 
 
-def mutated_copy(project: Project, mutation: Mutation, folder: Path) -> Path:
-    """Copy the source into a folder, with the mutation, beside all else; return where it is."""
+def mutated_copy(project: Project, mutation: Mutation | None, folder: Path) -> Path:
+    """Copy the source into a folder, with a mutation, beside all else; return where it is."""
     tree = folder / "tree"
     tree.mkdir()
     for path in project.root.iterdir():  # the source finds the examples beside itself
@@ -162,6 +194,7 @@ def mutated_copy(project: Project, mutation: Mutation, folder: Path) -> Path:
     shutil.copytree(
         project.source, made, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info")
     )
-    text = mutation.applied(project.index(mutation.file).text)
-    (made / mutation.file).write_text(text, "utf-8")
+    if mutation is not None:
+        text = mutation.applied(project.index(mutation.file).text)
+        (made / mutation.file).write_text(text, "utf-8")
     return made

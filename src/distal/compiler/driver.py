@@ -101,6 +101,7 @@ def _is_in_sample(module: Module) -> bool:
     return drawn % VERIFIED_ONE_OF == 0
 
 
+@paused_collection()
 def compile(obj: Func | Composed, target: str = "glsl-es300", after: str | None = None) -> Artifact:
     """Compile a scene, an ``@image`` or a ``@func`` to the text of a target.
 

@@ -10,15 +10,20 @@ import io
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image as PillowImage
 
 from distal.images.atomic_files import SaveError
 from distal.images.metadata import ReadError
 from distal.images.png import quantise
+from distal.lang.lazy_module import LazyModule
+
+if TYPE_CHECKING:
+    from PIL import Image as PillowImage
+else:
+    PillowImage = LazyModule("PIL.Image")  # slow to import, and only files need it
 
 SIGNATURE: Final = b"\xff\xd8\xff"
 BITS: Final = (8,)

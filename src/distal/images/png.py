@@ -11,16 +11,22 @@ import struct
 import zlib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, BinaryIO, Final
+from typing import TYPE_CHECKING, Any, BinaryIO, Final
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image as PillowImage
-from PIL.PngImagePlugin import PngImageFile, PngInfo, putchunk
 
 from distal.devices.levels import levels as fast_levels
 from distal.images.metadata import PREFIX, ReadError
+from distal.lang.lazy_module import LazyModule
 from distal.lang.render_options import LARGEST_SIDE_PX
+
+if TYPE_CHECKING:
+    from PIL import Image as PillowImage
+    from PIL import PngImagePlugin
+else:
+    # Slow to import, and only files need them.
+    PillowImage, PngImagePlugin = LazyModule("PIL.Image"), LazyModule("PIL.PngImagePlugin")
 
 BITS: Final = (8, 16)
 
@@ -79,7 +85,7 @@ def encode(array: NDArray[np.float32], texts: Mapping[str, str], bits: int = 8) 
 def encode_levels(levels: NDArray[Any], texts: Mapping[str, str]) -> bytes:
     """Return a PNG of levels, (height, width, 3 or 4), uint8 or uint16; see ``encode``."""
     pixels = np.ascontiguousarray(levels[..., :3] if _is_opaque(levels) else levels)
-    information = PngInfo()
+    information = PngImagePlugin.PngInfo()
     information.add(b"sRGB", _SRGB_INTENT)
     for key, text in texts.items():
         # add_text itself uses iTXt for text outside Latin-1.
@@ -98,7 +104,9 @@ def _is_opaque(levels: NDArray[Any]) -> bool:
     return bool((levels[..., 3:] == np.iinfo(levels.dtype).max).all())
 
 
-def _write_deep(buffer: io.BytesIO, pixels: NDArray[np.uint16], information: PngInfo) -> None:
+def _write_deep(
+    buffer: io.BytesIO, pixels: NDArray[np.uint16], information: PngImagePlugin.PngInfo
+) -> None:
     """Write a PNG of 16 bits, which Pillow cannot write; only its function for chunks is used.
 
     Each row is stored as the difference from the one above (the filter Up): of the five filters it
@@ -107,9 +115,11 @@ def _write_deep(buffer: io.BytesIO, pixels: NDArray[np.uint16], information: Png
     height, width, channels = pixels.shape
     kind = 2 if channels == 3 else 6
     buffer.write(_SIGNATURE)
-    putchunk(buffer, b"IHDR", struct.pack(">IIBBBBB", width, height, 16, kind, 0, 0, 0))
+    PngImagePlugin.putchunk(
+        buffer, b"IHDR", struct.pack(">IIBBBBB", width, height, 16, kind, 0, 0, 0)
+    )
     for name, data, *_ in information.chunks:
-        putchunk(buffer, name, data)
+        PngImagePlugin.putchunk(buffer, name, data)
     rows = pixels.astype(">u2").view(np.uint8).reshape(height, -1)
     filtered = np.empty((height, rows.shape[1] + 1), np.uint8)
     filtered[:, 0] = _UP
@@ -117,8 +127,8 @@ def _write_deep(buffer: io.BytesIO, pixels: NDArray[np.uint16], information: Png
     np.subtract(rows[1:], rows[:-1], out=filtered[1:, 1:])  # modulo 256, as the filter requires
     packed = zlib.compress(filtered.data, _COMPRESSION)
     for start in range(0, len(packed), _LARGEST_CHUNK):
-        putchunk(buffer, b"IDAT", packed[start : start + _LARGEST_CHUNK])
-    putchunk(buffer, b"IEND", b"")
+        PngImagePlugin.putchunk(buffer, b"IDAT", packed[start : start + _LARGEST_CHUNK])
+    PngImagePlugin.putchunk(buffer, b"IEND", b"")
 
 
 def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
@@ -129,7 +139,7 @@ def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
     """
     try:
         # Not Image.open, which refuses large pictures as a possible attack.
-        with PngImageFile(path) as image:
+        with PngImagePlugin.PngImageFile(path) as image:
             if max(image.size) > LARGEST_SIDE_PX:
                 raise ValueError(f"it claims {image.width}x{image.height} pixels")
             image.load()  # detects missing data, and reads texts after the pixels
@@ -169,7 +179,7 @@ def decode(data: bytes) -> NDArray[Any]:
     """
     try:
         if data[24] != 16:
-            with PngImageFile(io.BytesIO(data)) as image:
+            with PngImagePlugin.PngImageFile(io.BytesIO(data)) as image:
                 return np.asarray(image.convert("RGBA"))
         return _read_deep(data)
     except ReadError:

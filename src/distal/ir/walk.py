@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from itertools import chain
 from operator import attrgetter
 from typing import Any, Final, assert_never, get_args
 
-from distal.ir.contents import append_unseen, contents, nodes_of
+from distal.ir.contents import contents, nodes_of
 from distal.ir.nodes import (
     Assign,
     Break,
@@ -78,11 +79,12 @@ def substitute(e: Expr, replacements: dict[Expr, Expr], memo: dict[Expr, Expr]) 
 
 def nodes_in(*roots: Expr) -> Sequence[Expr]:
     """Return every distinct node of the expressions, including ``roots``; operands before users."""
-    if len(roots) == 1:
-        return nodes_of(roots[0])
-    found: list[Expr] = []
-    append_unseen(roots, set(), found)
-    return found
+    return nodes_of(roots[0]) if len(roots) == 1 else _nodes_of_all(roots)
+
+
+def _nodes_of_all(roots: Iterable[Expr]) -> list[Expr]:
+    # The nodes of an expression are all there or all missing before it: no order is broken.
+    return list(dict.fromkeys(chain.from_iterable(map(nodes_of, roots))))
 
 
 def expressions(stmt: Stmt) -> tuple[Expr, ...]:
@@ -128,11 +130,7 @@ def _append_statements(body: tuple[Stmt, ...], found: list[Stmt]) -> None:
 
 def expressions_in(body: tuple[Stmt, ...]) -> Sequence[Expr]:
     """Return every distinct expression node of a block, including the blocks inside it."""
-    seen: set[Expr] = set()
-    found: list[Expr] = []
-    for stmt in statements_in(body):
-        append_unseen(expressions(stmt), seen, found)
-    return found
+    return _nodes_of_all(roots_in(body))
 
 
 def roots_in(body: tuple[Stmt, ...]) -> Iterator[Expr]:

@@ -7,14 +7,19 @@ axis are above the columns, those of the others left of the rows.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw, ImageFont
 
+from distal.lang.lazy_module import LazyModule
 from distal.lang.render_options import LARGEST_SIDE_PX
 from distal.sweeps.axes import Axis
+
+if TYPE_CHECKING:
+    from PIL import Image, ImageDraw, ImageFont
+else:
+    Image, ImageDraw, ImageFont = map(LazyModule, ("PIL.Image", "PIL.ImageDraw", "PIL.ImageFont"))
 
 _GAP: Final = 6
 _MARGIN: Final = 16

@@ -28,6 +28,7 @@ from distal.forking import new_lock
 from distal.images.atomic_files import SaveError, check_destination, replacement
 from distal.images.picture import Picture
 from distal.images.png import encode_levels
+from distal.lang.lazy_module import LazyModule
 from distal.lang.presentable import Presentable
 from distal.lang.render_options import Cancel, RenderOptions
 from distal.loading import loaded_from
@@ -37,15 +38,18 @@ from distal.sweeps.axes import TIME, Axis, chosen_axes, combinations, count_of
 from distal.sweeps.sheet import Sheet
 from distal.sweeps.solid_measures import COLUMNS, checked_solid, measured
 from distal.version import __version__
-from distal.video.frame_rendering import listed
-from distal.video.frames import Frames, make_folder
-from distal.video.moving_picture import MovingPicture, moving_picture
-from distal.video.overlap import made_ahead
 
 if TYPE_CHECKING:
     from distributed import Client
 
     from distal.cluster.pool import WorkerPool
+    from distal.video import frame_rendering, frames, moving_picture, overlap
+else:
+    # ``from distal import *`` imports this module.
+    frame_rendering = LazyModule("distal.video.frame_rendering")
+    frames = LazyModule("distal.video.frames")
+    moving_picture = LazyModule("distal.video.moving_picture")
+    overlap = LazyModule("distal.video.overlap")
 
 _TABLE: Final = "sweep.csv"
 _FIGURES: Final = ("seconds", "brightness", "samples", "noise")
@@ -196,13 +200,16 @@ class _Sweep:
         """Render the pictures that are not there yet, and write each of them."""
         if path.suffix:
             raise SaveError(f"a sweep is a .png or a folder, not {path}")
-        make_folder(path)
+        frames.make_folder(path)
         count = count_of(self.axes)
         digits = max(3, len(str(count)))
         files = [path / f"{i + 1:0{digits}d}.png" for i in range(count)]
         known = {} if fresh else _known_rows(path / _TABLE)
         moving = [self._moving(values) for values in combinations(self.axes)]
-        kept = [Frames([file], [m.options.time], m) for file, m in zip(files, moving, strict=True)]
+        kept = [
+            frames.Frames([file], [m.options.time], m)
+            for file, m in zip(files, moving, strict=True)
+        ]
         there = [] if fresh else [i for i, frame in enumerate(kept) if frame.is_there(0)]
         rows = {i: self._row(i, None, 0.0) | known.get(files[i].name, {}) for i in there}
         rows = {i: self._with_measures(i, row) for i, row in rows.items()}
@@ -218,7 +225,7 @@ class _Sweep:
         self._check("the other pictures are kept: the same command renders only what failed")
         return FinishedSweep(path, path / _TABLE, count, len(rendered), in_order, 0.0)
 
-    def _moving(self, values: Mapping[str, Any]) -> MovingPicture:
+    def _moving(self, values: Mapping[str, Any]) -> moving_picture.MovingPicture:
         """Return the picture of some values."""
         own, time = {}, self.options.time
         for axis in self.axes:
@@ -227,10 +234,10 @@ class _Sweep:
             else:
                 own[axis.name] = values[axis.name]
         options = replace(self.options, time=time, params={**self.options.params, **own})
-        return moving_picture(self.obj, options, self.view, self.mode)
+        return moving_picture.moving_picture(self.obj, options, self.view, self.mode)
 
     def _rendered(
-        self, indices: list[int], known: Mapping[int, MovingPicture]
+        self, indices: list[int], known: Mapping[int, moving_picture.MovingPicture]
     ) -> Iterator[tuple[int, Picture | None, dict[str, Any]]]:
         """Return the number, the picture and the row of each picture, in order.
 
@@ -256,7 +263,7 @@ class _Sweep:
         done = count - len(indices)
         at_once = first[indices[0]].at_once if indices else 1
         for several in (at_once, 1):
-            with closing(made_ahead(made, indices, several, self.stop.set)) as pictures:
+            with closing(overlap.made_ahead(made, indices, several, self.stop.set)) as pictures:
                 for index, picture, row in pictures:
                     yield index, picture, self._with_measures(index, row)
                     if picture is not None:
@@ -292,7 +299,7 @@ class _Sweep:
             names.append(", ".join(f"{axis.label} {texts[axis.name]}" for axis in self.axes))
         reason = self.failed[min(self.failed)].reason
         raise DeviceError(
-            f"{len(names)} of {len(every)} pictures failed: {listed(names, '; ')}; "
+            f"{len(names)} of {len(every)} pictures failed: {frame_rendering.listed(names, '; ')}; "
             f"{'it' if len(names) == 1 else 'the first'} {reason}; {more}"
         )
 
