@@ -101,7 +101,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=None, help="which ones; drawn when not given")
     parser.add_argument("--seconds", type=float, default=30.0, help="of tests for a mutation")
     parser.add_argument("--minutes", type=float, default=0.0, help="stop drawing after these")
-    parser.add_argument("--proof", action="store_true", help="the tests of make test first")
+    parser.add_argument("--proof", action="store_true", help="those of make test first")
     parser.add_argument("--map", type=Path, default=None, help="where the record is")
     parser.add_argument("--paths", nargs="*", default=(), help="what tests import besides")
     parser.add_argument("--root", type=Path, default=ROOT, help="another project")
@@ -152,11 +152,14 @@ def _run_all(
         if options.minutes and time.monotonic() - begin > 60.0 * options.minutes:
             print(f"stopped after {options.minutes:g} minutes")
             break
-        tests = selection.tests(mutation)
-        first = {n: s for n, s in tests.items() if n in of_make_test} if options.proof else tests
-        outcome = runner.run(mutation, first)
+        if options.proof:
+            tests = selection.tests(mutation, of_make_test.__contains__)
+        else:
+            tests = selection.tests(mutation)
+        outcome = runner.run(mutation, tests)
         if options.proof and outcome.verdict in (SURVIVED, UNTESTED):
-            rest = runner.run(mutation, {n: s for n, s in tests.items() if n not in first})
+            others = selection.tests(mutation, lambda name: name not in of_make_test)
+            rest = runner.run(mutation, others)
             if rest.verdict in (KILLED, TIMED_OUT):
                 missed.append(rest)
             outcome = rest if rest.verdict != UNTESTED else outcome

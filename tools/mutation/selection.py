@@ -7,7 +7,7 @@ a whole picture.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from tools.mutation.operators import Mutation
 from tools.mutation.project import MODULE_LEVEL, Project
@@ -32,12 +32,19 @@ class Selection:
         self._rows = sorted(rows, key=_order)
         self._known = frozenset(record.functions)
 
-    def tests(self, mutation: Mutation) -> dict[str, float]:
-        """Tests for a mutation, in order, as many as the time allows; at least one, if any is."""
+    def tests(
+        self, mutation: Mutation, may_run: Callable[[str], bool] = lambda name: True
+    ) -> dict[str, float]:
+        """Tests for a mutation, in order, as many as the time allows; at least one, if any is.
+
+        Args:
+            mutation: The mutation.
+            may_run: Whether a test may be among them.
+        """
         chosen: dict[str, float] = {}
         left = self.seconds
         for name, row in self.all(mutation):
-            if row.seconds <= left or not chosen:
+            if may_run(name) and (row.seconds <= left or not chosen):
                 chosen[name] = row.seconds
                 left -= row.seconds
         return chosen
