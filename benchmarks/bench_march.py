@@ -29,8 +29,9 @@ from distal.fields.guarantees import Bounds
 from distal.lang import Frame, func, image, vec2, vec3, vec4
 from distal.render.camera import Ray, look_at
 from distal.render.heightfield_march import STRIDE, march_heightfield
-from distal.render.march import Hit, March, march
+from distal.render.march import Hit, March
 from distal.render.normals import EXACT, FORWARD, SIX_TAPS, TETRAHEDRON, normal
+from distal.render.segment import segment
 from distal.render.settings import grown_bounds, hit_threshold, march_numbers, stride_over
 
 SIZE = (640, 400)
@@ -71,7 +72,7 @@ def sea_hit(frame: Frame, hybrid: bool) -> vec4:
                 lambda p: sea.water(p, SWELL, time), ray, slab(), numbers, stride, STEPS
             )
         )
-    return told(march(lambda p: sea.water(p, SWELL, time), ray, slab(), numbers, STEPS))
+    return told(segment(lambda p: sea.water(p, SWELL, time), ray, 0.0, 0.0, slab(), numbers, STEPS))
 
 
 @func
@@ -97,7 +98,7 @@ def true_sea(u: float, v: float, time: float) -> vec2:
     """Where a ray meets the sea, and whether it does."""
     numbers = March(SLOPE, 0.001, sea.FAR, TRUE)
     ray = sea_ray(vec2(u, v))
-    hit = march(lambda p: sea.water(p, SWELL, time), ray, slab(), numbers, 20 * STEPS)
+    hit = segment(lambda p: sea.water(p, SWELL, time), ray, 0.0, 0.0, slab(), numbers, 20 * STEPS)
     return vec2(hit.t, 1.0 if hit.found else 0.0)
 
 

@@ -39,7 +39,7 @@ from distal.render.settings import hit_threshold, march_numbers
 from distal.render.shade import Shading, ambient_occlusion
 from distal.render.shadows import shadow_beside_planes
 from distal.render.tonemap import ACES, decode_srgb, display
-from distal.render.trace import first_surface_or_plane, plane_crossing
+from distal.render.trace import plane_crossing, segment_or_plane
 
 softness = slider("Softness", 0.05, high=0.2, help="How far sphere and torus melt.")
 
@@ -116,11 +116,13 @@ def picture(frame: Frame) -> vec4:
     numbers = march_numbers(1.0, 0.001, 60.0, threshold)
     seen = seen_plain(
         camera(uv, time),
-        lambda ray: first_surface_or_plane(
+        lambda ray: segment_or_plane(
             lambda p: blob(p, time),
             floor,
             lambda ray: plane_crossing(floor, ray),
             ray,
+            0.0,
+            0.0,
             bounds,
             numbers,
             60.0,

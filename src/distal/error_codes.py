@@ -62,6 +62,8 @@ class ErrorCode(StrEnum):
     SLOPE_EXCEEDED = "slope-exceeded", "the value changes faster than the slope allows"
     SLOPE_REFUTED = "slope-refuted", "the slope is too small, by interval arithmetic"
     SLOPE_OUTSIDE_BOX = "slope-outside-box", "the slope is too small outside of the bounds"
+    SLOPE_TOO_LARGE = "slope-too-large", "the slope is a hundred times what was measured"
+    NO_INSIDE = "no-inside", "the shape is a sheet or an estimate, and drawn with a thickness"
     OUTSIDE_BOX = "outside-box", "part of the shape is outside its box"
     NOT_EXACT = "not-exact", "the values of a shape that is declared exact are not distances"
     UNDEFINED = "undefined", "a value or a gradient is NaN or infinite"

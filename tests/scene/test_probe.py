@@ -69,13 +69,16 @@ def test_a_pixel_sees_what_the_picture_shows_there():
 
 def test_a_ray_that_meets_nothing_says_how_it_ended():
     ended = {}
-    for name, shape in (("sphere", Sphere(0.5)), ("plane", Plane(y=-1.0))):
+    floor = Plane(y=-1.0)
+    shapes = {"sphere": Sphere(0.5), "plane": floor, "slope": floor.rotate(z=0.1)}
+    for name, shape in shapes.items():
         for y in (2, 30):
             ended[name, y] = probe(
                 Scene(shape, camera=FRONT, floor=False), (2, y), (100, 100)
             ).ended
     assert ended["sphere", 2] == "passed the box"
-    assert ended["plane", 2] == "left the scene"
+    assert ended["plane", 2] == "passed the box"
+    assert ended["slope", 2] == "left the scene"
     level = {"camera": OrthographicCamera((0, 0, 5), height=2), "floor": False}
     corner = probe(Scene(Sphere(1.0), **level), (1, 1), (50, 50))
     assert corner.ended == "left the box"

@@ -205,7 +205,8 @@ class Primitive:
         normalize: For an author's function: ``(field, p, …) -> float``, whose value is used instead
             of that of ``distance``, which it receives as ``field``.
         proved: For an author's function: what was proved of it, or None.
-        signed: False for surfaces and curves without an inside.
+        signed: False for surfaces and curves without an inside; for an author's function, what
+            finds out of a node whether it has one.
         estimate: True for fractals, whose slope is an estimate.
         tier: The tier in the catalogue: 1, 2 or 3.
         linear: Whether the value is linear in p, as for a plane: rays meet it in closed form.
@@ -224,7 +225,7 @@ class Primitive:
     side_growth: Rule | None = None
     limits: Mapping[str, Limit] = field(default_factory=dict)
     requires: Requirement | None = None
-    signed: bool = True
+    signed: bool | Callable[[Any], bool] = True
     estimate: bool = False
     tier: int = 1
     linear: bool = False
@@ -283,6 +284,7 @@ class Operator:
         needs: What the children must be for a slope to exist; completes the message "twist needs
             …", shown if the slope's rule returns ``UNBOUNDED``. None if it never does.
         cuts: Whether the second shape is subtracted, so that its ``cut_material`` is shown.
+        fills: Whether the result has an inside where its child has none: it moves outwards.
         local: Whether it changes the shapes only where they meet.
         linear: Whether the value is linear in p if that of the child is.
         turn: For a rigid move or a uniform scale: ``(p, …) -> vec3``, as ``point`` for a unit
@@ -311,6 +313,7 @@ class Operator:
     keeps_exact: frozenset[Guarantee] = NOTHING
     needs: str | None = None
     cuts: bool = False
+    fills: bool = False
     local: bool = True
     linear: bool = False
     turn: Func | None = None

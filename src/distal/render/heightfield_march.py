@@ -13,7 +13,7 @@ the last two values determines the length of a step: fewer probes, and closer to
 
 from __future__ import annotations
 
-from distal.fields.guarantees import Bounds
+from distal.fields.guarantees import ENDLESS, Bounds
 from distal.lang import Field3, abs, clamp, func, max, min, select, struct
 from distal.render.camera import Ray
 from distal.render.march import MOST_STEPS, OUT_OF_STEPS, PASSED, Hit, March, crossing
@@ -33,7 +33,8 @@ class Stride:
 
     Attributes:
         top: A height that the surface is below everywhere.
-        first: The shortest step at the start, for each unit of distance to the start (at least 1).
+        first: The shortest step at the start, for each unit of distance to the start, or of
+            twice the height of the box if that is more.
         growth: The factor by which the shortest step grows with each step.
     """
 
@@ -147,7 +148,9 @@ def march_heightfield(
     t = start
     bracket = Bracket(start, 0.0, end, 0.0, start, end, False)
     found = False
-    step = stride.first * max(start, 1.0)
+    sides = bounds.high - bounds.low
+    height = select(sides.y < ENDLESS, sides.y, 0.5)
+    step = stride.first * max(start, 2.0 * height)
     # A ray is above the surface where it enters the box: the first probe is one step further.
     t = select(start > numbers.near and start < end, min(start + step, end), start)
     taken = 0
@@ -156,7 +159,7 @@ def march_heightfield(
             break
         taken += 1
         value = field(ray.origin + t * ray.direction)
-        tolerance = numbers.threshold * max(t, 1e-3)
+        tolerance = numbers.threshold * t
         safe = value / numbers.divisor
         guess = likely_step(bracket, t, value, safe)
         bracket = narrowed(bracket, t, value, safe)

@@ -94,8 +94,8 @@ def point_light(
         radius: Radius of the light, which softens shadows.
     """
     offset = position - p
-    # Limits the brightness at the light itself: distances below a thousandth count as that.
-    squared = max(dot(offset, offset), 1e-6)
+    # Limits the brightness at the light itself: distances below a rounding error count as that.
+    squared = max(dot(offset, offset), 1e-12 * dot(p, p) + 1e-30)
     inverse = inversesqrt(squared)
     radiance = color * (intensity / squared)
     return LightSample(offset * inverse, squared * inverse, radiance, radius * inverse)

@@ -1,24 +1,15 @@
-"""Sphere tracing: find the first surface along a ray.
+"""What all marches along rays have in common: their parameters, their result, and boxes.
 
-Input: a ray, a field, a box and the parameters of a march. Output: a ``Hit``. The field guarantees
-that there is no surface within a ball around each point. A step goes across this ball and on to
-where the next ball would touch it if the surface ahead were flat (Bálint and Valasek, "Accelerating
-Sphere Tracing", 2018). If the two balls do not touch, the step is taken back (Keinert et al.,
-"Enhanced Sphere Tracing", 2014).
+Input: a ray and a box. Output: the part of the ray within it. ``segment`` finds surfaces of signed
+fields, ``heightfield_march`` those of terrain, ``closed_hits`` those of solids with chords.
 """
 
 from __future__ import annotations
 
-from distal.fields.guarantees import UNBOUNDED, Bounds
-from distal.lang import Field3, abs, clamp, func, max, min, select, struct, vec2
+from distal.fields.guarantees import Bounds
+from distal.lang import abs, func, max, min, select, struct, vec2
 from distal.render.camera import Ray
 
-# The fraction of the predicted next ball that a step crosses, and the largest predicted radius, as
-# a multiple of the previous ball's radius.
-RELAXATION = 0.9
-LONGEST = 8.0
-# When steps run out, the closest approach is a hit if it came within this many thresholds.
-FORGIVING = 4.0
 # A limit of loops for targets that need a constant one.
 MOST_STEPS = 65536
 
@@ -36,8 +27,8 @@ class March:
         divisor: Distances are divided by it to get a safe step.
         near: Distance along the ray where rays begin.
         far: Distance along the ray where rays end.
-        threshold: Largest distance to the surface of a hit, as a fraction of the distance along
-            the ray.
+        threshold: How exactly a surface has to be known, as a part of the distance along the ray;
+            0: to a rounding error.
         steepest: The largest number by which the field already divides one of its parts (a safe
             field); 1 for other fields.
     """
@@ -83,91 +74,3 @@ def crossing(ray: Ray, bounds: Bounds) -> vec2:
         max(first.x, max(first.y, first.z)),
         min(last.x, min(last.y, last.z)),
     )
-
-
-@func
-def march(field: Field3, ray: Ray, bounds: Bounds, numbers: March, steps: int) -> Hit:
-    """Return the first surface along a ray.
-
-    Args:
-        field: Signed distance.
-        ray: Ray.
-        bounds: Box around the surface with a margin (``settings.grown_bounds``); rays end at its
-            sides.
-        numbers: The parameters of the march.
-        steps: Maximum number of steps.
-    """
-    return march_between(field, ray, crossing(ray, bounds), numbers, steps)
-
-
-@func
-def march_between(field: Field3, ray: Ray, span: vec2, numbers: March, steps: int) -> Hit:
-    """Return the first surface between two places of a ray.
-
-    Args:
-        field: Signed distance.
-        ray: Ray.
-        span: Where the box around the surface begins and ends, along the ray.
-        numbers: The parameters of the march.
-        steps: Maximum number of steps.
-    """
-    t = max(span.x, numbers.near)
-    end = min(span.y, numbers.far)
-    taken = 0
-    side = 1.0
-    free = 0.0  # the radius of the free ball around the previous point
-    step = 0.0  # from the previous point to this one
-    best = UNBOUNDED
-    best_t = t
-    found = False
-    nearing = False
-    for i in range(min(steps, MOST_STEPS)):
-        if t > end:
-            break
-        taken += 1
-        value = side * field(ray.origin + t * ray.direction)
-        if i == 0 and value < 0.0:
-            side = -1.0
-            value = -value
-        d = value / numbers.divisor
-        if step > free and d + free < step:
-            # The balls do not touch, so a surface may be between them: go back to the edge of the
-            # first ball.
-            t += free - step
-            step = free
-        else:
-            # A hit depends on the value, not on the safe step: where the field is steep, the
-            # safe step is small far away from the surface too. A value that a safe field has
-            # divided counts as the distance along the ray at which the last two values predict
-            # the surface, but not as more than the undivided value.
-            remaining = clamp(step / max(free - d, 1e-9), 1.0, numbers.steepest)
-            error = value * remaining / max(t, 1e-3)
-            if error < best:
-                best = error
-                best_t = t
-            # A ray that leaves the surface on which it starts has not hit it.
-            if error < numbers.threshold and (d < free or value <= 0.0):
-                found = True
-                # Go to where the line through the last two values is 0.
-                beyond = d * step / max(free - d, 1e-9)
-                best_t = t + clamp(beyond, 0.0, FORGIVING * numbers.threshold * t)
-                break
-            # The ball that would touch this one if the surface ahead were flat.
-            nearing = d < free
-            touching = d * (step - free + d) / max(step + free - d, 1e-9)
-            step = d + select(step > 0.0, RELAXATION * clamp(touching, 0.0, LONGEST * d), 0.0)
-            free = d
-            t += step
-            if t > end and t - step + free < end:
-                # The free ball ends before the ray does: try the longer step at the ray's end.
-                step += end - t
-                t = end
-    # An early near miss is not a hit: the ray passed that surface.
-    ran_out = taken == steps and not found and t < end and best_t > 0.7 * t
-    if ran_out and best < FORGIVING * numbers.threshold:
-        found = True
-    lost = PASSED
-    if not found:
-        cut_short = t > end and numbers.far < span.y and nearing
-        lost = select(t > end, select(cut_short, TOO_FAR, PASSED), OUT_OF_STEPS)
-    return Hit(best_t, found, taken, side, lost)

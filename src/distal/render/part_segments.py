@@ -1,7 +1,7 @@
 """Segments of rays through a table of parts: the next surface of any part, and of what is beside.
 
 Input: the tree of the parts' boxes, the distance to each part, and a ray with its side. Output: a
-``Hit``. As ``part_tree``, with ``segment`` in place of the march.
+``Hit``. ``part_tree`` has the same for rays from the eye, which may start anywhere.
 """
 
 from __future__ import annotations
@@ -12,45 +12,8 @@ from distal.fields.boxes import everywhere
 from distal.lang import Buffer, func, max, min, select, vec2, vec3, vec4
 from distal.render.camera import Ray
 from distal.render.march import PASSED, Hit, March
-from distal.render.part_tree import farthest_box, first_met, nearest_of_all
-from distal.render.segment import segment, segment_between
-
-# The margin around the boxes of parts, for each unit of the distance: rounding errors.
-MARGIN = 1e-5
-
-
-@func
-def segment_of_part(
-    distance: Callable[[vec3, int], float],
-    part: int,
-    ray: Ray,
-    slope: float,
-    span: vec2,
-    sides: vec3,
-    far: float,
-    numbers: March,
-    steps: int,
-) -> Hit:
-    """Return where a ray from outside enters one part.
-
-    Args:
-        distance: The signed distance of a point to a part.
-        part: The part.
-        ray: Ray.
-        slope: As for ``segment``; 0 if the ray does not start on this part.
-        span: Where the box around the part begins and ends, along the ray.
-        sides: The lengths of the box's sides.
-        far: The distance along the ray where it ends.
-        numbers: The other parameters of the march.
-        steps: Maximum number of evaluations of the field.
-    """
-
-    def field(p: vec3) -> float:
-        return distance(p, part)
-
-    limited = March(numbers.divisor, numbers.near, far, numbers.threshold, numbers.steepest)
-    extent = max(sides.x, max(sides.y, sides.z))
-    return segment_between(field, ray, 1.0, slope, span, extent, limited, steps)
+from distal.render.part_tree import first_met, nearest_of_all, segment_of_part
+from distal.render.segment import segment
 
 
 @func
@@ -79,8 +42,7 @@ def next_of_parts(
         leaving = select(of == part, slope, 0.0)
         return segment_of_part(distance, of, ray, leaving, span, sides, far, numbers, steps)
 
-    margin = MARGIN * farthest_box(boxes, ray, numbers)
-    return first_met(boxes, meet, ray, margin, numbers)
+    return first_met(boxes, meet, ray, numbers)
 
 
 @func

@@ -32,10 +32,13 @@ from distal.lang import (
 )
 from distal.lang.prelude.hidden import anywhere
 from distal.render.camera import Ray
-from distal.render.march import OUT_OF_STEPS, PASSED, Hit, March, march, march_between
+from distal.render.march import OUT_OF_STEPS, PASSED, Hit, March
+from distal.render.segment import segment, segment_between
 
 # Rounding errors of a place, for each unit of its coordinates.
 ROUNDING = 2e-6
+# The margin around the boxes of parts, for each unit of the distance: rounding errors.
+MARGIN = 1e-5
 
 
 @struct
@@ -207,32 +210,37 @@ def distance_to_parts(
 
 
 @func
-def march_part(
+def segment_of_part(
     distance: Callable[[vec3, int], float],
     part: int,
     ray: Ray,
+    slope: float,
     span: vec2,
+    sides: vec3,
     far: float,
     numbers: March,
     steps: int,
 ) -> Hit:
-    """March to the surface of one part.
+    """Return where a ray from outside enters one part.
 
     Args:
         distance: The signed distance of a point to a part.
         part: The part.
         ray: Ray.
+        slope: As for ``segment``; 0 if the ray does not start on this part.
         span: Where the box around the part begins and ends, along the ray.
+        sides: The lengths of the box's sides.
         far: The distance along the ray where it ends.
         numbers: The other parameters of the march.
-        steps: Maximum number of steps.
+        steps: Maximum number of evaluations of the field.
     """
 
     def field(p: vec3) -> float:
         return distance(p, part)
 
     limited = March(numbers.divisor, numbers.near, far, numbers.threshold, numbers.steepest)
-    return march_between(field, ray, span, limited, steps)
+    extent = max(sides.x, max(sides.y, sides.z))
+    return segment_between(field, ray, 1.0, slope, span, extent, limited, steps)
 
 
 @func
@@ -263,7 +271,6 @@ def first_met(
     boxes: Buffer[vec4],
     meet: Callable[[int, vec2, vec3, float], Hit],
     ray: Ray,
-    margin: float,
     numbers: March,
 ) -> Hit:
     """Return the first part along a ray that runs outside of all parts.
@@ -275,9 +282,9 @@ def first_met(
         meet: Where the ray enters a part, by its number, where its box begins and ends along the
             ray, the sides of the box, and the distance where the ray ends.
         ray: Ray.
-        margin: How far boxes are grown.
         numbers: The parameters of the march.
     """
+    margin = MARGIN * farthest_box(boxes, ray, numbers)
     inverse = inverse_of(ray.direction)
     found = -1
     t = numbers.far
@@ -343,11 +350,9 @@ def trace_parts(
     def meet(of: int, span: vec2, sides: vec3, far: float) -> Hit:
         if some_chords and has_chord(of):
             return meet_part(chord, of, ray, far, numbers)
-        return march_part(distance, of, ray, span, far, numbers, steps)
+        return segment_of_part(distance, of, ray, 0.0, span, sides, far, numbers, steps)
 
-    # A ray that passes a surface within the threshold has hit it.
-    margin = numbers.threshold * farthest_box(boxes, ray, numbers)
-    return first_met(boxes, meet, ray, margin, numbers)
+    return first_met(boxes, meet, ray, numbers)
 
 
 @func
@@ -399,7 +404,7 @@ def first_of_parts(
         def field(q: vec3) -> float:
             return min(nearest_of_all(boxes, distance, q).distance, others_field(q))
 
-        way = march(field, ray, everywhere(), numbers, steps)
+        way = segment(field, ray, 0.0, 0.0, everywhere(), numbers, steps)
         p = ray.origin + way.t * ray.direction
     far = select(other.found, other.t, numbers.far)
     limited = March(numbers.divisor, numbers.near, far, numbers.threshold, numbers.steepest)

@@ -1,10 +1,11 @@
-"""Segments of rays: from a place on a surface, or off it, to the next crossing of a signed field.
+"""Segments of rays: from the eye or from a surface to the next crossing of a signed field.
 
 Input: a field, a ray, the side of the surface on which it runs, and how it leaves the surface on
-which it starts. Output: a ``Hit``. The side is a state: it changes only where the field changes its
-sign by more than its rounding error. So a path that follows segments is on the side that it
-believes to be on, in solids a few rounding errors thick too. A ray that runs out of steps has no
-hit.
+which it starts. Output: a ``Hit``. A surface is where the field changes its sign by more than its
+rounding error, and nowhere else: where faces of two solids cancel (``a - b`` with a common face)
+the field comes to zero and goes back, and the ray goes on. So the side is a state; a path that
+follows segments is on the side that it believes to be on, in solids a few rounding errors thick
+too.
 
 One loop with one evaluation of the field (drivers write a field out at each place) leaves the
 surface, travels and encloses the crossing:
@@ -14,7 +15,13 @@ surface, travels and encloses the crossing:
   agrees with the parabola through the last three values to a few rounding errors, and the parabola
   has no root before it. The length of steps follows this error. The first step from a surface is of
   this kind; its parabola is the line given by the slope with which the ray leaves.
+* Steps aim a little behind the root of the parabola: behind a surface the next value is negative,
+  while at a zero that is only touched it is positive, and the free balls at both ends touch.
 * A change of sign encloses the crossing; false position ends at it.
+
+Values are not divided by the bound on the slope, ``divisor``: a field that is steep in one place
+would lose its surfaces elsewhere in the rounding error. A rounding error is a length; times the
+slope along the ray it is that of a value.
 
 Does not depend on materials, lights or cameras.
 """
@@ -49,6 +56,8 @@ ROUNDING = 2.5e-7
 START = 256.0
 # The largest distance between a value and the parabola, in rounding errors.
 AGREEMENT = 3.0
+# A ray begins by so much of the box's distance before the box.
+BEFORE = 4e-6
 # The longest step by the parabola: in rounding errors, and as a share of the field's box. 30 units
 # from the origin the first alone skipped 4e-5 to 6e-4 of a shell and of a gyroid.
 REACH = 4096.0
@@ -61,6 +70,10 @@ PATIENCE = 16
 # a multiple of the previous ball's radius.
 RELAXATION = 0.95
 LONGEST = 12.0
+# Steps aim so far behind a surface: a part of the length to which a crossing has to be known.
+AIM = 0.1
+# When steps run out, a surface ahead is hit that is closer than so many of these lengths.
+FORGIVING = 4.0
 # The least slope with which a ray leaves a surface: 0 says that it does not start on one.
 FLATTEST = 1e-9
 # Steps of Newton's method to a place on a surface, and the slope along a ray, as a share of the
@@ -84,6 +97,23 @@ class Landing:
     n: vec3
     slope: float
     t: float
+
+
+@struct
+class Precision:
+    """How exactly a field is known at a place of a ray.
+
+    Attributes:
+        divisor: The bound on the slope: a value divided by it is the radius of a free ball.
+        slope: How fast values change along the ray there.
+        noise: The rounding error of the place, in scene units.
+        enough: The length to which a crossing has to be known.
+    """
+
+    divisor: float
+    slope: float
+    noise: float
+    enough: float
 
 
 @struct
@@ -147,7 +177,7 @@ def segment(
             surface: a positive number. 0 if it does not start on one.
         bounds: Box around the surface with a margin (``settings.grown_bounds``); rays end at its
             sides.
-        numbers: The parameters of the march; ``threshold`` is not used.
+        numbers: The parameters of the march.
         steps: Maximum number of evaluations of the field.
     """
     sides = bounds.high - bounds.low
@@ -175,40 +205,46 @@ def segment_between(
         slope: As for ``segment``.
         span: Where the box around the surface begins and ends, along the ray.
         extent: The longest side of that box.
-        numbers: The parameters of the march; ``threshold`` is not used.
+        numbers: The parameters of the march.
         steps: Maximum number of evaluations of the field.
     """
     starts = slope > 0.0
-    end = min(span.y, numbers.far)
-    t = select(starts, 0.0, max(span.x, numbers.near))
-    nearby = rounding_of(ray.origin)
-    noise = nearby + ROUNDING * t
-    reach = min(REACH * noise, SHARE * extent)
-    rise = slope / numbers.divisor
-    first = select(starts, clamp(START * noise / max(rise, 1e-6), noise, max(reach, noise)), 0.0)
+    # A ray from afar begins just before the box: rounding errors are those of places there.
+    begin = select(starts, 0.0, max(span.x * (1.0 - BEFORE), numbers.near))
+    origin = ray.origin + begin * ray.direction
+    end = min(span.y, numbers.far) - begin
+    nearby = rounding_of(origin)
+    reach = min(REACH * nearby, SHARE * extent)
+    start = clamp(START * nearby / max(slope, 1e-6), nearby, max(reach, nearby))
+    first = select(starts, start, 0.0)
     # A crossing in a first step as short as this is the next face.
-    shortest = select(starts, 4.0 * noise / max(rise, 1e-3), first)
-    way = SegmentState(t, 0.0, rise, 0.0, 0.0, first, reach, 0.0, 0.0, False)
+    shortest = select(starts, 4.0 * nearby / max(slope, 1e-3), first)
+    way = SegmentState(0.0, 0.0, slope, 0.0, 0.0, first, reach, 0.0, 0.0, False)
     around = side
     taken = 0
     for _ in range(min(steps, MOST_STEPS)):
         if way.t > end or way.found:
             break
         at = way.t + way.step
-        value = field(ray.origin + at * ray.direction) / numbers.divisor
+        value = field(origin + at * ray.direction)
         taken += 1
         if around == 0.0:
             around = select(value < 0.0, -1.0, 1.0)
-        noise = nearby + ROUNDING * at
-        way = moved(way, around * value, noise, end, shortest, taken > PATIENCE)
+        along = clamp(abs(way.rise), 1.0 / numbers.steepest, numbers.divisor)
+        enough = numbers.threshold * (begin + at)
+        here = Precision(numbers.divisor, along, nearby + ROUNDING * at, enough)
+        way = moved(way, around * value, here, end, shortest, taken > PATIENCE)
     lost = PASSED
     if not way.found and way.high == 0.0:
         cut_short = way.t > end and numbers.far < span.y and way.rise < 0.0
         lost = select(way.t > end, select(cut_short, TOO_FAR, PASSED), OUT_OF_STEPS)
     # If steps end while the crossing is enclosed, it is where the line through both values is 0.
-    t = way.t + way.high * share_of(way.free, way.below)
-    found = way.found or way.high > 0.0
-    return Hit(clamp(t, 0.0, max(end, 0.0)), found, taken, around, lost)
+    t = begin + clamp(way.t + way.high * share_of(way.free, way.below), 0.0, max(end, 0.0))
+    # If they end close to a surface ahead, as at a horizon, that is hit.
+    ahead = way.rise < 0.0 and way.free < FORGIVING * numbers.threshold * t
+    if lost == OUT_OF_STEPS and ahead:
+        return Hit(t, True, taken, around, PASSED)
+    return Hit(t, way.found or way.high > 0.0, taken, around, lost)
 
 
 @func
@@ -219,7 +255,7 @@ def share_of(free: float, below: float) -> float:
 
 @func
 def moved(
-    way: SegmentState, value: float, noise: float, end: float, shortest: float, widening: bool
+    way: SegmentState, value: float, here: Precision, end: float, shortest: float, widening: bool
 ) -> SegmentState:
     """Return the state of a segment after one more evaluation of the field.
 
@@ -228,21 +264,25 @@ def moved(
     Args:
         way: The state before; the field was evaluated at its ``step``.
         value: The value there, positive on the side of the ray.
-        noise: The rounding error of the value.
+        here: How exactly the place and the value are known.
         end: Where the ray ends.
         shortest: The length of a first step that may enclose a crossing.
         widening: Whether the longest step by the parabola grows.
     """
+    divisor, noise = here.divisor, here.noise
+    tiny = noise * here.slope
     at = way.t + way.step
     up = value > 0.0
     enclosed = way.high > 0.0
     # Is the step accepted, does it enclose a crossing, or is it taken back?
     expected = way.free + way.step * (way.rise + way.bend * (way.step + way.last))
     error = abs(value - expected)
-    near = way.free < way.reach
-    agrees = near and error <= AGREEMENT * noise
-    crossed = value < -noise
-    touching = way.step <= way.free + abs(value) + 2.0 * noise
+    # A value that a safe field has divided is that of a place as many times as far away: another
+    # part may be nearer than a step that the value allows to be long.
+    near = way.free < divisor * way.reach * min(here.slope, 1.0)
+    agrees = near and error <= AGREEMENT * tiny
+    crossed = value < -tiny
+    touching = divisor * (way.step - 2.0 * noise) <= way.free + abs(value)
     early = way.last == 0.0 and way.step > shortest
     enters = not enclosed and crossed and (touching or (near and not early))
     goes = not enclosed and not crossed and (touching or agrees)
@@ -264,46 +304,49 @@ def moved(
     bend = select(goes, bent, way.bend)
     rise = select(goes, steeper, select(enclosed, sign, select(enters, 0.0, way.rise)))
     # The next step.
-    growth = step_growth(error, noise)
+    growth = step_growth(error, tiny)
     longest = min(way.reach, growth * last)
-    onward = next_step(free, rise, bend, last, longest, noise)
+    onward = next_step(free, rise, bend, last, longest, here)
     beyond = goes and t + onward > end
-    passes = beyond and (t >= end or t + free > end)
+    passes = beyond and (t >= end or divisor * (end - t) < free)
     onward = select(beyond, end - t, onward)
-    shorter = select(near, min(growth, 0.5) * way.step, free)
-    back = max(shorter, max(free, 2.0 * noise))
+    ball = free / divisor
+    shorter = select(near, min(growth, 0.5) * way.step, ball)
+    back = max(shorter, max(ball, 2.0 * noise))
     within = high * clamp(share_of(free, below), 0.02, 0.98)
     step = select(high > 0.0, within, select(goes, onward, back))
     wider = goes and (widening or last > 0.9 * way.reach)
     reach = way.reach * select(wider, WIDENING, 1.0)
-    # The end: at a crossing that is known to a rounding error, or past the end.
-    exact = enclosed and (abs(value) < 0.25 * noise or way.high < 0.5 * noise)
-    close = enters and agrees and below * way.step <= 4.0 * noise * (free + below)
-    t = select(exact, at, select(passes, end + 1.0, t))
-    high = select(exact, 0.0, high)
-    return SegmentState(t, free, rise, bend, last, step, reach, high, below, exact or close)
+    # The end: at a crossing that is known well enough, or past the end.
+    zero = enclosed and abs(value) < 0.25 * tiny
+    short = enclosed and way.high < max(0.5 * noise, here.enough)
+    straight = agrees and below * way.step <= 4.0 * noise * (free + below)
+    close = enters and (straight or way.step <= here.enough)
+    t = select(zero, at, select(passes, end + 1.0, t))
+    high = select(zero, 0.0, high)
+    return SegmentState(t, free, rise, bend, last, step, reach, high, below, zero or short or close)
 
 
 @func
-def step_growth(error: float, noise: float) -> float:
+def step_growth(error: float, tiny: float) -> float:
     """Return how much longer the next step may be, by the error of the last and the rounding error.
 
     The error of a parabola grows with the third power of the step.
     """
-    limit = AGREEMENT * noise
+    limit = AGREEMENT * tiny
     kept = select(error < limit, 1.0, select(error < 8.0 * limit, 0.5, 0.25))
     return select(error < 0.2 * limit, 2.0, kept)
 
 
 @func
 def next_step(
-    free: float, rise: float, bend: float, last: float, longest: float, noise: float
+    free: float, rise: float, bend: float, last: float, longest: float, here: Precision
 ) -> float:
     """Return the length of the next step.
 
     The longer of two: to where the ball there touches the free ball here, if the surface ahead is
     flat (Bálint and Valasek, "Accelerating Sphere Tracing", 2018); and, up to a limit, to where the
-    parabola through the last values is a few rounding errors below 0.
+    parabola through the last values is a little below 0.
 
     Args:
         free: The last value.
@@ -311,21 +354,23 @@ def next_step(
         bend: The second of the last three; 0 if there are only two.
         last: The length of the last step; 0 if there was none.
         longest: The limit of a step by the parabola.
-        noise: The rounding error of a value.
+        here: How exactly the place and the value are known.
     """
+    divisor = here.divisor
     fall = -(rise + bend * last)
-    above = free + 2.0 * noise
+    above = free + 2.0 * here.slope * max(here.noise, AIM * here.enough)
     root = fall * fall - 4.0 * bend * above
     down = fall + sqrt(max(root, 0.0))
     falls = root > 0.0 and down > 0.0
     # One division for both.
-    flat = max(1.0 - rise, 1e-3)
-    steep = max(down, 1e-6)
+    flat = max(divisor - rise, 1e-3 * divisor)
+    steep = max(down, 1e-12)
     inverse = 1.0 / (flat * steep)
-    touching = free * clamp((1.0 + rise) * steep * inverse, 0.0, LONGEST)
-    ball = free + select(last > 0.0, RELAXATION * touching, 0.0)
+    ball = free / divisor
+    touching = ball * clamp((divisor + rise) * steep * inverse, 0.0, LONGEST)
+    reached = ball + select(last > 0.0, RELAXATION * touching, 0.0)
     ahead = select(falls, min(longest, 2.0 * above * flat * inverse), longest)
-    return max(max(ball, ahead), 2.0 * noise)
+    return max(max(reached, ahead), 2.0 * here.noise)
 
 
 @func

@@ -22,6 +22,8 @@ FAR = 200.0
 FAR_DISTANCES = 40.0
 # The least threshold of a hit: rounding errors of a place, for each unit of the ray's length.
 PRECISION = 2e-6
+# The margin around a box, as a part of its longest side.
+ROOM = 1e-4
 
 
 @func
@@ -45,7 +47,7 @@ def hit_threshold(resolution: vec2, bounds: Bounds, camera: Callable[[vec2], Ray
         camera: Ray of a place in the picture.
     """
     pixel = pixel_cone(camera, vec2(0.0), 2.0 / resolution.y)
-    third = 0.343 * (pixel.width / max(subject_depth(bounds, camera), 1e-6) + pixel.spread)
+    third = 0.343 * (pixel.width / max(subject_depth(bounds, camera), 1e-20) + pixel.spread)
     return min(clamp(0.25 / resolution.y, 1e-4, 1e-3), max(third, PRECISION))
 
 
@@ -91,7 +93,9 @@ def look(ambient_occlusion: float, fog_density: float) -> Shading:
 @func
 def grown_bounds(bounds: Bounds) -> Bounds:
     """Return a box with a margin for 32-bit rounding errors."""
-    room = 1e-3 + 1e-4 * max(bounds.high - bounds.low, 0.0)
+    sides = bounds.high - bounds.low
+    finite = select(sides < ENDLESS, max(sides, 0.0), 0.0)
+    room = ROOM * max(finite.x, max(finite.y, finite.z))
     return Bounds(bounds.low - room, bounds.high + room)
 
 

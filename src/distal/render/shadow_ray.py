@@ -29,6 +29,7 @@ from distal.lang import (
 from distal.lang.functions import apart
 from distal.render.camera import Ray
 from distal.render.march import MOST_STEPS, March, crossing
+from distal.render.segment import ROUNDING, rounding_of
 
 # A ray that is nearer to a surface than this fraction of its length is in it; late on its way it
 # takes steps of at least the other fraction, or it would end before it reaches farther surfaces.
@@ -58,6 +59,11 @@ INSET = 0.05
 GRAZING = 0.08
 # The least |gradient| by which a value is divided.
 FLATTEST = 0.3
+
+# The middle between faces that cancel is at most so many rounding errors from them; another place
+# without an inside is beside an edge. The least step, in rounding errors: a ray may start at 0.
+TOUCHED = 4.0
+LEAST = 16.0
 
 # So many solids with flat faces are followed along a ray. What is behind the first is looked for if
 # the edge of the shadow has at least this offset: more than .06 of the disc is beside the solid.
@@ -222,6 +228,10 @@ def pass_surfaces(
     left = 0.0  # where it came out; the next point is the middle of the chord
     count = 0  # points inside
     state = OUTSIDE
+    seen = vec2(OPEN, t)  # share and closest before the ray came towards the surface ahead
+    is_deep = False  # whether a point of the chord is certainly inside
+    is_leaving = False  # the ray runs away from faces that cancel
+    nearby = rounding_of(ray.origin)
     for i in range(min(steps, MOST_STEPS)):
         if t > last or share <= -1.0 or chord.y > chord.x:
             break
@@ -229,14 +239,26 @@ def pass_surfaces(
         value = field(p) / numbers.divisor
         if i == 0 and value < BESIDE_SURFACE * last:
             lift = value
-        if value < share * width * t:
+        noise = nearby + ROUNDING * t
+        if state == OUTSIDE and slope >= 0.0:
+            seen = vec2(share, closest)
+        is_leaving = is_leaving and slope >= 0.0
+        if value < share * width * t and not is_leaving:
             share = value / (width * t)
             closest = t
+        is_deep = state != OUTSIDE and (is_deep or value < -noise)
         if state == MIDDLE:
             # How flat the two faces are, from 0 to 1.
             flat = smoothstep(ROUND, FLAT, -value / max(entry * (t - entered), 1e-9))
-            if flat > 0.0:
-                chord = vec3(entered, 2.0 * t - entered, flat)
+            is_long = t - entered > 2.0 * NEARLY * t
+            if not is_deep and value < TOUCHED * noise:
+                # Nothing is inside and nothing beside: faces that cancel, not a solid.
+                share = seen.x
+                closest = seen.y
+                is_leaving = True
+                slope = 1.0
+            elif is_deep and flat > 0.0 and (is_long or entry * numbers.steepest > GRAZING):
+                chord = vec3(entered, 2.0 * t - entered, select(is_long, flat, 1.0))
             t = left
             free = 0.0
             step = 0.0
@@ -281,7 +303,7 @@ def pass_surfaces(
             if state == INSIDE and value > 0.0 and slope > 0.0:
                 left = t
                 inside = t - value / entry - entered
-                if inside > 4.0 * NEARLY * t:
+                if inside > 4.0 * NEARLY * t or not is_deep:
                     state = MIDDLE
                     step = 0.5 * inside - (t - entered)
                 else:
@@ -291,10 +313,10 @@ def pass_surfaces(
             if state == INSIDE:
                 count += 1
                 step = max(abs(value), max(NEARLY, 0.1 * width * float(count)) * t)
-                step = min(step, 0.15 * t + 2.0 * numbers.threshold)
+                step = min(step, max(0.15 * t, abs(value)))
             elif state == OUTSIDE:
                 is_along = abs(slope) < SLIGHT and abs(slope - before) < ALIKE
-                least = max(NEARLY, select(is_along, SLIGHT * width, 0.0)) * t
+                least = max(NEARLY, select(is_along, SLIGHT * width, 0.0)) * t + LEAST * noise
                 if 3 * i > 2 * steps:
                     least = HURRY * t
                 step = max(step_outside(value, slope, before, width * t), least)
@@ -340,7 +362,7 @@ def find_edge(
     margin = width * min(length(corner), end)
     span = crossing(ray, Bounds(bounds.low - margin, bounds.high + margin))
     last = min(end, span.y)
-    start = max(span.x, 0.0) + numbers.threshold
+    start = max(span.x, 0.0)
     offset = OPEN
     is_sure = True
     lost = False

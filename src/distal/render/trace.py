@@ -1,4 +1,4 @@
-"""Trace a ray to a surface; the only place that combines a march, a normal and a material.
+"""Trace a ray to a surface: segments among planes, and the normal and the material at their end.
 
 Input: a ray, a field, the material at each point, and the parameters of the march. Output: a
 ``Hit`` (how far the ray went) or a ``SurfacePoint`` (the surface there, ready for shading). Direct
@@ -29,11 +29,11 @@ from distal.lang import (
 from distal.render.bump import bumped_normal
 from distal.render.camera import Ray
 from distal.render.footprint import Cone, Footprint, footprint_at
-from distal.render.heightfield_march import ENOUGH, Stride, march_heightfield
-from distal.render.march import FORGIVING, PASSED, TOO_FAR, Hit, March, march
+from distal.render.heightfield_march import ENOUGH
+from distal.render.march import PASSED, TOO_FAR, Hit, March
 from distal.render.material import Shares, Surface, shares
 from distal.render.normals import EXACT, normal, unit_or_up
-from distal.render.segment import rounding_of, segment
+from distal.render.segment import FORGIVING, rounding_of, segment
 
 # Steps of Newton's method. The largest error of a depth of 4 (a sphere, 160x120, without grazing
 # rays) after 0, 1 and 2 steps: 4e-3, 6e-7, 6e-7; where a ray hits it at 6 degrees 2e-2, 1e-3, 5e-6.
@@ -64,32 +64,6 @@ class SurfacePoint:
 
 
 @func
-def first_surface(
-    field: Field3,
-    ray: Ray,
-    bounds: Bounds,
-    numbers: March,
-    steps: int,
-    hybrid: bool,
-    stride: Stride,
-) -> Hit:
-    """March to the first surface along a ray.
-
-    Args:
-        field: Signed distance.
-        ray: Ray.
-        bounds: Box around the surface.
-        numbers: The parameters of the march.
-        steps: Maximum number of steps.
-        hybrid: Whether to use the march for terrain and water; a constant.
-        stride: The steps of that march.
-    """
-    if hybrid:
-        return march_heightfield(field, ray, bounds, numbers, stride, steps)
-    return march(field, ray, bounds, numbers, steps)
-
-
-@func
 def plane_crossing(plane: Field3, ray: Ray) -> float:
     """Return the distance along a ray to a plane; ``UNBOUNDED`` if it is not ahead.
 
@@ -100,52 +74,6 @@ def plane_crossing(plane: Field3, ray: Ray) -> float:
     height = plane(ray.origin)
     fall = -dot(gradient(plane, ray.origin), ray.direction)
     return select(fall > 0.0, min(height / max(fall, 1e-30), UNBOUNDED), UNBOUNDED)
-
-
-@func
-def first_surface_or_plane(
-    field: Field3,
-    planes: Field3,
-    nearest_plane: Callable[[Ray], float],
-    ray: Ray,
-    bounds: Bounds,
-    numbers: March,
-    farthest_plane: float,
-    steps: int,
-) -> Hit:
-    """March to the first surface along a ray; planes are met in closed form.
-
-    A plane is met at any distance, so that it ends at the true horizon, and rays that pass close to
-    it take no more steps than others.
-
-    Args:
-        field: Signed distance without the planes.
-        planes: Signed distance of the planes' union.
-        nearest_plane: Distance along a ray that starts above all planes to the first of them.
-        ray: Ray.
-        bounds: Box around the surface without the planes.
-        numbers: The parameters of the march.
-        farthest_plane: Planes farther along the ray are not seen.
-        steps: Maximum number of steps.
-    """
-    below = planes(ray.origin) <= 0.0
-    # A ray from below a plane starts inside a solid; it is marched through all surfaces.
-    met = UNBOUNDED
-    if not below:
-        met = nearest_plane(ray)
-
-    def nearest(p: vec3) -> float:
-        d = field(p)
-        return select(below, min(d, planes(p)), d)
-
-    box = everywhere() if below else bounds
-    far = min(numbers.far, met)
-    limited = March(numbers.divisor, numbers.near, far, numbers.threshold, numbers.steepest)
-    hit = march(nearest, ray, box, limited, steps)
-    if hit.found or met >= farthest_plane:
-        return hit
-    lost = select(hit.lost == TOO_FAR, PASSED, hit.lost)  # the plane ended it, not the far limit
-    return Hit(met, True, hit.steps, 1.0, lost)
 
 
 @func
@@ -161,21 +89,25 @@ def segment_or_plane(
     farthest_plane: float,
     steps: int,
 ) -> Hit:
-    """Return the next surface along a ray from a surface; planes are met in closed form.
+    """Return the next surface along a ray; planes are met in closed form.
+
+    A plane is met at any distance, so that it ends at the true horizon, and rays that pass close to
+    it take no more steps than others.
 
     Args:
         field: Signed distance without the planes.
         planes: Signed distance of the planes' union.
         nearest_plane: Distance along a ray that starts above all planes to the first of them.
         ray: Ray.
-        side: 1 if the ray runs outside, -1 inside.
-        slope: How fast the absolute value of the field of all grows along the ray.
+        side: 1 if the ray runs outside, -1 inside; 0 if that is not known.
+        slope: As for ``segment``, of the field of all.
         bounds: Box around the surface without the planes.
         numbers: The parameters of the march.
         farthest_plane: Planes farther along the ray are not seen.
         steps: Maximum number of evaluations of the field.
     """
-    inside = side < 0.0
+    # A ray from below a plane starts inside a solid, and is followed through all surfaces.
+    inside = side < 0.0 or (side == 0.0 and planes(ray.origin) <= 0.0)
     met = UNBOUNDED
     if not inside:
         met = max(nearest_plane(ray), 0.0)
@@ -194,7 +126,9 @@ def segment_or_plane(
     if hit.found or met >= farthest_plane:
         return hit
     lost = select(hit.lost == TOO_FAR, PASSED, hit.lost)  # the plane ended it, not the far limit
-    return Hit(met, lost == PASSED, hit.steps, side, lost)
+    # The eye sees what is behind the place where steps ran out; a path ends there.
+    is_first = side == 0.0
+    return Hit(met, is_first or lost == PASSED, hit.steps, select(is_first, 1.0, side), lost)
 
 
 @func
@@ -228,7 +162,7 @@ def facing_normal(
         normal_step: Step of the differences at distance 1 and nearer; it grows with the distance,
             as the size of a pixel and the rounding error do.
     """
-    step = normal_step * max(hit.t, 1.0)
+    step = normal_step * hit.t
     return hit.side * normal(field, point_before(ray, hit, numbers), normals, step)
 
 
@@ -236,7 +170,7 @@ def facing_normal(
 def ray_offset(numbers: March, t: float, hybrid: bool) -> float:
     """Return the height above a surface at which new rays start, beyond the error of a march."""
     error = 1.0 + ENOUGH if hybrid else 1.0
-    return (1.0 + error) * numbers.threshold * t + 1e-4
+    return (1.0 + error) * numbers.threshold * t
 
 
 @func
@@ -274,7 +208,7 @@ def surface_point(
     normals: int,
     normal_step: float,
 ) -> SurfacePoint:
-    """Return the surface that ``first_surface`` found, with its normal and material.
+    """Return the surface at the end of a ray, with its normal and material.
 
     This is a separate function, so that rays that hit nothing compute neither.
 
@@ -294,7 +228,7 @@ def surface_point(
 
     inside = hit.side < 0.0
     p = hit_point(ray, hit)
-    step = normal_step * max(hit.t, 1.0)
+    step = normal_step * hit.t
     n = vec3(0.0)
     slope = 1.0
     if normals == EXACT:

@@ -166,7 +166,7 @@ class Scene(Composed, Presentable):
         stride_growth: Number = 1.05,
         steps: int | None = None,
         acceleration: bool = True,
-        near: Number | None = None,
+        near: Number = 0.0,
         far: Number | None = None,
         name: str = "scene",
     ) -> None:

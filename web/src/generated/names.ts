@@ -438,7 +438,7 @@ export const METHODS: Names = {
   "extents": ["()", "Return the measured box (low, high): where the surface really ends along each axis."],
   "fillet": ["(radius)", "Round the edge where the shapes of the last operator meet, by a quarter of a circle."],
   "flat": ["", ""],
-  "from_function": ["(function, slope=None, bounds=None, exact=False, growth=None, normalize=False, region=None, **numbers)", "Make a shape from a @func of a point, and of numbers passed by name."],
+  "from_function": ["(function, slope=None, bounds=None, exact=False, growth=None, normalize=False, region=None, signed=None, \u2026)", "Make a shape from a @func of a point, and of numbers passed by name."],
   "from_mesh": ["(source, triangles=None, spacing=None, sign='auto', unit=None, up=None, colors=False)", "Make a solid from a mesh of triangles: STL, OBJ, PLY, GLB, 3MF, or two arrays."],
   "from_points": ["(source, normals=None, spacing=None, radius=None, unit=None, up=None)", "Make a solid from points on its surface with outward normals: PLY, OBJ, XYZ, or arrays."],
   "from_vm": ["(source, slope=None, bounds=None)", "Make a shape from a .vm file, a list of operations as Fidget writes it."],

@@ -123,12 +123,14 @@ ROUND = operator(
     bounds=rounded_bounds,
     limits={"radius": Limit.NOT_NEGATIVE},
     growth=Growth.KEPT,
+    fills=True,
 )
 OFFSET = operator(
     "offset",
     finish=offset_value,
     bounds=offset_bounds,
     growth=Growth.KEPT,
+    fills=True,
 )
 DILATE = operator(
     "dilate",
@@ -138,6 +140,7 @@ DILATE = operator(
     bounds=offset_bounds,
     limits={"distance": Limit.NOT_NEGATIVE},
     growth=Growth.KEPT,
+    fills=True,
 )
 ERODE = operator(
     "erode",
@@ -161,6 +164,7 @@ SHELL_CENTRE = operator(
     bounds=shell_centre_bounds,
     limits=THICK,
     growth=Growth.KEPT,
+    fills=True,
 )
 SHELL_OUTER = operator(
     "shell outer",
@@ -169,6 +173,7 @@ SHELL_OUTER = operator(
     bounds=shell_outer_bounds,
     limits=THICK,
     growth=Growth.KEPT,
+    fills=True,
 )
 CUT: Final[Mapping[str, Any]] = {
     "keeps": INSIDE_AND_BOUND,

@@ -29,6 +29,7 @@ MOST_MEASURED: Final = 24
 # Tolerance: bounds are computed in 32 bits, and 64 bits do not resolve closer values at a crease.
 ROUNDING: Final = 1e-4
 # Next to creases, some points do not lead to the surface although the distance is exact.
+TOO_LARGE: Final = 100.0  # how many times what was measured
 ON_FOOT: Final = 0.98
 
 # Findings at a point, after which nothing is proved.
@@ -250,6 +251,9 @@ def _findings(i: int, row: ShapeReport, rows: Sequence[ShapeReport]) -> Iterator
 
     if row.measured is not None:
         yield from _violations(row, row.measured, finding)
+    if is_own(row.node) and not row.node.signed:
+        message = f"'{row.node.name}' has no inside: it is drawn a third of a pixel thick"
+        yield finding(Severity.NOTE, ErrorCode.NO_INSIDE, message, "signed=True if it is a solid")
     if row.raised is not None:
         message = (
             f"{described(row.node)} raises the slope from {row.raised:.3g} "
@@ -303,6 +307,13 @@ def _violations(row: ShapeReport, measured: Measured, finding: Any) -> Iterator[
             message += f"{measured.largest_change:.4g} per unit from {p} to {q}"
         hint = f"slope={_rounded_up(measured.slope)}" if own else None
         yield finding(severity, ErrorCode.SLOPE_EXCEEDED, message, hint)
+    elif own and row.declared.slope > TOO_LARGE * max(measured.slope, 1.0):
+        message = (
+            f"'{name}' has the slope {row.declared.slope:.4g}, and its value changes by at most "
+            f"{measured.slope:.4g} per unit: rays need many steps"
+        )
+        hint = f"slope={_rounded_up(measured.slope)}, if no place is steeper"
+        yield finding(Severity.WARNING, ErrorCode.SLOPE_TOO_LARGE, message, hint)
     elif measured.steepest_around_at is not None and _exceeds(
         measured.steepest_around, row.declared.slope
     ):

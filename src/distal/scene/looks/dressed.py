@@ -31,9 +31,6 @@ from distal.scene.scene_arguments import (
 )
 from distal.scene.tree.node import Node
 
-# Rays of an author's camera, which may be anywhere, begin at this distance.
-NEAR = 0.001
-
 
 @dataclass(frozen=True, slots=True)
 class GivenArguments:
@@ -172,10 +169,6 @@ class Dressed:
     @property
     def _ambient_occlusion(self) -> float:
         return self._dressing.occlusion
-
-    @property
-    def _near(self) -> float:
-        return NEAR if self._own_camera is not None else self._dressing.near
 
 
 def _is_painted(root: Node) -> bool:

@@ -33,9 +33,8 @@ if TYPE_CHECKING:
 BELOW: Final = 1e-4
 # The cone of a lamp, in radians; it fades from its axis on.
 CONE: Final = 0.85
-# Reach of ambient occlusion, and where rays begin, in radii of the box.
+# Reach of ambient occlusion, in radii of the box.
 REACH: Final = 0.5
-NEAREST: Final = 1e-3
 # Width of a drawn line in radii; lines on the floor are darker than those on shapes.
 LINE: Final = 0.009
 INK, FLOOR_INK = (0.62, 0.80, 1.0), (0.07, 0.19, 0.43)
@@ -215,11 +214,6 @@ class Dressing:
     def occlusion(self) -> float:
         """The reach of ambient occlusion."""
         return REACH * self.box.radius
-
-    @property
-    def near(self) -> float:
-        """The distance at which rays of the look's camera begin."""
-        return NEAREST * self.box.radius
 
 
 def round_step(step: float) -> float:

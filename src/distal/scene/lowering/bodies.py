@@ -23,8 +23,9 @@ from distal.render.footprint import Footprint
 from distal.render.march import Hit
 from distal.scene.lowering.captures import capturing
 from distal.scene.lowering.parts.flatten import member_count
-from distal.scene.lowering.ray_functions import Define, Params, RayFunctions, united
+from distal.scene.lowering.ray_functions import Define, Params, RayFunctions
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
+from distal.scene.lowering.union_parts import united
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
 
@@ -194,8 +195,9 @@ class BodyFunctions:
             if not self.are_many:
                 return composer.call(media.in_air_or_body, given)
             within: Expr = integer(0)
-            for k, node in enumerate(self._nodes):
-                own = composer.safe_field(node, composer.values.all(node), ZERO_CELL)
+            for k in range(len(self._nodes)):
+                own = given[f"own_{k}"]
+                assert isinstance(own, FunctionRef)
                 d = Call(own.name, (field(given["ray"], "origin"), *own.captures), FLOAT)
                 is_inside = compare(CompareOp.LT, d, number(0.0))
                 within = add(within, select(is_inside, integer(1 << k), integer(0)))
@@ -203,7 +205,11 @@ class BodyFunctions:
 
         struct = composer.assembly.struct
         params: Params = [("ray", struct(Ray)), ("hit", struct(Hit))]
-        return self._define("first_within", params, make, [])
+        fields = {
+            f"own_{k}": composer.safe_field(node, composer.values.all(node), ZERO_CELL)
+            for k, node in enumerate(self._nodes if self.are_many else ())
+        }
+        return capturing(self._define, "first_within", params, fields, make)
 
     def next_hit(self, body: StatementList, given: Mapping[str, Expr]) -> FunctionRef:
         """Return the function ``(ray, within, slope, part) -> Hit`` for rays from a surface.
@@ -290,9 +296,12 @@ class BodyFunctions:
         result = signature.result
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            known = {**given, "common": integer(self._common)}
+            known = {n: given[n] for n, _ in params}
+            known["common"] = integer(self._common)
             of = body.let("of", self._composer.call(media.body_of, known))
-            for k, each in enumerate(own):
+            for k in range(len(own)):
+                each = given[f"own_{k}"]
+                assert isinstance(each, FunctionRef)
                 below = {"body": integer(k), "common": integer(self._common)}
                 part = add(given["part"], self._composer.call(media.offset_of, below))
                 args = tuple(part if n == "part" else given[n] for n, _ in params)
@@ -303,4 +312,5 @@ class BodyFunctions:
                 body.statements.append(If(is_own, (Return(call),), ()))
             raise AssertionError("there is no body")
 
-        return self._define(name, params, make, [])
+        functions = {f"own_{k}": each for k, each in enumerate(own)}
+        return capturing(self._define, name, params, functions, make)

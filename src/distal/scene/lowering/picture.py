@@ -38,6 +38,7 @@ from distal.render import (
     paths,
     ranges,
     settings,
+    sheets,
     tonemap,
     views,
 )
@@ -59,9 +60,9 @@ from distal.scene.lowering.glass_shadows import colored_shadow, split_glass
 from distal.scene.lowering.light_functions import LightFunctions
 from distal.scene.lowering.parts.table import has_table, rolled_for, split_table
 from distal.scene.lowering.photon_functions import PhotonFunctions
-from distal.scene.lowering.ray_functions import RayFunctions, step_limit, united
+from distal.scene.lowering.ray_functions import RayFunctions, step_limit
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
-from distal.scene.lowering.thin_sheets import with_insides
+from distal.scene.lowering.union_parts import united
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
 from distal.scene.tree.varying import expression_of
@@ -112,7 +113,6 @@ class SceneLowering:
         node = scene.shape.node
         bodies, common = [node], 0
         if paths or scene.renderer == "refracted":
-            node = with_insides(node)
             apart = paths and not (rolls and has_table(assembly, node))
             bodies = bodies_of(node, scene.material, apart=apart)
             common = largest_of(bodies)
@@ -360,15 +360,22 @@ class SceneLowering:
         if "far" not in self._numbers:
             given["far"] = body.let("far", composer.call(settings.automatic_far, given))
         given["threshold"] = body.let("threshold", composer.call(settings.hit_threshold, given))
+        eye = body.let("eye", composer.call(sheets.eye_of, given))
+        composer.sheets.seen = {"eye": eye, "threshold": given["threshold"]}
+        given["bounds"] = body.let("room", composer.sheets.room(node, given["bounds"]))
         given["numbers"] = body.let("numbers", composer.call(settings.march_numbers, given))
         given["stride"] = body.let("stride", composer.call(settings.stride_over, given))
         given["look"] = body.let("look", composer.call(settings.look, given))
         rays = self._rays
-        given["first_hit"] = rays.first_hit(body, given, hybrid=self._hybrid)
+        # Paths know surfaces to a rounding error, from the first on.
+        exact = {**given, "threshold": number(0.0)}
+        exact["numbers"] = composer.call(settings.march_numbers, exact)
+        first = exact if paths else given
+        given["first_hit"] = rays.first_hit(body, first, hybrid=self._hybrid)
         given["occlusion"] = self._occlusion(body, given)
         given["shadow"] = self._shadow(body, given)
         if scene.renderer == "refracted" or paths:
-            on_surface = {**given, "near": number(0.0)}
+            on_surface = {**exact, "near": number(0.0)}
             on_surface["numbers"] = composer.call(settings.march_numbers, on_surface)
             given["next_hit"] = self._bodies.next_hit(body, on_surface)
             given["first_within"] = self._bodies.first_within()

@@ -10,10 +10,8 @@ the other shapes are marched together.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from typing import Final, TypeAlias
 
-from distal.fields.combine.joins import UNION
 from distal.fields.guarantees import UNBOUNDED, Primitive
 from distal.ir.build import boolean, builtin, cast, compare, integer, multiply
 from distal.ir.build import field as field_of
@@ -24,6 +22,7 @@ from distal.lang.functions import Func
 from distal.passes.fold.fold import fold_expression
 from distal.render import (
     closed_hits,
+    heightfield_march,
     part_segments,
     part_shading,
     part_tree,
@@ -39,7 +38,8 @@ from distal.scene.lowering.captures import capturing
 from distal.scene.lowering.chords import chord_of, has_chord
 from distal.scene.lowering.parts.table import TableNode
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
-from distal.scene.lowering.union_parts import parts_of
+from distal.scene.lowering.union_parts import parts_of, united
+from distal.scene.tree.conversion import NO_VALUES
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
 
@@ -59,6 +59,8 @@ MOST_SHAPES: Final = 15
 # Parts of a table have numbers from 0 on, and -1 is not known.
 FIRST_SHAPE: Final = -2
 
+# What is known of the start of a ray from the eye, as ``segment`` takes it.
+FROM_ANYWHERE: Final = {"side": constant_number(0.0), "slope": constant_number(0.0)}
 # What the marches take besides the ray and the fields.
 _TAKEN: Final = (
     "bounds",
@@ -120,11 +122,6 @@ def is_linear(node: Node) -> bool:
     return node.rule.linear and is_linear(node.children[0])
 
 
-def united(root: Node, nodes: list[Node]) -> Node:
-    """Return the union of several parts of a tree."""
-    return nodes[0] if len(nodes) == 1 else replace(root, rule=UNION, children=tuple(nodes))
-
-
 class RayFunctions:
     """Makes the functions of a scene that follow rays."""
 
@@ -168,8 +165,7 @@ class RayFunctions:
         """
         params = [("ray", self._composer.assembly.struct(Ray))]
         if self._closed and not hybrid:
-            start = {"side": constant_number(0.0), "part": integer(-1)}
-            return self._segment_of_solids(params, {**given, **start})
+            return self._segment_of_solids(params, {**given, **FROM_ANYWHERE, "part": integer(-1)})
         if self._table is None:
             return self._first_of_others(body, params, given, hybrid=hybrid)
         if self._beside:
@@ -191,42 +187,49 @@ class RayFunctions:
         if self._closed:
             return self._segment_of_solids(params, given)
         if self._table is None:
-            return self._next_of_others(body, params, given)
+            return self._segment_of_others(body, params, given)
         if self._beside:
-            others = self._next_of_others(body, params, given)
+            others = self._segment_of_others(body, params, given)
         else:
             others = self._bound(part_segments.nothing_next, params, given, {})
         functions = {"others": others, "others_field": self._beside_field()}
         return self._bound(part_segments.segment_of_parts, params, given, functions)
 
-    def _next_of_others(
-        self, body: StatementList, params: Params, given: Mapping[str, Expr]
+    def _segment_of_others(
+        self,
+        body: StatementList,
+        params: Params,
+        given: Mapping[str, Expr],
+        start: Mapping[str, Expr] = NO_VALUES,
     ) -> FunctionRef:
-        """Return the function ``(ray, side, slope, part) -> Hit`` of all but the table."""
+        """Return the function of a ray to its end, of all shapes but those of the table.
+
+        Args:
+            body: The statements of the function that calls it.
+            params: Name and type of each parameter: the ray, and what is known of its start.
+            given: The values of the march, by name.
+            start: What is known of the start of all rays, by name: constants.
+        """
         if self._table is None and not self._planes:
             functions = {"field": self._safe_field(self._root)}
-            return self._bound(segment.segment, params, given, functions)
+            return self._bound(segment.segment, params, given, functions, start)
         values = {**given, **self._without_planes(body)}
         if not self._planes:
-            return self._bound(segment.segment, params, values, {"field": self._others_field()})
+            functions = {"field": self._others_field()}
+            return self._bound(segment.segment, params, values, functions, start)
         functions = {**self._fields(), "nearest_plane": self._nearest_plane()}
-        return self._bound(trace.segment_or_plane, params, values, functions)
+        return self._bound(trace.segment_or_plane, params, values, functions, start)
 
     def _first_of_others(
         self, body: StatementList, params: Params, given: Mapping[str, Expr], *, hybrid: bool
     ) -> FunctionRef:
         """Return the function ``(ray) -> Hit`` of all shapes but those of the table."""
-        if self._table is None and (hybrid or not (self._planes or self._solids)):
-            field = self._field(self._root) if hybrid else self._safe_field(self._root)
-            return self._bound(trace.first_surface, params, given, {"field": field})
-        if self._solids and not hybrid:
+        if hybrid:
+            field = {"field": self._field(self._root)}
+            return self._bound(heightfield_march.march_heightfield, params, given, field)
+        if self._solids:
             return self._first_of_solids(params, given)
-        values = {**given, **self._without_planes(body)}
-        if not self._planes:
-            functions = {"field": self._others_field()}
-            return self._bound(trace.first_surface, params, values, functions)
-        functions = {**self._fields(), "nearest_plane": self._nearest_plane()}
-        return self._bound(trace.first_surface_or_plane, params, values, functions)
+        return self._segment_of_others(body, params, given, FROM_ANYWHERE)
 
     def _first_of_solids(self, params: Params, given: Mapping[str, Expr]) -> FunctionRef:
         """Return the function ``(ray) -> Hit`` of solids that all have chords, and of planes."""
@@ -387,7 +390,9 @@ class RayFunctions:
         """
 
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
-            of_others = Call(others.name, (given["p"], *others.captures), FLOAT)
+            field = given["others"]
+            assert isinstance(field, FunctionRef)
+            of_others = Call(field.name, (given["p"], *field.captures), FLOAT)
             if self._table is None:
                 return of_others
             distance = Call(self._table.distance_of.name, (given["p"], given["part"]), FLOAT)
@@ -400,7 +405,8 @@ class RayFunctions:
         others = self._beside_field()
         if self._table is None:
             others = self._field(self._root) if hybrid else self._safe_field(self._root)
-        return self._define("field_of_hit", [("p", VEC3), ("part", INT)], make, [])
+        params: Params = [("p", VEC3), ("part", INT)]
+        return capturing(self._define, "field_of_hit", params, {"others": others}, make)
 
     def _field_of_solid(self) -> FunctionRef:
         """Return the function ``(p, part) -> float`` of shapes that all have chords.
@@ -462,11 +468,8 @@ class RayFunctions:
             return {"bounds": composer.call(settings.no_box, {})}
         node = united(self._root, self._others)
         found = composer.bounds.of(body, node, composer.values.all(node))
-        return {
-            "bounds": body.let(
-                "other_bounds", composer.call(settings.grown_bounds, {"bounds": found.bounds})
-            )
-        }
+        grown = composer.call(settings.grown_bounds, {"bounds": found.bounds})
+        return {"bounds": body.let("other_bounds", composer.sheets.room(node, grown))}
 
     def _nearest_plane(self) -> FunctionRef:
         """Return the function ``(ray) -> float``: the distance to the first plane."""
@@ -488,6 +491,7 @@ class RayFunctions:
         params: Params,
         values: Mapping[str, Expr],
         functions: Mapping[str, FunctionRef],
+        start: Mapping[str, Expr] = NO_VALUES,
     ) -> FunctionRef:
         """Return a march as a function of these parameters alone; it captures values that vary.
 
@@ -496,9 +500,11 @@ class RayFunctions:
             params: Name and type of each parameter.
             values: The other values that it takes, by name.
             functions: The functions that it takes, by name.
+            start: Constants that it takes besides.
         """
         constants = {n: values[n] for n in _TAKEN if n in values and isinstance(values[n], Const)}
         captured = {n: values[n] for n in _TAKEN if n in values and n not in constants}
+        constants |= start
         if self._table is not None:
             constants |= self._table.given
 

@@ -34,6 +34,7 @@ from distal.scene.lowering.part_functions import PartFunctions
 from distal.scene.lowering.parts.table import TableNode
 from distal.scene.lowering.safe_parts import SafeParts
 from distal.scene.lowering.selection import selected
+from distal.scene.lowering.sheets import Sheets
 from distal.scene.lowering.smooth.cells import CellNode, MemberGrid
 from distal.scene.lowering.smooth.functions import MemberFunctions
 from distal.scene.tree.errors import refuse
@@ -64,6 +65,7 @@ class ShapeComposer:
         self._count_kinds(root_nodes)
         self._tables: dict[int, PartFunctions] = {}
         self._members: dict[int, MemberFunctions] = {}
+        self.sheets = Sheets(self)
 
     # Equality of subtrees
 
@@ -173,6 +175,8 @@ class ShapeComposer:
             values: The numbers of the subtree.
             cell: The index of the repetition.
         """
+        if self.sheets.among(node):
+            return self.sheets.field(node)
         if self.parts.has_safe_values(node):
             return self.field(node, values, cell)
         name, captures = self._function(node, values, cell, safe=True)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 from distal.fields.combine.joins import UNION
@@ -24,3 +25,8 @@ def painted_parts_of(root: Node) -> Iterator[tuple[Node, Any]]:
             stack.extend((child, paint) for child in reversed(node.children))
         else:
             yield node, outer
+
+
+def united(root: Node, nodes: Sequence[Node]) -> Node:
+    """Return the union of several parts of a tree."""
+    return nodes[0] if len(nodes) == 1 else replace(root, rule=UNION, children=tuple(nodes))

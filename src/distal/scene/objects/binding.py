@@ -22,6 +22,7 @@ from distal.lang.functions import Func
 from distal.lang.lazy_module import LazyModule
 from distal.lang.places import PLACES
 from distal.lang.resources import Texture2D
+from distal.scene.lowering.insides import has_inside
 from distal.scene.tree.arguments import RESERVED, RESERVED_OF_SHAPES, arguments
 from distal.scene.tree.calls import result_of
 from distal.scene.tree.conversion import Number, shown
@@ -105,6 +106,7 @@ def own_node(
     growth: Any,
     normalize: bool = False,
     proved: Proven | None = None,
+    signed: bool | None = None,
 ) -> Node:
     """Return the node of an author's own function; see ``BaseShape.from_function``.
 
@@ -118,6 +120,7 @@ def own_node(
         growth: Bound on the growth of the box, or None.
         normalize: Whether values are divided by the gradient.
         proved: What was proved of the slope and the bounds, or None.
+        signed: Whether it has an inside; None: found by samples.
 
     Raises:
         SceneTypeError: The function is not a ``@func`` of a point that returns a float.
@@ -135,7 +138,8 @@ def own_node(
     if gives is not None and gives is not FLOAT:
         hint = f"def {name}(p: {VEC2 if flat else VEC3}) -> float"
         refuse(must_be(f"the distance of '{name}'", FLOAT, gives), hint, place)
-    rule = Primitive(name, function, EXACT if exact else NOTHING)
+    claims = EXACT if exact else NOTHING
+    rule = Primitive(name, function, claims, signed=has_inside if signed is None else signed)
     own, constants = bound(rule, (), numbers, place)
     found: dict[str, Any] = dict(own)
     limits = {"slope": Limit.POSITIVE}

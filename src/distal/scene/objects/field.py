@@ -492,6 +492,7 @@ class BaseShape(Composed, Presentable):
         growth: Number | None = None,
         normalize: bool = False,
         region: Corners | None = None,
+        signed: bool | None = None,
         **numbers: Argument,
     ) -> S:
         """Make a shape from a ``@func`` of a point, and of numbers passed by name.
@@ -515,6 +516,9 @@ class BaseShape(Composed, Presentable):
                 bounds that are not passed are proved by interval arithmetic, within the region; a
                 slope that is passed is refused if the function is steeper at a point, or in a
                 whole cell of the region. ``distal check`` says what is proved.
+            signed: Whether values are negative inside. False: a sheet, or an estimate of a distance
+                (a fractal), which is drawn a third of a pixel thick. None: found by samples, as
+                ``distal check`` says.
             numbers: Values of the function's other parameters.
 
         Raises:
@@ -538,6 +542,7 @@ class BaseShape(Composed, Presentable):
             growth=growth,
             normalize=normalize,
             proved=proof,
+            signed=signed,
         )
         if normalize:
             check_gradient(node)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, Final, TypeAlias, TypeVar
 
 from distal.diagnostics import Span
@@ -189,9 +190,18 @@ class Node:
     @property
     def signed(self) -> bool:
         """Whether the shape has an inside."""
-        if isinstance(self.rule, Primitive):
-            return self.rule.signed
-        return all(child.signed for child in self.children) or bool(self.rule.finish)
+        stack: list[Node] = [self]
+        while stack:
+            rule = (node := stack.pop()).rule
+            if isinstance(rule, Primitive):
+                signed = rule.signed
+                if callable(signed):
+                    signed = node.derived("signed", partial(signed, node))
+                if not signed:
+                    return False
+            elif not (rule.fills or node.has_rows):
+                stack.extend(node.children[:1] if rule.cuts else node.children)
+        return True
 
     @property
     def estimate(self) -> bool:
