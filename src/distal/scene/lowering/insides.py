@@ -71,9 +71,14 @@ def _arrived(np: Any, values: Any, low: Any, high: Any, size: float, divisor: fl
     start = middle + 0.6 * size * start / np.linalg.norm(start, axis=1, keepdims=True)
     way = drawn.uniform(low, high, (RAYS, count)) - start
     way /= np.linalg.norm(way, axis=1, keepdims=True)
-    t, near = np.zeros(RAYS), np.zeros(RAYS, bool)
+    places, arrived = start, []
     for _ in range(STEPS):
-        value = np.abs(values(start + t[:, None] * way))
+        value = np.abs(values(places))
         near = value < NEAR * size
-        t = np.where(near | (t > 2.0 * size), t, t + value / divisor)
-    return (start + t[:, None] * way)[near]
+        arrived.append(places[near])
+        places = places + (value / divisor)[:, None] * way
+        goes = ~near & (np.linalg.norm(places - start, axis=1) < 2.0 * size)
+        places, start, way = places[goes], start[goes], way[goes]
+        if not len(places):
+            break
+    return np.concatenate(arrived)
