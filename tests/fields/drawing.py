@@ -51,7 +51,7 @@ def sample_with(row: Primitive, given: Mapping[str, Any]) -> Sample:
             kind = Texture2D if slot.type is TEXTURE_2D else Texture3D
             values[slot.name] = kind(value, wrap="clamp")
         elif isinstance(slot.type, BufferType):
-            values[slot.name] = Buffer([v if np.ndim(v) == 0 else tuple(v) for v in value])
+            values[slot.name] = Buffer([float(v) if np.ndim(v) == 0 else tuple(v) for v in value])
         elif isinstance(slot.type, Vector):
             values[slot.name] = tuple(map(float, value))
         else:

@@ -23,6 +23,7 @@ from distal import (
 )
 from distal.backends.base import Artifact
 from distal.lang import abs, func, length, max, vec3
+from distal.scene.checks.probe import probe
 from tests.browser import BrowserUnavailableError
 from tests.hits.looking import cover, faults, scene
 
@@ -217,3 +218,23 @@ def test_thin_opaque_solids_leak_no_soft_shadow():
 def test_what_is_nearer_than_a_thousandth_is_seen():
     """Rays begin at the eye: ``near`` is 0 unless its author says more."""
     assert cover(Sphere(1e-5), (0.0, 0.0, 1e-4), 30.0, size=64) > 0.1
+
+
+def test_no_tower_of_a_city_is_stepped_over():
+    """Streets are flat and repeat: values agree with what is expected behind a tower too."""
+    city = distal.load("example:city")
+    size = (64, 48)
+    depth = np.asarray(
+        city.render(size, samples=1, layers=["depth"], mode="direct").layers["depth"]
+    )
+    along = np.arange(0.0, 30.0, 2e-3)
+    drawn_pixels = np.random.default_rng(1).integers((0, 14), size, (60, 2))
+    met = 0
+    for x, y in drawn_pixels:
+        seen = probe(city, (int(x), int(y)), size).seen
+        ray = np.array(seen.origin, float) + along[:, None] * np.array(seen.direction, float)
+        inside = np.flatnonzero(np.asarray(city.shape(ray)) < 0.0)
+        if len(inside):
+            met += 1
+            assert depth[y, x] == pytest.approx(along[inside[0]], abs=0.02), (x, y)
+    assert met > 40

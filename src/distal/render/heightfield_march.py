@@ -13,7 +13,7 @@ the last two values determines the length of a step: fewer probes, and closer to
 
 from __future__ import annotations
 
-from distal.fields.guarantees import ENDLESS, Bounds
+from distal.fields.guarantees import Bounds
 from distal.lang import Field3, abs, clamp, func, max, min, select, struct
 from distal.render.camera import Ray
 from distal.render.march import MOST_STEPS, OUT_OF_STEPS, PASSED, Hit, March, crossing
@@ -33,8 +33,7 @@ class Stride:
 
     Attributes:
         top: A height that the surface is below everywhere.
-        first: The shortest step at the start, for each unit of distance to the start, or of
-            twice the height of the box if that is more.
+        first: The shortest step at the start, for each unit of distance to the start (at least 1).
         growth: The factor by which the shortest step grows with each step.
     """
 
@@ -148,9 +147,7 @@ def march_heightfield(
     t = start
     bracket = Bracket(start, 0.0, end, 0.0, start, end, False)
     found = False
-    sides = bounds.high - bounds.low
-    height = select(sides.y < ENDLESS, sides.y, 0.5)
-    step = stride.first * max(start, 2.0 * height)
+    step = stride.first * max(start, 1.0)
     # A ray is above the surface where it enters the box: the first probe is one step further.
     t = select(start > numbers.near and start < end, min(start + step, end), start)
     taken = 0
@@ -159,7 +156,7 @@ def march_heightfield(
             break
         taken += 1
         value = field(ray.origin + t * ray.direction)
-        tolerance = numbers.threshold * t
+        tolerance = numbers.threshold * max(t, 1e-3)
         safe = value / numbers.divisor
         guess = likely_step(bracket, t, value, safe)
         bracket = narrowed(bracket, t, value, safe)

@@ -62,6 +62,11 @@ BEFORE = 4e-6
 # from the origin the first alone skipped 4e-5 to 6e-4 of a shell and of a gyroid.
 REACH = 4096.0
 SHARE = 0.002
+# Near is what is nearer than so many times the first of these lengths, and than the second. Farther
+# away such steps leapt over towers of a city: values along a street agree behind a tower too. A
+# ray that has used three quarters of its steps takes the risk up to so many times as far.
+FARTHEST = 64.0
+LATE = 8.0
 # It grows by this factor with each such step as long, and with each step after some: a ray along a
 # flat face ends too.
 WIDENING = 1.25
@@ -107,12 +112,14 @@ class Precision:
         divisor: The bound on the slope: a value divided by it is the radius of a free ball.
         slope: How fast values change along the ray there.
         noise: The rounding error of the place, in scene units.
+        near: How near a surface is that steps by the parabola are made.
         enough: The length to which a crossing has to be known.
     """
 
     divisor: float
     slope: float
     noise: float
+    near: float
     enough: float
 
 
@@ -215,6 +222,8 @@ def segment_between(
     end = min(span.y, numbers.far) - begin
     nearby = rounding_of(origin)
     reach = min(REACH * nearby, SHARE * extent)
+    # A steep field has short free balls everywhere: there steps rest on agreement from afar.
+    farthest = min(FARTHEST * reach, SHARE * extent) * numbers.divisor * numbers.steepest
     start = clamp(START * nearby / max(slope, 1e-6), nearby, max(reach, nearby))
     first = select(starts, start, 0.0)
     # A crossing in a first step as short as this is the next face.
@@ -232,7 +241,8 @@ def segment_between(
             around = select(value < 0.0, -1.0, 1.0)
         along = clamp(abs(way.rise), 1.0 / numbers.steepest, numbers.divisor)
         enough = numbers.threshold * (begin + at)
-        here = Precision(numbers.divisor, along, nearby + ROUNDING * at, enough)
+        near = select(4 * taken > 3 * steps, LATE, 1.0) * farthest
+        here = Precision(numbers.divisor, along, nearby + ROUNDING * at, near, enough)
         way = moved(way, around * value, here, end, shortest, taken > PATIENCE)
     lost = PASSED
     if not way.found and way.high == 0.0:
@@ -279,7 +289,7 @@ def moved(
     error = abs(value - expected)
     # A value that a safe field has divided is that of a place as many times as far away: another
     # part may be nearer than a step that the value allows to be long.
-    near = way.free < divisor * way.reach * min(here.slope, 1.0)
+    near = way.free < divisor * min(way.reach, here.near) * min(here.slope, 1.0)
     agrees = near and error <= AGREEMENT * tiny
     crossed = value < -tiny
     touching = divisor * (way.step - 2.0 * noise) <= way.free + abs(value)
