@@ -1,9 +1,8 @@
-"""Choose the tests of ``make test``.
+"""Choose tests that together run every function several times, for the least time.
 
-Input: a record. Output: names of tests: those that cost little, the cheapest case of each test
-function that has none among them, unless it takes long, and of the others a greedy cover: again and
-again the test with the most functions that no chosen test runs, for its seconds; then those are
-taken back whose functions the others all run.
+Input: a record. Output: names of tests. A greedy cover: again and again the test with the most
+functions that too few chosen tests run, for its seconds; then those are taken back whose functions
+the others all run often enough.
 """
 
 from __future__ import annotations
@@ -24,20 +23,45 @@ PINNED: Final = {
     "tests/meta/": 5.0,
     "tests/record/": 5.0,
 }
-# The cheapest case of a test function is in every choice if it takes no longer: what was written
-# about a function finds more in it than what runs it on its way.
-CASE_S: Final = 1.0
 
 
-def cover(record: Record, pinned: Iterable[str] = ()) -> set[str]:
-    """Return tests that run each function that any test runs.
+class Cover:
+    """How often chosen tests run each function, up to a number of times.
+
+    Attributes:
+        levels: Masks: the functions that are run once or more, twice or more, and so on.
+    """
+
+    def __init__(self, times: int) -> None:
+        self.levels = [0] * times
+
+    def add(self, functions: int) -> None:
+        """Count the functions of a test."""
+        for i, level in enumerate(self.levels):
+            self.levels[i], functions = level | functions, level & functions
+
+    def lacks(self, most: Cover) -> int:
+        """Return the functions that are run less often here than in another cover."""
+        found = 0
+        for here, there in zip(self.levels, most.levels, strict=True):
+            found |= there & ~here
+        return found
+
+
+def cover(record: Record, pinned: Iterable[str] = (), times: int = 1) -> set[str]:
+    """Return tests that run each function so many times, or as often as any tests do.
 
     Args:
         record: All tests.
         pinned: Tests that are in it in any case.
+        times: How often each function is to be run.
     """
-    rows, chosen = record.rows, dict.fromkeys(pinned)
-    lacking = run_by(record, rows) & ~run_by(record, chosen)
+    rows, chosen, now, most = record.rows, dict.fromkeys(pinned), Cover(times), Cover(times)
+    for row in rows.values():
+        most.add(row.functions)
+    for name in chosen:
+        now.add(rows[name].functions)
+    lacking = now.lacks(most)
 
     def gain(name: str) -> float:
         return (rows[name].functions & lacking).bit_count() / (rows[name].seconds + LEAST_S)
@@ -51,41 +75,50 @@ def cover(record: Record, pinned: Iterable[str] = ()) -> set[str]:
             heapq.heappush(heap, (value, name))
             continue
         chosen[name] = None
-        lacking &= ~rows[name].functions
-    return _without_spare(record, set(chosen), frozenset(pinned))
+        now.add(rows[name].functions)
+        lacking = now.lacks(most)
+    return _without_spare(record, chosen, frozenset(pinned), most)
 
 
-def run_by(record: Record, tests: Iterable[str]) -> int:
-    """Return the mask of the functions that some tests run."""
-    found = 0
-    for name in tests:
-        found |= record.rows[name].functions
-    return found
-
-
-def _without_spare(record: Record, chosen: set[str], pinned: frozenset[str]) -> set[str]:
+def _without_spare(
+    record: Record, chosen: Iterable[str], pinned: frozenset[str], most: Cover
+) -> set[str]:
     """Take the tests back, the longest first, without which the cover is as good."""
-    every = run_by(record, chosen)
-    for name in sorted(chosen - pinned, key=lambda n: (-record.rows[n].seconds, n)):
-        if run_by(record, chosen - {name}) == every:
-            chosen.remove(name)
-    return chosen
+    kept = set(chosen)
+    for name in sorted(kept - pinned, key=lambda n: (-record.rows[n].seconds, n)):
+        if record.rows[name].seconds < 10 * LEAST_S:
+            break
+        rest = Cover(len(most.levels))
+        for other in kept - {name}:
+            rest.add(record.rows[other].functions)
+        if not rest.lacks(most):
+            kept.remove(name)
+    return kept
 
 
-def chosen(record: Record) -> set[str]:
-    """Return the tests of ``make test``."""
-    return cover(record, pinned(record))
+def chosen(record: Record, times: int, seconds: float) -> set[str]:
+    """Return the tests of ``make test``: pins, and the largest cover that the time allows.
+
+    Args:
+        record: All tests.
+        times: How often each function is to be run at most.
+        seconds: The processor time that they may take.
+
+    Raises:
+        ValueError: A cover that runs each function once takes longer.
+    """
+    pins = pinned(record)
+    for count in range(times, 0, -1):
+        found = cover(record, pins, count)
+        if record.seconds(found) <= seconds:
+            return found
+    raise ValueError(f"{record.seconds(found):.0f} s run each function once; {seconds:.0f} allowed")
 
 
 def pinned(record: Record) -> set[str]:
-    """Return the tests that are chosen in any case."""
-    cheap = {
+    """Return the tests that are chosen in any case: cheap ones, error texts, guarantees, rules."""
+    return {
         name
         for name, row in record.rows.items()
         if row.seconds <= next((s for f, s in PINNED.items() if name.startswith(f)), CHEAP_S)
     }
-    least: dict[str, str] = {}
-    for name in sorted(record.rows, key=lambda n: (record.rows[n].seconds, n)):
-        least.setdefault(name.partition("[")[0], name)
-    cases = (name for name in least.values() if record.rows[name].seconds <= CASE_S)
-    return cheap.union(cases)

@@ -23,7 +23,7 @@ FAR_DISTANCES = 40.0
 # The least threshold of a hit: rounding errors of a place, for each unit of the ray's length.
 PRECISION = 2e-6
 # The margin around a box, as a part of its longest side.
-ROOM = 1e-3
+ROOM = 1e-4
 
 
 @func
