@@ -45,6 +45,7 @@ CUTS = {
 }
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("seed", range(24))
 def test_each_pixel_of_coincident_faces_is_that_of_exact_intervals(seed):
     judged, wrong_cover, wrong_depth = faults(seed)
@@ -97,6 +98,7 @@ def test_a_thousand_sizes_from_the_origin():
     assert wrong_cover <= 8e-4 * judged
 
 
+@pytest.mark.sample(2, each="name")
 @pytest.mark.parametrize("name", CUTS)
 @pytest.mark.parametrize("k", [1e-6, 1e-3, 1.0, 1e6])
 def test_a_flush_cut_is_drawn(name, k):
