@@ -78,22 +78,11 @@ def nodes_of(e: Expr) -> tuple[Expr, ...]:
 
 
 def _walked(root: Expr) -> list[Expr]:
-    found: list[Expr] = []
-    append_unseen((root,), set(), found)
-    return found
-
-
-def append_unseen(roots: tuple[Expr, ...], seen: set[Expr], found: list[Expr]) -> None:
-    """Append the nodes of expressions that are not in ``seen``, and add them to it.
-
-    Args:
-        roots: The expressions.
-        seen: The nodes so far; extended.
-        found: Where the nodes are appended, operands before users.
-    """
     # A node is pushed again inside a one-element tuple; it is appended when the tuple is popped,
     # after its operands.
-    stack: list[Any] = list(reversed(roots))
+    found: list[Expr] = []
+    seen: set[Expr] = set()
+    stack: list[Any] = [root]
     while stack:
         e = stack.pop()
         if type(e) is tuple:
@@ -106,3 +95,4 @@ def append_unseen(roots: tuple[Expr, ...], seen: set[Expr], found: list[Expr]) -
                 stack.extend(operands[::-1])
             else:
                 found.append(e)
+    return found

@@ -23,7 +23,7 @@ FAR_DISTANCES = 40.0
 # The least threshold of a hit: rounding errors of a place, for each unit of the ray's length.
 PRECISION = 2e-6
 # The margin around a box, as a part of its longest side.
-ROOM = 1e-4
+MARGIN = 1e-4
 
 
 @func
@@ -95,7 +95,7 @@ def grown_bounds(bounds: Bounds) -> Bounds:
     """Return a box with a margin for 32-bit rounding errors."""
     sides = bounds.high - bounds.low
     finite = select(sides < ENDLESS, max(sides, 0.0), 0.0)
-    room = ROOM * max(finite.x, max(finite.y, finite.z))
+    room = MARGIN * max(finite.x, max(finite.y, finite.z))
     return Bounds(bounds.low - room, bounds.high + room)
 
 

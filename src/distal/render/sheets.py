@@ -35,7 +35,7 @@ def with_thickness(d: float, p: vec3, eye: vec3, threshold: float, divisor: floa
 
 
 @func
-def room_for_thickness(bounds: Bounds, eye: vec3, threshold: float) -> Bounds:
+def grown_by_thickness(bounds: Bounds, eye: vec3, threshold: float) -> Bounds:
     """Return a box around shapes without an inside, grown by the most that they are thick.
 
     Args:
@@ -44,5 +44,5 @@ def room_for_thickness(bounds: Bounds, eye: vec3, threshold: float) -> Bounds:
         threshold: As for ``with_thickness``.
     """
     corner = max(abs(bounds.low - eye), abs(bounds.high - eye))
-    room = 2.0 * threshold * length(select(corner < ENDLESS, corner, 0.0))
-    return Bounds(bounds.low - room, bounds.high + room)
+    margin = 2.0 * threshold * length(select(corner < ENDLESS, corner, 0.0))
+    return Bounds(bounds.low - margin, bounds.high + margin)

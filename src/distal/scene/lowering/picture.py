@@ -362,7 +362,7 @@ class SceneLowering:
         given["threshold"] = body.let("threshold", composer.call(settings.hit_threshold, given))
         eye = body.let("eye", composer.call(sheets.eye_of, given))
         composer.sheets.seen = {"eye": eye, "threshold": given["threshold"]}
-        given["bounds"] = body.let("room", composer.sheets.room(node, given["bounds"]))
+        given["bounds"] = body.let("bounds", composer.sheets.grown(node, given["bounds"]))
         given["numbers"] = body.let("numbers", composer.call(settings.march_numbers, given))
         given["stride"] = body.let("stride", composer.call(settings.stride_over, given))
         given["look"] = body.let("look", composer.call(settings.look, given))

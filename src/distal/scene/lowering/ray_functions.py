@@ -469,7 +469,7 @@ class RayFunctions:
         node = united(self._root, self._others)
         found = composer.bounds.of(body, node, composer.values.all(node))
         grown = composer.call(settings.grown_bounds, {"bounds": found.bounds})
-        return {"bounds": body.let("other_bounds", composer.sheets.room(node, grown))}
+        return {"bounds": body.let("other_bounds", composer.sheets.grown(node, grown))}
 
     def _nearest_plane(self) -> FunctionRef:
         """Return the function ``(ray) -> float``: the distance to the first plane."""

@@ -48,12 +48,12 @@ class Sheets:
         )
         return found
 
-    def room(self, root: Node, bounds: Expr) -> Expr:
-        """Return the box of a tree with room for the thickness of its sheets."""
+    def grown(self, root: Node, bounds: Expr) -> Expr:
+        """Return the box of a tree, grown by the thickness of its sheets."""
         if not self.among(root):
             return bounds
         assert self.seen is not None
-        return self._composer.call(sheets.room_for_thickness, {**self.seen, "bounds": bounds})
+        return self._composer.call(sheets.grown_by_thickness, {**self.seen, "bounds": bounds})
 
     def field(self, root: Node) -> FunctionRef:
         """Return the safe field of a tree that has sheets, as a function of the point."""
