@@ -23,8 +23,10 @@ from tests.kept_page import KeptPage, key_of
 NAMES: Final = ("chromium", "chromium-browser", "google-chrome")
 # SwiftShader is asked for by name, for the same pixels on a machine with a GPU. The resolver finds
 # no host but this machine: whatever Chromium itself wants to ask, it asks nobody. Pages are put
-# together without WebGL's driver, which in software needs three times as long for that.
+# together without WebGL's driver, which in software needs three times as long for that. A watchdog
+# that ends a slow process of the driver, with every context in it, would judge the machine's load.
 FLAGS: Final = (
+    "--disable-gpu-watchdog",
     "--disable-gpu-compositing",
     *("--no-sandbox", "--no-first-run", "--disable-quic", "--disable-sync"),
     *("--disable-background-networking", "--disable-component-update"),

@@ -18,8 +18,12 @@ from urllib.parse import urlsplit
 BLANK: Final = Path(__file__).with_name("blank_page.html")
 # What cannot be taken back: pages on which one of these was called are not used again.
 SPENDING: Final = ("on", "once", "route", "add_init_script", "expose_function", "expose_binding")
-# What SwiftShader says when a picture is read back, which Chromium does to show it: no fault.
-READ_BACK: Final = "GPU stall due to ReadPixels"
+# No fault of a page: what SwiftShader says when a picture is read back, which Chromium does to show
+# it; and that the driver's process ended, with what all pages draw in it (which they draw anew).
+OF_THE_DRIVER: Final = (
+    "GPU stall due to ReadPixels",
+    "CONTEXT_LOST_WEBGL: loseContext: context lost",
+)
 # Options of a context that a page can change for itself.
 _MEDIA: Final = {"color_scheme": "light", "reduced_motion": "no-preference"}
 _STATE: Final = """async () => {
@@ -49,8 +53,8 @@ class KeptPage:
     Attributes:
         context: playwright's context.
         page: Its page; others of the context are closed at the end of a test.
-        messages: Lines of the console since the test began, and what was thrown, except that a
-            picture is read back.
+        messages: Lines of the console since the test began, and what was thrown, but not
+            what the driver says.
         asked: Addresses that were asked for since the test began.
     """
 
@@ -73,7 +77,7 @@ class KeptPage:
 
     def _listen(self) -> None:
         def said(text: str) -> None:
-            if READ_BACK not in text:
+            if not any(noise in text for noise in OF_THE_DRIVER):
                 self.messages.append(text)
 
         def asked(address: str) -> None:

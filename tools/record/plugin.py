@@ -7,6 +7,7 @@ fixture of a wider scope runs counts for all tests that use it.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import gc
 import json
@@ -15,6 +16,7 @@ import sys
 from collections.abc import Iterator
 from typing import Any, Final
 
+import psutil
 import pytest
 
 from distal.session import SESSION
@@ -101,5 +103,12 @@ def pytest_runtest_protocol(item: Any, nextitem: Any) -> Iterator[None]:
 
 
 def _seconds() -> float:
-    """Return the processor time of this process and of its children that have ended."""
-    return sum(os.times()[:4])
+    """Return the processor time of this process, its children, their children, and so on.
+
+    Also of those that still run: browsers and notebooks outlive the tests that use them.
+    """
+    seconds = sum(os.times()[:4])
+    for child in psutil.Process().children(recursive=True):
+        with contextlib.suppress(psutil.Error):  # it has ended: its parent counts it
+            seconds += sum(child.cpu_times()[:4])
+    return seconds
