@@ -33,7 +33,7 @@ SPP: Final = 256
 MOST_BYTES: Final = 150_000
 # The time at which a moving example is drawn, in seconds; 0 for the others.
 SECONDS: Final = {
-    **{"melting": 1.0, "sdfray_glass": 0.6, "course_5_animation": 0.7},
+    **{"melting": 1.0, "sdfray_glass": 0.6, "course_5_animation": 0.7, "mandelbulb": 5.0},
     **{"coral": 8.0, "ink": 9.5, "lamps": 2.0, "pilot": 6.0, "spectrum": 2.0},
 }
 # Groups of the page: the examples in them by how their names begin, in this order.
@@ -50,7 +50,7 @@ GROUPS: Final = {
             "catalogue",
         ),
         *("bolt_and_nut", "gears", "lithophane", "bunny", "sea", "beach", "forest", "bricks"),
-        "molecule",
+        *("molecule", "mandelbulb"),
     ),
     "True optics": ("wine", "caustics", "prism", "cornell_box", "depth_of_field"),
     "Pictures that keep frames": tuple(frame_examples()),

@@ -22,7 +22,7 @@ from distal import (
     Sphere,
 )
 from distal.backends.base import Artifact
-from distal.lang import abs, func, length, max, vec3
+from distal.lang import abs, func, length, max, sin, vec3
 from distal.scene.checks.probe import probe
 from tests.browser import BrowserUnavailableError
 from tests.hits.looking import cover, faults, scene
@@ -175,7 +175,26 @@ def looked_at(k: float) -> Scene:
     return Scene((Box(2 * k, 2 * k, 2 * k) & Sphere(1.3 * k)) - Cylinder(0.5 * k, 3 * k))
 
 
-@pytest.mark.parametrize("made", [lit, looked_at])
+@func
+def hills(p: vec3, k: float) -> float:
+    return p.y - 0.3 * k * sin(2.0 * p.x / k) * sin(1.7 * p.z / k)
+
+
+def terrain(k: float) -> Scene:
+    """Hills of size k, by the march for terrain."""
+    endless, high = 1e18, 0.3 * k
+    bounds = ((-endless, -high, -endless), (endless, high, endless))
+    return Scene(
+        Shape.from_function(hills, slope=1.3, bounds=bounds, k=k).paint("white"),
+        camera=Camera((0, 0.6 * k, 4 * k), target=(0, 0, 0), fov_deg=50),
+        lights=[DistantLight((0.5, 0.7, 0.3))],
+        background="skyblue",
+        march="heightfield",
+        ambient_occlusion=0.0,
+    )
+
+
+@pytest.mark.parametrize("made", [lit, looked_at, terrain])
 def test_a_scene_of_any_size_has_the_same_picture(made):
     right = made(1.0).render(size=(80, 60), samples=4).array[..., :3]
     for k in (1e-6, 1e-4, 1e-2, 1e2, 1e6):

@@ -155,7 +155,7 @@ def test_a_stride_ends_at_the_rays_end_and_not_beyond():
 def test_a_cliff_is_found_though_its_value_jumps():
     @func
     def cliff(p: vec3) -> float:
-        return -0.001 if p.z < -3.3 else 0.001
+        return -0.5 if p.z < -3.3 else 0.5
 
     @func
     def way(origin: vec3) -> float:

@@ -33,7 +33,8 @@ class Stride:
 
     Attributes:
         top: A height that the surface is below everywhere.
-        first: The shortest step at the start, for each unit of distance to the start (at least 1).
+        first: The shortest step at the start, as a share of the distance to the start or of the
+            radius of a free ball on the way.
         growth: The factor by which the shortest step grows with each step.
     """
 
@@ -147,7 +148,7 @@ def march_heightfield(
     t = start
     bracket = Bracket(start, 0.0, end, 0.0, start, end, False)
     found = False
-    step = stride.first * max(start, 1.0)
+    step = stride.first * start
     # A ray is above the surface where it enters the box: the first probe is one step further.
     t = select(start > numbers.near and start < end, min(start + step, end), start)
     taken = 0
@@ -156,7 +157,7 @@ def march_heightfield(
             break
         taken += 1
         value = field(ray.origin + t * ray.direction)
-        tolerance = numbers.threshold * max(t, 1e-3)
+        tolerance = numbers.threshold * t
         safe = value / numbers.divisor
         guess = likely_step(bracket, t, value, safe)
         bracket = narrowed(bracket, t, value, safe)
@@ -167,6 +168,7 @@ def march_heightfield(
                 break
         else:
             # The end of the ray is probed too: there may be a surface between it and the last step.
+            step = max(step, stride.first * safe)
             t = select(t < end, min(t + max(safe, guess, step), end), 2.0 * end + 1.0)
             step *= stride.growth
     # If the steps run out between two probes, the current estimate is the best known place.

@@ -151,7 +151,8 @@ def place_on_box(target: Bounds, light: LightSample, u: vec3) -> Crossing:
         u: Three random numbers; the third chooses the face.
     """
     middle = 0.5 * (target.low + target.high)
-    half = max(0.5 * (target.high - target.low), vec3(1e-6))
+    half = 0.5 * (target.high - target.low)
+    half = max(half, vec3(1e-6 * max(half.x, half.y, half.z)))
     area = 4.0 * vec3(half.y * half.z, half.z * half.x, half.x * half.y)
     # A face gets light from what stands above its plane: the cosine of the highest place of the
     # lamp, less the height of the plane over the middle.
@@ -255,7 +256,8 @@ def departure(
     chance = share / max(total + beside, 1e-30)
     cosine = max(dot(emission.direction, place.n), 0.0)
     power = emission.weight * (cosine / max(place.density * chance, 1e-30))
-    way_out = crossing(Ray(place.p, emission.direction), bounds).y + 1e-3
+    out = 1e-4 * length(target.high - target.low)
+    way_out = crossing(Ray(place.p, emission.direction), bounds).y + out
     t = select(emission.distance >= FAR_AWAY, min(way_out, 0.5 * far), emission.distance)
     start = place.p + t * emission.direction
     whole = total + beside > 0.0 and t > 0.0 and all(target.low < target.high)

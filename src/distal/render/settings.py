@@ -15,11 +15,10 @@ from distal.render.footprint import pixel_cone
 from distal.render.heightfield_march import Stride
 from distal.render.march import March
 from distal.render.shade import Shading
-from distal.render.steer import pivot_within
+from distal.render.steer import pivot_within, scale_of
 
-# Rays through an infinite scene end at this distance, and at this many distances to the subject.
-FAR = 200.0
-FAR_DISTANCES = 40.0
+# Rays through an infinite scene end at this many times the scale of the view.
+FAR_SCALES = 40.0
 # The least threshold of a hit: rounding errors of a place, for each unit of the ray's length.
 PRECISION = 2e-6
 # The margin around a box, as a part of its longest side.
@@ -116,4 +115,4 @@ def automatic_far(bounds: Bounds, camera: Callable[[vec2], Ray]) -> float:
     low = min(bounds.low.x, min(bounds.low.y, bounds.low.z))
     high = max(bounds.high.x, max(bounds.high.y, bounds.high.z))
     finite = max(-low, high) < ENDLESS
-    return select(finite, UNBOUNDED, max(FAR, FAR_DISTANCES * subject_depth(bounds, camera)))
+    return select(finite, UNBOUNDED, FAR_SCALES * scale_of(bounds, camera(vec2(0.0)).origin))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from distal.fields.guarantees import Bounds
+from distal.fields.guarantees import ENDLESS, Bounds
 from distal.fields.place.solid import axis_matrix
 from distal.lang import (
     abs,
@@ -32,8 +32,11 @@ from distal.render.camera import Ray
 
 # Distance from the middle of the picture at which right and up are measured.
 _ASIDE = 0.05
+# A pivot is at least so far ahead: as a part of its distance from the eye; of a camera without a
+# target, as a part of the view's scale.
 _LEAST = 1e-3
-_FAR = 1e6
+_LEAST_OF_VIEW = 0.1
+USUAL = 5.0
 
 
 @struct
@@ -104,20 +107,29 @@ def in_depth(ray: Ray, eye: Ray, depth: float) -> vec3:
 
 
 @func
-def pivot_within(bounds: Bounds, camera: Callable[[vec2], Ray]) -> vec3:
-    """Return the pivot of a camera without a target: on its axis, nearest to the box's middle.
+def middle_of(bounds: Bounds) -> vec3:
+    """Return the middle of a box; 0 along an axis on which it is infinite."""
+    return select(bounds.high - bounds.low < ENDLESS, 0.5 * (bounds.low + bounds.high), 0.0)
 
-    For an axis along which the box is infinite, the middle is 0.
+
+@func
+def scale_of(bounds: Bounds, eye: vec3) -> float:
+    """Return the length by which a view is measured: the eye's distance from a box, or its size.
+
+    The larger of both, where the box is finite; if neither says anything, ``USUAL``.
     """
-    low = bounds.low
-    high = bounds.high
-    middle = vec3(
-        select(max(abs(low.x), abs(high.x)) < _FAR, 0.5 * (low.x + high.x), 0.0),
-        select(max(abs(low.y), abs(high.y)) < _FAR, 0.5 * (low.y + high.y), 0.0),
-        select(max(abs(low.z), abs(high.z)) < _FAR, 0.5 * (low.z + high.z), 0.0),
-    )
+    sides = bounds.high - bounds.low
+    size = length(select(sides < ENDLESS, max(sides, 0.0), 0.0))
+    scale = max(size, length(middle_of(bounds) - eye))
+    return select(scale > 0.0, scale, USUAL)
+
+
+@func
+def pivot_within(bounds: Bounds, camera: Callable[[vec2], Ray]) -> vec3:
+    """Return the pivot of a camera without a target: on its axis, nearest to the box's middle."""
     eye = camera(vec2(0.0))
-    return eye.origin + eye.direction * max(dot(middle - eye.origin, eye.direction), 1.0)
+    ahead = dot(middle_of(bounds) - eye.origin, eye.direction)
+    return eye.origin + eye.direction * max(ahead, _LEAST_OF_VIEW * scale_of(bounds, eye.origin))
 
 
 @func
@@ -131,7 +143,8 @@ def lens(camera: Callable[[vec2], Ray], pivot: vec3, up: vec3) -> Lens:
     """
     eye = camera(vec2(0.0))
     aside = camera(vec2(0.0, _ASIDE))
-    depth = max(dot(pivot - eye.origin, eye.direction), _LEAST)
+    away = length(pivot - eye.origin)
+    depth = max(dot(pivot - eye.origin, eye.direction), select(away > 0.0, _LEAST * away, 1.0))
     middle = eye.origin + eye.direction * depth
     across = (in_depth(camera(vec2(_ASIDE, 0.0)), eye, depth) - middle) / _ASIDE
     upward = (in_depth(aside, eye, depth) - middle) / _ASIDE

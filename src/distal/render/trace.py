@@ -159,8 +159,7 @@ def facing_normal(
         hit: Where it ended.
         numbers: The parameters of the march.
         normals: EXACT, SIX_TAPS, TETRAHEDRON or FORWARD of ``normals``; a constant.
-        normal_step: Step of the differences at distance 1 and nearer; it grows with the distance,
-            as the size of a pixel and the rounding error do.
+        normal_step: Step of the differences, as a part of the distance.
     """
     step = normal_step * hit.t
     return hit.side * normal(field, point_before(ray, hit, numbers), normals, step)

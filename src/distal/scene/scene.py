@@ -127,8 +127,8 @@ class Scene(Composed, Presentable):
             evaluates every part at every step, which shows the same picture.
         near: The distance at which rays begin, in scene units.
         far: The distance at which rays end, in scene units. None: rays end beyond the last surface;
-            in an infinite scene at 40 times the distance to the camera's target, at least 200.
-            Planes have no limit.
+            in an infinite scene at 40 times the larger of the size of what is finite and of the
+            camera's distance from its middle. Planes have no limit.
         name: The name in messages and emitted texts.
 
     Raises:

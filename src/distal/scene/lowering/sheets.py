@@ -1,8 +1,8 @@
 """Fields in which shapes without an inside have a thickness (``render.sheets``).
 
 Input: a tree, and where a program's picture is seen from. Output: its safe field. Thick are the
-members of the unions at the root that have no inside, whole: a sheet that is cut, moved or blended
-is one. Values that are shown, probed and meshed know no thickness.
+members of the unions at the root that have no inside or are estimates (``Node.solid``), whole: a
+sheet that is cut, moved or blended is one. Values that are shown, probed and meshed know no thickness.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ class Sheets:
         self.seen: Mapping[str, Expr] | None = None
 
     def among(self, root: Node) -> list[Node]:
-        """Return the members of the unions at the root that have no inside."""
+        """Return the members of the unions at the root that are no solids."""
         if self.seen is None or root.flat:
             return []
         found: list[Node] = root.derived(
-            "sheets", lambda: [part for part in parts_of(root) if not part.signed]
+            "sheets", lambda: [part for part in parts_of(root) if not part.solid]
         )
         return found
 
@@ -69,7 +69,7 @@ class Sheets:
         body = StatementList(taken={param.name for param in params})
         given: dict[str, Expr] = {param.name: Read(param.name, param.type) for param in params}
         least: Expr | None = None
-        solids = [part for part in parts_of(root) if part.signed]
+        solids = [part for part in parts_of(root) if part.solid]
         if solids:
             node = united(root, solids)
             field = composer.safe_field(node, composer.values.all(node), ZERO_CELL)

@@ -210,6 +210,14 @@ class Node:
             return self.rule.estimate
         return any(child.estimate for child in self.children)
 
+    @property
+    def solid(self) -> bool:
+        """Whether values change their sign at the surface, and nowhere else.
+
+        Not those of a shape without an inside, nor estimates of a distance.
+        """
+        return self.signed and not self.estimate
+
     def derived(self, name: str, make: Callable[[], Derived]) -> Derived:
         """Return what was made of this tree before, under a name; else make it.
 

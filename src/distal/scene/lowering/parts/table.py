@@ -42,7 +42,7 @@ ENDLESS_SLOPE: Final = (
     "no divisor of its values is known for all times and values of its parameters"
 )
 RARE: Final = f"there are more than {MOST_KINDS} kinds of parts"
-THIN: Final = "it has no inside, and is as thick as a part of a pixel"
+THIN: Final = "it has no inside or is an estimate: it is as thick as a part of a pixel"
 
 _TABLE: Final = "table"  # the name under which a tree keeps its ``Rolled``
 # The rule of a node that stands for all parts of a table; its children are one tree of each kind.
@@ -202,8 +202,8 @@ def _roll(root: Node) -> Rolled:
     if len(members) < LEAST_PARTS:
         return nothing
     every = sorted(kinds_of(members), key=lambda kind: -len(kind.members))
-    kinds = [kind for kind in every if kind.node.signed]
-    reasons = {id(m): THIN for kind in every if not kind.node.signed for m in kind.members}
+    kinds = [kind for kind in every if kind.node.solid]
+    reasons = {id(m): THIN for kind in every if not kind.node.solid for m in kind.members}
     reasons |= {id(m): RARE for kind in kinds[MOST_KINDS:] for m in kind.members}
     safe = SafeParts()
     kinds = [k if safe.has_safe_values(k.node) else k.with_factor() for k in kinds[:MOST_KINDS]]
