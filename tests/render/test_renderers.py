@@ -155,13 +155,13 @@ def test_a_stride_ends_at_the_rays_end_and_not_beyond():
 def test_a_cliff_is_found_though_its_value_jumps():
     @func
     def cliff(p: vec3) -> float:
-        return -0.5 if p.z < -3.3 else 0.5
+        return -0.001 if p.z < -3.3 else 0.001
 
     @func
     def way(origin: vec3) -> float:
         room = Bounds(vec3(-1e18), vec3(1e18))
         stride = heightfield_march.Stride(2.0, 0.1, 1.05)
-        numbers = march.March(1.0, 0.0, 50.0, 1e-5)
+        numbers = march.March(1.0, 1.0, 50.0, 1e-5)
         ray = Ray(origin, vec3(0.0, 0.0, -1.0))
         hit = heightfield_march.march_heightfield(cliff, ray, room, numbers, stride, 100)
         return hit.t if hit.found and hit.steps < 40 else -1.0

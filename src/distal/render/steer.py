@@ -12,7 +12,6 @@ from collections.abc import Callable
 from distal.fields.guarantees import ENDLESS, Bounds
 from distal.fields.place.solid import axis_matrix
 from distal.lang import (
-    abs,
     asin,
     atan2,
     clamp,

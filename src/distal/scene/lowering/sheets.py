@@ -2,7 +2,8 @@
 
 Input: a tree, and where a program's picture is seen from. Output: its safe field. Thick are the
 members of the unions at the root that have no inside or are estimates (``Node.solid``), whole: a
-sheet that is cut, moved or blended is one. Values that are shown, probed and meshed know no thickness.
+sheet that is cut, moved or blended is one. Values that are shown, probed and meshed know no
+thickness.
 """
 
 from __future__ import annotations
