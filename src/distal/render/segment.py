@@ -63,10 +63,8 @@ BEFORE = 4e-6
 REACH = 4096.0
 SHARE = 0.002
 # Near is what is nearer than so many times the first of these lengths, and than the second. Farther
-# away such steps leapt over towers of a city: values along a street agree behind a tower too. A
-# ray that has used three quarters of its steps takes the risk up to so many times as far.
-FARTHEST = 64.0
-LATE = 8.0
+# away such steps leapt over towers of a city: values along a street agree behind a tower too.
+FARTHEST = 4.0
 # It grows by this factor with each such step as long, and with each step after some: a ray along a
 # flat face ends too.
 WIDENING = 1.25
@@ -77,8 +75,10 @@ RELAXATION = 0.95
 LONGEST = 12.0
 # Steps aim so far behind a surface: a part of the length to which a crossing has to be known.
 AIM = 0.1
-# When steps run out, a surface ahead is hit that is closer than so many of these lengths.
+# When steps run out, a surface ahead is hit that is closer than so many of these lengths. After many
+# steps, as at a horizon, one is that is closer than one of them.
 FORGIVING = 4.0
+MANY = 96
 # The least slope with which a ray leaves a surface: 0 says that it does not start on one.
 FLATTEST = 1e-9
 # Steps of Newton's method to a place on a surface, and the slope along a ray, as a share of the
@@ -223,7 +223,7 @@ def segment_between(
     nearby = rounding_of(origin)
     reach = min(REACH * nearby, SHARE * extent)
     # A steep field has short free balls everywhere: there steps rest on agreement from afar.
-    farthest = min(FARTHEST * reach, SHARE * extent) * numbers.divisor * numbers.steepest
+    steepness = numbers.divisor * numbers.steepest
     start = clamp(START * nearby / max(slope, 1e-6), nearby, max(reach, nearby))
     first = select(starts, start, 0.0)
     # A crossing in a first step as short as this is the next face.
@@ -232,7 +232,9 @@ def segment_between(
     around = side
     taken = 0
     for _ in range(min(steps, MOST_STEPS)):
-        if way.t > end or way.found:
+        enough = numbers.threshold * (begin + way.t)
+        close = way.rise < 0.0 and way.free * numbers.steepest < enough and way.high == 0.0
+        if way.t > end or way.found or (taken > MANY and close):
             break
         at = way.t + way.step
         value = field(origin + at * ray.direction)
@@ -240,9 +242,11 @@ def segment_between(
         if around == 0.0:
             around = select(value < 0.0, -1.0, 1.0)
         along = clamp(abs(way.rise), 1.0 / numbers.steepest, numbers.divisor)
-        enough = numbers.threshold * (begin + at)
-        near = select(4 * taken > 3 * steps, LATE, 1.0) * farthest
-        here = Precision(numbers.divisor, along, nearby + ROUNDING * at, near, enough)
+        noise = nearby + ROUNDING * at
+        near = min(FARTHEST * REACH * noise, SHARE * extent)
+        here = Precision(
+            numbers.divisor, along, noise, near * steepness, enough + numbers.threshold * way.step
+        )
         way = moved(way, around * value, here, end, shortest, taken > PATIENCE)
     lost = PASSED
     if not way.found and way.high == 0.0:
