@@ -15,7 +15,7 @@ import pytest
 
 from tools.mutation.project import Project
 from tools.record import packages, reach
-from tools.record.choice import Cover, chosen, cover, pinned
+from tools.record.choice import cases, chosen, cover, pinned, run_by
 from tools.record.reach import parts
 from tools.record.rows import PATH, ROOT, Plan, Record, load, merged, plan, raw_rows
 
@@ -116,28 +116,16 @@ def random_record(seed: int, tests: int = 9, functions: int = 12) -> Record:
     return merged(rows, {n: "1" for n in names}, None)
 
 
-def is_cover(record: Record, tests: set[str], times: int) -> bool:
-    """Count by hand."""
-    for i in range(len(record.functions)):
-        bit = 1 << i
-        every = sum(bool(row.functions & bit) for row in record.rows.values())
-        here = sum(bool(record.rows[name].functions & bit) for name in tests)
-        if here < min(times, every):
-            return False
-    return True
-
-
-@pytest.mark.parametrize("times", [1, 2, 4])
 @pytest.mark.parametrize("seed", range(5))
-def test_a_cover_runs_each_function_as_often_as_it_claims(seed, times):
+def test_a_cover_runs_each_function_for_about_the_least_time(seed):
     record = random_record(seed)
-    found = cover(record, (), times)
-    assert is_cover(record, found, times)
+    every, found = run_by(record, record.rows), cover(record)
+    assert run_by(record, found) == every
     best = min(
         record.seconds(tests)
         for count in range(len(record.rows) + 1)
         for tests in itertools.combinations(record.rows, count)
-        if is_cover(record, set(tests), times)
+        if run_by(record, tests) == every
     )
     assert record.seconds(found) <= 1.5 * best + 0.2
 
@@ -145,27 +133,34 @@ def test_a_cover_runs_each_function_as_often_as_it_claims(seed, times):
 def test_pins_stay_in_a_cover():
     record = random_record(1)
     longest = max(record.rows, key=lambda name: record.rows[name].seconds)
-    assert longest in cover(record, [longest])
-    assert is_cover(record, cover(record, [longest]), 1)
+    found = cover(record, [longest])
+    assert longest in found
+    assert run_by(record, found) == run_by(record, record.rows)
 
 
-def test_the_largest_cover_that_the_time_allows_is_chosen():
-    record = random_record(2, tests=40)
-    pins = pinned(record)
-    once, twice, thrice = (cover(record, pins, times) for times in (1, 2, 3))
-    assert record.seconds(pins) < record.seconds(once) < record.seconds(twice)
-    assert record.seconds(twice) < record.seconds(thrice)
-    assert chosen(record, 5, record.seconds(twice)) == twice
-    assert chosen(record, 5, record.seconds(twice) - 1e-6) == once
-    with pytest.raises(ValueError, match="s run each function once; 0 allowed"):
-        chosen(record, 5, 0.0)
-
-
-def test_levels_count_how_often_functions_are_run():
-    count = Cover(2)
-    for functions in (0b011, 0b110, 0b010):
-        count.add(functions)
-    assert count.levels == [0b111, 0b010]
+def test_what_costs_little_is_chosen_and_cases_as_the_time_allows():
+    seconds = {
+        "tests/a.py::cheap[1]": 0.1,
+        "tests/a.py::cheap[2]": 0.1,
+        "tests/a.py::cheap[3]": 0.9,
+        "tests/a.py::middling[1]": 0.8,
+        "tests/a.py::middling[2]": 0.7,
+        "tests/a.py::long": 3.0,
+        "tests/a.py::longer": 9.0,
+        "tests/meta/a.py::rule": 3.0,
+    }
+    rows = {name: (s, {"f"}) for name, s in seconds.items()}
+    rows["tests/a.py::longer"] = (9.0, {"g"})
+    record = merged(rows, {"f": "1", "g": "1"}, None)
+    cheap = {"tests/a.py::cheap[1]", "tests/a.py::cheap[2]", "tests/meta/a.py::rule"}
+    assert pinned(record) == cheap
+    covers = cheap | {"tests/a.py::longer"}
+    assert cases(record, covers) == ["tests/a.py::middling[2]", "tests/a.py::long"]
+    assert chosen(record, 12.3) == covers
+    assert chosen(record, 13.0) == covers | {"tests/a.py::middling[2]"}
+    assert chosen(record, 99.0) == covers | {"tests/a.py::middling[2]", "tests/a.py::long"}
+    with pytest.raises(ValueError, match="a cover takes 12 s; 12 are allowed"):
+        chosen(record, 12.0)
 
 
 def test_a_record_is_the_same_after_it_was_kept(tmp_path):

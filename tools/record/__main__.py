@@ -1,7 +1,7 @@
 """Record, choose, and run the tests that a change can reach.
 
 python -m tools.record all               records every test and chooses those of make test
-python -m tools.record choose            chooses anew (--times, --seconds)
+python -m tools.record choose            chooses anew (--seconds)
 python -m tools.record read FOLDER       takes the rows of a recording
 python -m tools.record changed [REV]     runs the tests that a change since REV can reach
 """
@@ -44,7 +44,7 @@ def main() -> int:
     if options.action == "read":
         before = merged(raw_rows(Path(options.revision)), digests(), before)
     assert before is not None, "there is no record"
-    found = replace(before, chosen=frozenset(chosen(before, options.times, options.seconds)))
+    found = replace(before, chosen=frozenset(chosen(before, options.seconds)))
     found.save()
     GUIDE.write_text(with_table(GUIDE.read_text("utf-8"), found), "utf-8")
     print(
@@ -61,7 +61,6 @@ def _options() -> argparse.Namespace:
     )
     parser.add_argument("action", choices=("all", "choose", "read", "changed"))
     parser.add_argument("revision", nargs="?", default="HEAD", metavar="REV or FOLDER")
-    parser.add_argument("--times", type=int, default=3, help="runs of each function at most")
     parser.add_argument("--seconds", type=float, default=900.0, help="of the processor at most")
     parser.add_argument("--workers", default="4")
     return parser.parse_args()

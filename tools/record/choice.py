@@ -1,8 +1,10 @@
-"""Choose tests that together run every function several times, for the least time.
+"""Choose the tests of ``make test``.
 
-Input: a record. Output: names of tests. A greedy cover: again and again the test with the most
-functions that too few chosen tests run, for its seconds; then those are taken back whose functions
-the others all run often enough.
+Input: a record. Output: names of tests: those that cost little, and of the others a greedy cover:
+again and again the test with the most functions that no chosen test runs, for its seconds; then
+those are taken back whose functions the others all run. What time is left is for test functions
+that have no case among these: the cheapest case of each, the cheapest first. What was written about
+a function finds more in it than what runs it on its way.
 """
 
 from __future__ import annotations
@@ -25,43 +27,15 @@ PINNED: Final = {
 }
 
 
-class Cover:
-    """How often chosen tests run each function, up to a number of times.
-
-    Attributes:
-        levels: Masks: the functions that are run once or more, twice or more, and so on.
-    """
-
-    def __init__(self, times: int) -> None:
-        self.levels = [0] * times
-
-    def add(self, functions: int) -> None:
-        """Count the functions of a test."""
-        for i, level in enumerate(self.levels):
-            self.levels[i], functions = level | functions, level & functions
-
-    def lacks(self, most: Cover) -> int:
-        """Return the functions that are run less often here than in another cover."""
-        found = 0
-        for here, there in zip(self.levels, most.levels, strict=True):
-            found |= there & ~here
-        return found
-
-
-def cover(record: Record, pinned: Iterable[str] = (), times: int = 1) -> set[str]:
-    """Return tests that run each function so many times, or as often as any tests do.
+def cover(record: Record, pinned: Iterable[str] = ()) -> set[str]:
+    """Return tests that run each function that any test runs.
 
     Args:
         record: All tests.
         pinned: Tests that are in it in any case.
-        times: How often each function is to be run.
     """
-    rows, chosen, now, most = record.rows, dict.fromkeys(pinned), Cover(times), Cover(times)
-    for row in rows.values():
-        most.add(row.functions)
-    for name in chosen:
-        now.add(rows[name].functions)
-    lacking = now.lacks(most)
+    rows, chosen = record.rows, dict.fromkeys(pinned)
+    lacking = run_by(record, rows) & ~run_by(record, chosen)
 
     def gain(name: str) -> float:
         return (rows[name].functions & lacking).bit_count() / (rows[name].seconds + LEAST_S)
@@ -75,44 +49,47 @@ def cover(record: Record, pinned: Iterable[str] = (), times: int = 1) -> set[str
             heapq.heappush(heap, (value, name))
             continue
         chosen[name] = None
-        now.add(rows[name].functions)
-        lacking = now.lacks(most)
-    return _without_spare(record, chosen, frozenset(pinned), most)
+        lacking &= ~rows[name].functions
+    return _without_spare(record, set(chosen), frozenset(pinned))
 
 
-def _without_spare(
-    record: Record, chosen: Iterable[str], pinned: frozenset[str], most: Cover
-) -> set[str]:
+def run_by(record: Record, tests: Iterable[str]) -> int:
+    """Return the mask of the functions that some tests run."""
+    found = 0
+    for name in tests:
+        found |= record.rows[name].functions
+    return found
+
+
+def _without_spare(record: Record, chosen: set[str], pinned: frozenset[str]) -> set[str]:
     """Take the tests back, the longest first, without which the cover is as good."""
-    kept = set(chosen)
-    for name in sorted(kept - pinned, key=lambda n: (-record.rows[n].seconds, n)):
-        if record.rows[name].seconds < 10 * LEAST_S:
-            break
-        rest = Cover(len(most.levels))
-        for other in kept - {name}:
-            rest.add(record.rows[other].functions)
-        if not rest.lacks(most):
-            kept.remove(name)
-    return kept
+    every = run_by(record, chosen)
+    for name in sorted(chosen - pinned, key=lambda n: (-record.rows[n].seconds, n)):
+        if run_by(record, chosen - {name}) == every:
+            chosen.remove(name)
+    return chosen
 
 
-def chosen(record: Record, times: int, seconds: float) -> set[str]:
-    """Return the tests of ``make test``: pins, and the largest cover that the time allows.
+def chosen(record: Record, seconds: float) -> set[str]:
+    """Return the tests of ``make test``.
 
     Args:
         record: All tests.
-        times: How often each function is to be run at most.
         seconds: The processor time that they may take.
 
     Raises:
-        ValueError: A cover that runs each function once takes longer.
+        ValueError: A cover takes longer.
     """
-    pins = pinned(record)
-    for count in range(times, 0, -1):
-        found = cover(record, pins, count)
-        if record.seconds(found) <= seconds:
-            return found
-    raise ValueError(f"{record.seconds(found):.0f} s run each function once; {seconds:.0f} allowed")
+    found = cover(record, pinned(record))
+    left = seconds - record.seconds(found)
+    if left < 0.0:
+        raise ValueError(f"a cover takes {record.seconds(found):.0f} s; {seconds:.0f} are allowed")
+    for name in cases(record, found):
+        left -= record.rows[name].seconds
+        if left < 0.0:
+            break
+        found.add(name)
+    return found
 
 
 def pinned(record: Record) -> set[str]:
@@ -122,3 +99,19 @@ def pinned(record: Record) -> set[str]:
         for name, row in record.rows.items()
         if row.seconds <= next((s for f, s in PINNED.items() if name.startswith(f)), CHEAP_S)
     }
+
+
+def cases(record: Record, tests: Iterable[str]) -> list[str]:
+    """Return the cheapest case of each test function that has none among some tests, in order."""
+    found = {function_of(name) for name in tests}
+    least: list[str] = []
+    for name in sorted(record.rows, key=lambda n: (record.rows[n].seconds, n)):
+        if function_of(name) not in found:
+            found.add(function_of(name))
+            least.append(name)
+    return least
+
+
+def function_of(name: str) -> str:
+    """Return the name of a test without its parameters."""
+    return name.partition("[")[0]
