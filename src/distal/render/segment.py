@@ -63,8 +63,10 @@ BEFORE = 4e-6
 REACH = 4096.0
 SHARE = 0.002
 # Near is what is nearer than so many times the first of these lengths, and than the second. Farther
-# away such steps leapt over towers of a city: values along a street agree behind a tower too.
+# away such steps leapt over towers of a city: values along a street agree behind a tower too. A
+# ray that has used three quarters of its steps takes the risk up to so many times as far.
 FARTHEST = 4.0
+LATE = 8.0
 # It grows by this factor with each such step as long, and with each step after some: a ray along a
 # flat face ends too.
 WIDENING = 1.25
@@ -75,10 +77,8 @@ RELAXATION = 0.95
 LONGEST = 12.0
 # Steps aim so far behind a surface: a part of the length to which a crossing has to be known.
 AIM = 0.1
-# When steps run out, a surface ahead is hit that is closer than so many of these lengths. After many
-# steps, as at a horizon, one is that is closer than one of them.
+# When steps run out, a surface ahead is hit that is closer than so many of these lengths.
 FORGIVING = 4.0
-MANY = 96
 # The least slope with which a ray leaves a surface: 0 says that it does not start on one.
 FLATTEST = 1e-9
 # Steps of Newton's method to a place on a surface, and the slope along a ray, as a share of the
@@ -232,9 +232,7 @@ def segment_between(
     around = side
     taken = 0
     for _ in range(min(steps, MOST_STEPS)):
-        enough = numbers.threshold * (begin + way.t)
-        close = way.rise < 0.0 and way.free * numbers.steepest < enough and way.high == 0.0
-        if way.t > end or way.found or (taken > MANY and close):
+        if way.t > end or way.found:
             break
         at = way.t + way.step
         value = field(origin + at * ray.direction)
@@ -242,8 +240,10 @@ def segment_between(
         if around == 0.0:
             around = select(value < 0.0, -1.0, 1.0)
         along = clamp(abs(way.rise), 1.0 / numbers.steepest, numbers.divisor)
+        enough = numbers.threshold * (begin + at)
         noise = nearby + ROUNDING * at
-        near = min(FARTHEST * REACH * noise, SHARE * extent)
+        late = select(4 * taken > 3 * steps, LATE, 1.0)
+        near = late * min(FARTHEST * REACH * noise, SHARE * extent)
         here = Precision(
             numbers.divisor, along, noise, near * steepness, enough + numbers.threshold * way.step
         )
