@@ -244,9 +244,7 @@ def segment_between(
         noise = nearby + ROUNDING * at
         late = select(4 * taken > 3 * steps, LATE, 1.0)
         near = late * min(FARTHEST * REACH * noise, SHARE * extent)
-        here = Precision(
-            numbers.divisor, along, noise, near * steepness, enough + numbers.threshold * way.step
-        )
+        here = Precision(numbers.divisor, along, noise, near * steepness, enough)
         way = moved(way, around * value, here, end, shortest, taken > PATIENCE)
     lost = PASSED
     if not way.found and way.high == 0.0:
