@@ -20,7 +20,7 @@ def depths(p: vec3) -> vec3:
     return mix(deep, high, smoothstep(0.8, 1.05, r))
 
 
-bulb = Mandelbulb(8, 10).paint(Material(pattern(depths), diffuse=0.8, specular=0.2, roughness=0.45))
+bulb = Mandelbulb(8, 5).paint(Material(pattern(depths), diffuse=0.8, specular=0.2, roughness=0.45))
 
 # The path: an ellipse that is near the bulb twice, rising and falling; the eye looks ahead.
 along = pace * time

@@ -21,7 +21,7 @@ import distal
 from distal.backends import Artifact
 from tests import webgl
 from tests.buffer_data import buffers_of, text_of, textures_of
-from tests.pictures.comparison import MOST_FAR_OFF, MOST_MEAN, as_bytes, difference
+from tests.pictures.comparison import Difference, as_bytes, difference
 
 TIMES: Final = (0.0, 2.9, 11.3)
 LARGE: Final = (160, 120)
@@ -47,10 +47,9 @@ class Measured:
     far_off: float
     worst: int
 
-    @property
-    def is_agreement(self) -> bool:
-        """Within SEEDS' tolerance, as ``Difference.is_agreement``."""
-        return self.mean <= MOST_MEAN and self.far_off <= MOST_FAR_OFF
+    def is_agreement_of(self, example: str) -> bool:
+        """Within SEEDS' tolerance, as ``Difference.is_agreement_of``."""
+        return Difference(self.mean, self.far_off).is_agreement_of(example)
 
 
 @dataclass(frozen=True, slots=True)

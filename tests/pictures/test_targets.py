@@ -129,7 +129,7 @@ def drawn(example, target, time):
 
 def assert_driver_agrees(example, target, time):
     found = difference(drawn(example, target, time), cpu_picture(example, time))
-    assert found.is_agreement, found
+    assert found.is_agreement_of(example), found
 
 
 # Each example by some of the languages at some of the times; the texts of all are compiled and run
@@ -165,7 +165,7 @@ def test_reference_draws_the_cpu_picture(example):
         for device in ("cpu", "reference")
     )
     found = difference(reference, cpu)
-    assert found.is_agreement, found
+    assert found.is_agreement_of(example), found
 
 
 @pytest.mark.parametrize("size", [(1, 1), (3, 2), (17, 5), (65, 33), (127, 1), (1, 129)])
