@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 MOST_MEAN: Final = 1.0
 MOST_FAR_OFF: Final = 0.002
-# The map of this fractal multiplies rounding errors by 8 in each of its rounds, so that the normal of
-# a single pixel is that of the device; the mean is held as for others.
+# The map of this fractal multiplies rounding errors by 8 in each round: the normal in a pixel
+# is that of the device. The mean is held as for others.
 MOST_FAR_OFF_OF: Final = {"mandelbulb": 0.06}
 
 
