@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -13,10 +14,12 @@ from distal import (
     Annulus,
     Box,
     Camera,
+    Circle,
     Cylinder,
     DistantLight,
     Plane,
     PointLight,
+    Rectangle,
     Scene,
     Shape,
     Sphere,
@@ -25,7 +28,7 @@ from distal.backends.base import Artifact
 from distal.lang import abs, func, length, max, sin, vec3
 from distal.scene.checks.probe import probe
 from tests.browser import BrowserUnavailableError
-from tests.hits.looking import cover, faults, scene
+from tests.hits.looking import cover, faults, faults_by_points, scene, seen_from_anywhere
 
 ABOVE = (0.0, 6.0, 0.001)
 UPRIGHT = {"x": math.pi / 2.0}
@@ -41,6 +44,10 @@ CUTS = {
         Box(2, 1, 1) - Box(1, 1, 1).translate(x=0.5),
         Box(1, 1, 1).translate(x=-0.5),
     ),
+    "extruded": (
+        (Rectangle(2, 1).extrude(1) - Circle(0.3).extrude(1)).rotate(**UPRIGHT),
+        (Rectangle(2, 1) - Circle(0.3)).extrude(1).rotate(**UPRIGHT),
+    ),
     "touching": (Box(1, 1, 1) | Box(1, 1, 1).translate(x=1), Box(2, 1, 1).translate(x=0.5)),
 }
 
@@ -51,6 +58,15 @@ def test_each_pixel_of_coincident_faces_is_that_of_exact_intervals(seed):
     judged, wrong_cover, wrong_depth = faults(seed)
     assert judged > 8000
     assert (wrong_cover, wrong_depth) <= (0, 2)
+
+
+@pytest.mark.sample(3)
+@pytest.mark.parametrize("seed", range(16))
+def test_each_pixel_of_round_solids_is_that_of_a_count_by_points(seed):
+    """Balls, cylinders, rings and boxes with common faces and axes, at sizes from 1e-6 to 1e6."""
+    judged, wrong_cover, wrong_depth = faults_by_points(seed, k=10.0 ** (seed % 13 - 6))
+    assert judged > 1500
+    assert (wrong_cover, wrong_depth) == (0, 0)
 
 
 @pytest.mark.parametrize("device", ["reference", "gpu", "gpu-fragment"])
@@ -98,13 +114,23 @@ def test_a_thousand_sizes_from_the_origin():
     assert wrong_cover <= 8e-4 * judged
 
 
+ANGLES = [ABOVE, (6, 1.5, 0), (3, 4, 2), (-2, 5, -3), (0.5, -6, 1), (1, 2, 6)]
+
+
 @pytest.mark.sample(2, each="name")
 @pytest.mark.parametrize("name", CUTS)
-@pytest.mark.parametrize("k", [1e-6, 1e-3, 1.0, 1e6])
+@pytest.mark.parametrize("k", [1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e6])
 def test_a_flush_cut_is_drawn(name, k):
-    cut, same = CUTS[name]
-    for eye in (ABOVE, (6.0, 1.5, 0.0), (3.0, 4.0, 2.0)):
-        assert cover(cut, eye, k=k) == pytest.approx(cover(same, eye), abs=1e-3)
+    """From six angles and four distances, at three resolutions."""
+    cut, same = (seen_from_anywhere(shape.scale(k)) for shape in CUTS[name])
+    for eye, away, size in itertools.product(ANGLES, (1, 3, 10, 100), (32, 64, 120)):
+        unit = np.array(eye) / np.linalg.norm(eye)
+        place = dict(zip("xyz", (6.0 * away * k * unit).tolist(), strict=True))
+        given = {"params": {**place, "fov": 30.0 / away}, "transparent": True, "samples": 1}
+        shown, right = (
+            scene.render((size, size), **given).array[..., 3] > 0.5 for scene in (cut, same)
+        )
+        assert shown.mean() == pytest.approx(right.mean(), abs=1e-3), (eye, away, size)
 
 
 @pytest.mark.parametrize("device", ["cpu", "reference", "gpu"])
