@@ -13,7 +13,7 @@ the last two values determines the length of a step: fewer probes, and closer to
 
 from __future__ import annotations
 
-from distal.fields.guarantees import Bounds
+from distal.fields.guarantees import ENDLESS, Bounds
 from distal.lang import Field3, abs, clamp, func, max, min, select, struct
 from distal.render.camera import Ray
 from distal.render.march import MOST_STEPS, OUT_OF_STEPS, PASSED, Hit, March, crossing
@@ -23,8 +23,9 @@ UPRIGHT = 1e-6
 # next probe is likely below the surface. LONGEST limits the step, in safe steps of the field.
 PAST = 1.02
 LONGEST = 6.0
-# The search ends within this many thresholds of the surface: the last interpolation is much closer.
-ENOUGH = 4.0
+# A ray that starts between the surface's highest and lowest places has steps as if it had come from
+# so many times this height away.
+HEIGHTS = 2.5
 
 
 @struct
@@ -33,8 +34,8 @@ class Stride:
 
     Attributes:
         top: A height that the surface is below everywhere.
-        first: The shortest step at the start, as a share of the distance to the start or of the
-            radius of a free ball on the way.
+        first: The shortest step at the start, as a share of the distance to the start or of a part
+            of the surface's height; later, of the radius of a free ball on the way.
         growth: The factor by which the shortest step grows with each step.
     """
 
@@ -148,7 +149,8 @@ def march_heightfield(
     t = start
     bracket = Bracket(start, 0.0, end, 0.0, start, end, False)
     found = False
-    step = stride.first * start
+    height = stride.top - bounds.low.y
+    step = stride.first * max(start, select(height < ENDLESS, HEIGHTS * height, 0.0))
     # A ray is above the surface where it enters the box: the first probe is one step further.
     t = select(start > numbers.near and start < end, min(start + step, end), start)
     taken = 0
@@ -163,7 +165,7 @@ def march_heightfield(
         bracket = narrowed(bracket, t, value, safe)
         if bracket.value_below < 0.0:
             t = likely_crossing(bracket)
-            if abs(value) < ENOUGH * tolerance or bracket.farthest - bracket.nearest < tolerance:
+            if abs(value) < tolerance or bracket.farthest - bracket.nearest < tolerance:
                 found = True
                 break
         else:

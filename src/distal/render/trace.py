@@ -29,7 +29,6 @@ from distal.lang import (
 from distal.render.bump import bumped_normal
 from distal.render.camera import Ray
 from distal.render.footprint import Cone, Footprint, footprint_at
-from distal.render.heightfield_march import ENOUGH
 from distal.render.march import PASSED, TOO_FAR, Hit, March
 from distal.render.material import Shares, Surface, shares
 from distal.render.normals import EXACT, normal, unit_or_up
@@ -168,8 +167,7 @@ def facing_normal(
 @func
 def ray_offset(numbers: March, t: float, hybrid: bool) -> float:
     """Return the height above a surface at which new rays start, beyond the error of a march."""
-    error = 1.0 + ENOUGH if hybrid else 1.0
-    return (1.0 + error) * numbers.threshold * t
+    return (3.0 if hybrid else 2.0) * numbers.threshold * t
 
 
 @func
