@@ -61,8 +61,26 @@ def in_fork():
     return 3
 '''
 TESTS = """\
+import subprocess
+import sys
+
 import pytest
 from small.made import *
+
+BUSY = "import time\\nwhile time.process_time() < 0.3: pass\\nprint(flush=True)\\ntime.sleep(60)"
+
+
+@pytest.fixture(scope="module")
+def processes():
+    started = []
+    yield started
+    for each in started:
+        each.kill()
+
+
+def test_child_that_outlives_it(processes):
+    processes.append(subprocess.Popen([sys.executable, "-c", BUSY], stdout=subprocess.PIPE))
+    processes[0].stdout.readline()
 
 
 @pytest.fixture(scope="module")
@@ -97,6 +115,7 @@ RAN = {
     "test_direct": {"direct", "inner"},
     "test_again": {"direct", "inner"},
     "test_child": {"child", "in_child"},
+    "test_child_that_outlives_it": set(),
     "test_forks": {"forks", "in_fork"},
     "test_of_a_fixture": {"inner"},
     "test_of_the_same_fixture": {"inner"},
@@ -234,6 +253,7 @@ def test_what_tests_run_is_recorded_in_children_and_forks_too(tmp_path):
     assert found == RAN
     assert all(seconds < 60.0 for seconds, _ in rows.values())
     assert rows["tests/test_made.py::test_child"][0] > rows["tests/test_made.py::test_again"][0]
+    assert rows["tests/test_made.py::test_child_that_outlives_it"][0] > 0.25
 
 
 def test_the_parts_of_a_module_are_functions_and_statements():

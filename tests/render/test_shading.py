@@ -388,7 +388,7 @@ def start_of_rays(threshold: float, t: float, hybrid: bool) -> float:
 
 
 def test_rays_begin_above_what_a_march_may_be_off():
-    """A march ends within one threshold of the way, the hybrid one within four more."""
+    """A march ends within one threshold of the way, the hybrid one within two."""
     assert start_of_rays(1e-3, 5.0, False) >= 2.0 * 1e-3 * 5.0
     assert start_of_rays(1e-3, 5.0, False) < 2.1 * 1e-3 * 5.0
-    assert 6.0 * 1e-3 * 5.0 <= start_of_rays(1e-3, 5.0, True) < 6.1 * 1e-3 * 5.0
+    assert 3.0 * 1e-3 * 5.0 <= start_of_rays(1e-3, 5.0, True) < 3.1 * 1e-3 * 5.0

@@ -89,9 +89,11 @@ def pytest_runtest_protocol(item: Any, nextitem: Any) -> Iterator[None]:
     _RECORDER.forget()
     _RECORDER.before_fixtures = set()
     _RECORDER.monitor.begin()
-    begin = _seconds()
+    begin = -_seconds_below()  # to look at processes takes time, which is not the test's
+    begin -= _seconds()
     yield
-    seconds = _seconds() - begin
+    seconds = _seconds() + begin
+    seconds += _seconds_below()
     names = _RECORDER.monitor.names() | _RECORDER.before_fixtures
     for definitions in item._fixtureinfo.name2fixturedefs.values():
         for each in definitions:
@@ -103,11 +105,16 @@ def pytest_runtest_protocol(item: Any, nextitem: Any) -> Iterator[None]:
 
 
 def _seconds() -> float:
-    """Return the processor time of this process, its children, their children, and so on.
+    """Return the processor time of this process and of its children that have ended."""
+    return sum(os.times()[:4])
 
-    Also of those that still run: browsers and notebooks outlive the tests that use them.
+
+def _seconds_below() -> float:
+    """Return that of the children that still run, of their children, and so on.
+
+    Browsers and notebooks outlive the tests that use them.
     """
-    seconds = sum(os.times()[:4])
+    seconds = 0.0
     for child in psutil.Process().children(recursive=True):
         with contextlib.suppress(psutil.Error):  # it has ended: its parent counts it
             seconds += sum(child.cpu_times()[:4])
