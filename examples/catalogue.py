@@ -6,6 +6,7 @@ differences halve the time that this takes.
 """
 
 import inspect
+from math import isfinite
 
 from distal import DistantLight, HemisphereLight, OrbitCamera, Plane, Scene, Shape, pattern, plastic
 from distal.fields.library import PRIMITIVES
@@ -24,9 +25,9 @@ def stands_by_itself(name: str) -> bool:
     row, made = PRIMITIVES[name], CLASSES[name]
     given = [p.default for p in inspect.signature(made).parameters.values()]
     complete = not any(d is inspect.Parameter.empty or isinstance(d, Buffer) for d in given)
-    finite = row.bounds is not None and name != "Slab"  # the box of a slab is infinite
-    closed = finite and row.signed and not row.estimate
-    return issubclass(made, Shape) and complete and closed
+    if not (issubclass(made, Shape) and complete and row.signed) or row.estimate:
+        return False
+    return all(isfinite(number) for corner in made().bounds() for number in corner)
 
 
 @func
