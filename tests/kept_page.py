@@ -47,6 +47,11 @@ _STATE: Final = """async () => {
 }"""
 
 
+def is_of_the_driver(text: str) -> bool:
+    """Return whether a line of the console is no fault of a page."""
+    return any(noise in text for noise in OF_THE_DRIVER)
+
+
 class KeptPage:
     """A context and its page.
 
@@ -77,7 +82,7 @@ class KeptPage:
 
     def _listen(self) -> None:
         def said(text: str) -> None:
-            if not any(noise in text for noise in OF_THE_DRIVER):
+            if not is_of_the_driver(text):
                 self.messages.append(text)
 
         def asked(address: str) -> None:

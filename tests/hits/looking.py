@@ -17,20 +17,23 @@ Points = NDArray[np.float64]
 FOV = 48.0
 
 
-def scene(shape: Shape, eye: Any, target: Any = (0.0, 0.0, 0.0), fov: float = 30.0) -> Scene:
+def evenly_lit(shape: Shape, camera: Camera) -> Scene:
     """A shape in even light before black."""
-    camera = Camera(tuple(map(float, eye)), target=tuple(map(float, target)), fov_deg=fov)
     lights = [AmbientLight(1.0)]
     return Scene(shape, camera=camera, floor=False, background="black", lights=lights)
+
+
+def scene(shape: Shape, eye: Any, target: Any = (0.0, 0.0, 0.0), fov: float = 30.0) -> Scene:
+    """A shape in even light before black."""
+    eye, target = tuple(map(float, eye)), tuple(map(float, target))
+    return evenly_lit(shape, Camera(eye, target=target, fov_deg=fov))
 
 
 def seen_from_anywhere(shape: Shape) -> Scene:
     """A shape whose camera is given by the parameters x, y, z and fov."""
     eye = tuple(slider(name, 1.0, low=-1e9, high=1e9) for name in "xyz")
     fov = slider("fov", 30.0, low=1e-3, high=90.0)
-    camera = Camera(eye, target=(0.0, 0.0, 0.0), fov_deg=fov)
-    lights = [AmbientLight(1.0)]
-    return Scene(shape, camera=camera, floor=False, background="black", lights=lights)
+    return evenly_lit(shape, Camera(eye, target=(0.0, 0.0, 0.0), fov_deg=fov))
 
 
 def cover(shape: Shape, eye: Any, fov: float = 30.0, size: int = 160, **given: Any) -> float:

@@ -20,7 +20,7 @@ from distal.editor.messages import LookRequest
 from distal.editor.worker import StudioWorker
 from distal.example_files import all_examples, gallery
 from tests.browser import BrowserUnavailableError, browser
-from tests.kept_page import OF_THE_DRIVER
+from tests.kept_page import is_of_the_driver
 from tests.made_once import made_once
 from tools.site import playground
 
@@ -84,7 +84,7 @@ def context(origin: str, **options):
     try:
         yield made
         complaints = [m for m in messages if m.startswith(("error", "warning"))]
-        assert [m for m in complaints if not any(noise in m for noise in OF_THE_DRIVER)] == []
+        assert [m for m in complaints if not is_of_the_driver(m)] == []
         assert [u for u in asked if not u.startswith((origin, "blob:", "data:"))] == []
     finally:
         made.close()

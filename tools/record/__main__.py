@@ -61,7 +61,7 @@ def _options() -> argparse.Namespace:
     )
     parser.add_argument("action", choices=("all", "choose", "read", "changed"))
     parser.add_argument("revision", nargs="?", default="HEAD", metavar="REV or FOLDER")
-    parser.add_argument("--seconds", type=float, default=900.0, help="of the processor at most")
+    parser.add_argument("--seconds", type=float, default=950.0, help="of the processor at most")
     parser.add_argument("--workers", default="4")
     return parser.parse_args()
 

@@ -89,11 +89,10 @@ def pytest_runtest_protocol(item: Any, nextitem: Any) -> Iterator[None]:
     _RECORDER.forget()
     _RECORDER.before_fixtures = set()
     _RECORDER.monitor.begin()
-    begin = -_seconds_below()  # to look at processes takes time, which is not the test's
-    begin -= _seconds()
+    below = _seconds_below()  # to look at processes takes time, which is not the test's
+    begin = _seconds()
     yield
-    seconds = _seconds() + begin
-    seconds += _seconds_below()
+    seconds = _seconds() - begin + _seconds_below() - below
     names = _RECORDER.monitor.names() | _RECORDER.before_fixtures
     for definitions in item._fixtureinfo.name2fixturedefs.values():
         for each in definitions:

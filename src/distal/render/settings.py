@@ -94,8 +94,8 @@ def grown_bounds(bounds: Bounds) -> Bounds:
     """Return a box with a margin for 32-bit rounding errors."""
     sides = bounds.high - bounds.low
     finite = select(sides < ENDLESS, max(sides, 0.0), 0.0)
-    room = MARGIN * max(finite.x, max(finite.y, finite.z))
-    return Bounds(bounds.low - room, bounds.high + room)
+    margin = MARGIN * max(finite.x, max(finite.y, finite.z))
+    return Bounds(bounds.low - margin, bounds.high + margin)
 
 
 @func

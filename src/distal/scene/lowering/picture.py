@@ -354,8 +354,8 @@ class SceneLowering:
             "light_count": integer(self._lights.count),
         }
         given["steps"] = self._steps(body)
-        room = {"bounds": bounds_of_scene.bounds}
-        given["bounds"] = body.let("bounds", composer.call(settings.grown_bounds, room))
+        box = {"bounds": bounds_of_scene.bounds}
+        given["bounds"] = body.let("bounds", composer.call(settings.grown_bounds, box))
         given["farthest_plane"] = self._numbers.get("far", number(UNBOUNDED))
         if "far" not in self._numbers:
             given["far"] = body.let("far", composer.call(settings.automatic_far, given))
