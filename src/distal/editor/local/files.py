@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import ast
 import errno
-import hashlib
 import os
 import stat
 from collections.abc import Iterator, Mapping
@@ -19,7 +18,7 @@ from typing import Final
 from distal.diagnostics import LoadError
 from distal.editor.messages import Changed, Saved
 from distal.editor.scene_folder import check_name, encoded_text
-from distal.images.atomic_files import replacement
+from distal.file_writer import digest_of, replacement
 
 LONGEST_FILE: Final = 8_000_000  # bytes of a file that is shown or saved
 _BOM = "\ufeff"
@@ -86,11 +85,6 @@ def _opened(path: str, flags: int) -> int:
         os.close(found)
         raise OSError(errno.EINVAL, "it is no ordinary file")
     return found
-
-
-def digest_of(data: bytes) -> str:
-    """Return a short name of some bytes."""
-    return hashlib.sha256(data).hexdigest()[:16]
 
 
 class SceneFiles:
