@@ -28,6 +28,8 @@ if "DISTAL_CACHE_DIR" not in os.environ:
     base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     os.environ["DISTAL_CACHE_DIR"] = str(Path(base) / "distal-tests")
 os.environ.setdefault("DISTAL_CACHE_MIB", "1024")
+# Locks and other state of the person.
+os.environ["XDG_STATE_HOME"] = os.environ["DISTAL_CACHE_DIR"] + "-state"
 
 # LLVM generates code in half of the time without optimization, with the same bits (decision 92).
 # Tests of what compiles and compares machine code get that of the package; none waits for two.

@@ -222,7 +222,7 @@ def _keep_owner(handle: int, target: Path, info: os.stat_result) -> None:
     mode = info.st_mode & 0o777  # as after writing into a file: no program runs as another user
     is_group_kept = os.fstat(handle).st_gid == info.st_gid
     if not is_group_kept:
-        mode &= 0o707 | (mode & 0o7) << 3  # another group may do what everybody may do
+        mode &= 0o707 | (mode & 0o7) << 3  # another group may do no more than everybody
     with suppress(OSError):  # a file system without modes
         os.fchmod(handle, mode)
     if not is_group_kept or not hasattr(os, "listxattr"):
