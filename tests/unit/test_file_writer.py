@@ -23,6 +23,7 @@ from distal.file_writer import (
     ChangedError,
     LinkedError,
     SaveError,
+    TakenError,
     check_destination,
     destinations,
     digest_of,
@@ -121,7 +122,7 @@ def longest_file(size):
         signal.signal(signal.SIGXFSZ, handler)
 
 
-@pytest.mark.parametrize("way", WAYS.keys() - {"moved"})
+@pytest.mark.parametrize("way", sorted(WAYS.keys() - {"moved"}))
 def test_failed_write_leaves_the_old_file_alone(tmp_path, way):
     path = tmp_path / "a"
     path.write_bytes(b"old" * 500)
@@ -423,7 +424,7 @@ LINK = "os.symlink(sys.argv[2], sys.argv[1])"
 
 
 @needs_root
-@pytest.mark.parametrize("way", WAYS.keys() - {"save"})
+@pytest.mark.parametrize("way", sorted(WAYS.keys() - {"save"}))
 def test_link_of_another_user_in_a_shared_folder_is_refused(tmp_path, shared, way):
     for name, target, below in (("file", tmp_path / "a", ""), ("folder", tmp_path, "a")):
         (tmp_path / "a").write_bytes(b"old")
@@ -642,20 +643,52 @@ def test_file_that_appears_in_our_last_moment_stays(tmp_path, monkeypatch, syste
     assert replace is os.replace and list(tmp_path.iterdir()) == [path]
 
 
-def test_file_that_nobody_may_read_is_put_back(tmp_path, monkeypatch):
+def test_equal_save_of_another_program_is_no_conflict(tmp_path, monkeypatch):
     path = tmp_path / "a"
     path.write_bytes(b"old")
+    exchange = writing.exchange
+    monkeypatch.setattr(
+        writing, "exchange", lambda *paths: path.write_bytes(b"new") and exchange(*paths)
+    )
+    assert save(path, b"new", expected=digest_of(b"old")).other is None
+
+
+@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir, lambda path: os.symlink("b", path)])
+def test_what_cannot_be_read_is_put_back(tmp_path, monkeypatch, make):
+    path = tmp_path / "a"
+    path.write_bytes(b"old")
+    calls = []
 
     def exchanged(first, second):
-        path.unlink()
-        os.mkfifo(path)  # nothing that is read
+        if not calls:
+            path.unlink()
+            make(path)
+            calls.append(os.lstat(path).st_ino)
         return exchange(first, second)
 
     exchange = writing.exchange
     monkeypatch.setattr(writing, "exchange", exchanged)
     with pytest.raises(SaveError, match="another program is writing it"):
         save(path, b"new", expected=digest_of(b"old"))
-    assert stat.S_ISFIFO(path.stat().st_mode)
+    assert os.lstat(path).st_ino == calls[0]
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_new_file_takes_no_name_that_is_taken(tmp_path, system):
+    path = tmp_path / "film.mp4"
+    with path.open("wb") as file:
+        file.truncate(2**31)  # is not read
+    with pytest.raises(TakenError, match="it is there already"), replacement(path, new=True):
+        pytest.fail("nothing is computed")
+    path.unlink()
+    with pytest.raises(TakenError), replacement(path, new=True) as file:
+        file.write(b"ours")
+        path.write_bytes(b"theirs")
+    assert path.read_bytes() == b"theirs"
+    path.unlink()
+    with replacement(path, new=True) as file:
+        file.write(b"ours")
+    assert path.read_bytes() == b"ours"
     assert list(tmp_path.iterdir()) == [path]
 
 
@@ -822,26 +855,26 @@ def test_large_folder_is_searched_once(tmp_path, monkeypatch):
 
 def test_forked_child_is_another_process(tmp_path):
     text = """
-import os, sys
+import os
 from distal.file_writer.locks import is_over, process_name
 name = process_name()
 read, written = os.pipe()
+wait, go_on = os.pipe()
 child = os.fork()
 if child == 0:
     assert process_name() != name and is_over(*name) is False
     os.write(written, repr(process_name()).encode())
-    os.read(0, 1)
+    os.read(wait, 1)
     os._exit(0)
 other = eval(os.read(read, 100))
 assert other[0] == name[0] and other[1] != name[1]
 assert is_over(*other) is False
-sys.stdout.write("ready"); sys.stdout.flush()
+os.write(go_on, b"x")
 os.waitpid(child, 0)
 assert is_over(*other) is True and is_over(*name) is False
 """
     command = [sys.executable, "-c", text]
-    result = subprocess.run(command, input="x", capture_output=True, text=True)
-    assert (result.returncode, result.stdout) == (0, "ready"), result.stderr
+    subprocess.run(command, check=True)
 
 
 @pytest.mark.parametrize("state", ["/proc/nothing", "/dev/null"])

@@ -9,6 +9,7 @@ from distal.file_writer.destinations import (
     ChangedError,
     LinkedError,
     SaveError,
+    TakenError,
     check_destination,
     name_beside,
 )
@@ -28,6 +29,7 @@ __all__ = [
     "ChangedError",
     "LinkedError",
     "SaveError",
+    "TakenError",
     "Written",
     "check_destination",
     "digest_of",

@@ -38,7 +38,7 @@ from distal.editor.messages import (
     RenderRequest,
 )
 from distal.editor.scene_folder import check_name, encoded_text, link_beside
-from distal.file_writer import ChangedError, SaveError, replacement
+from distal.file_writer import SaveError, TakenError, replacement
 from distal.forking import new_lock
 from distal.lang.lazy_module import LazyModule
 from distal.lang.progress_lines import KEY, LOADING, STAGES
@@ -294,7 +294,7 @@ def placed(file: Path, folder: Path) -> Path:
         try:
             with replacement(path, new=True) as target, file.open("rb") as source:
                 shutil.copyfileobj(source, target)
-        except ChangedError:  # the name is taken
+        except TakenError:  # the name is taken
             continue
         break
     return path
