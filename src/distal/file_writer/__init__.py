@@ -15,8 +15,8 @@ from distal.file_writer.destinations import (
 )
 from distal.file_writer.writing import (
     ANY,
-    Anything,
-    Written,
+    SavedBytes,
+    Unchecked,
     digest_of,
     move_into_place,
     replacement,
@@ -25,12 +25,12 @@ from distal.file_writer.writing import (
 
 __all__ = [
     "ANY",
-    "Anything",
     "ChangedError",
     "LinkedError",
     "SaveError",
+    "SavedBytes",
     "TakenError",
-    "Written",
+    "Unchecked",
     "check_destination",
     "digest_of",
     "move_into_place",

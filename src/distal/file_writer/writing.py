@@ -42,17 +42,17 @@ _AT_REST_S: Final = 0.05
 _LONGEST_REST_S: Final = 2.0
 
 
-class Anything(Enum):
+class Unchecked(Enum):
     """The type of ``ANY``."""
 
     ANY = "any"
 
 
-ANY: Final = Anything.ANY
+ANY: Final = Unchecked.ANY
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
+class SavedBytes:
     """What a save has written.
 
     Attributes:
@@ -74,9 +74,9 @@ def save(
     path: Path,
     data: bytes,
     *,
-    expected: str | Literal[Anything.ANY] | None = ANY,
+    expected: str | Literal[Unchecked.ANY] | None = ANY,
     in_place: bool = False,
-) -> Written:
+) -> SavedBytes:
     """Write a file, unless it is not what the caller expects.
 
     Of several processes of a user that save with the same expectation one succeeds. What another
@@ -102,7 +102,7 @@ def save(
             with locked(target):
                 _checked(path, target, expected)
                 _write_into(target, data)
-            return Written(digest)
+            return SavedBytes(digest)
         if expected is not ANY and expected:
             _check_names(path, target)
         with _temporary(target) as (temporary, file):
@@ -110,7 +110,7 @@ def save(
             _finish(file, target)
             with locked(target):
                 other = _put(path, temporary, target, expected)
-    return Written(digest, None if other == data else other)
+    return SavedBytes(digest, None if other == data else other)
 
 
 @contextmanager
@@ -272,7 +272,7 @@ def _read(target: Path) -> bytes | None:
         return file.read()
 
 
-def _checked(path: Path, target: Path, expected: str | Literal[Anything.ANY] | None) -> None:
+def _checked(path: Path, target: Path, expected: str | Literal[Unchecked.ANY] | None) -> None:
     """Check that a file is what is expected.
 
     Raises:
@@ -287,7 +287,7 @@ def _checked(path: Path, target: Path, expected: str | Literal[Anything.ANY] | N
 
 
 def _put(
-    path: Path, temporary: Path, target: Path, expected: str | Literal[Anything.ANY] | None
+    path: Path, temporary: Path, target: Path, expected: str | Literal[Unchecked.ANY] | None
 ) -> bytes | None:
     """Rename a complete temporary file to its target; return what another program saved meanwhile.
 
