@@ -1,6 +1,7 @@
 """One way to write a file: whole or untouched, whoever interrupts, and nobody's text is lost."""
 
 import errno
+import fcntl
 import os
 import resource
 import signal
@@ -589,14 +590,28 @@ def slowly(path):
 
     def go_on():
         for part in (b"t", b"hei", b"rs"):
-            time.sleep(0.02)
+            time.sleep(0.1 if hasattr(fcntl, "F_SETLEASE") else 0.01)
             file.write(part)
         file.close()
 
     threading.Thread(target=go_on).start()
 
 
-@pytest.mark.parametrize("how", [renaming, writing_in_place, slowly])
+def later(path):
+    """Open the file to change it, and go on later."""
+    if not hasattr(fcntl, "F_SETLEASE"):
+        pytest.skip("nothing tells that a file is open")
+    file = path.open("r+b", buffering=0)
+
+    def go_on():
+        time.sleep(0.1)
+        file.write(b"theirs")
+        file.close()
+
+    threading.Thread(target=go_on).start()
+
+
+@pytest.mark.parametrize("how", [renaming, writing_in_place, slowly, later])
 @pytest.mark.parametrize("moment", ["exchange", "link", "replace"])
 def test_save_of_another_program_in_our_last_moment_is_returned(tmp_path, monkeypatch, how, moment):
     path = tmp_path / "a"

@@ -11,7 +11,6 @@ import hashlib
 import os
 import shutil
 import stat
-import time
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -20,6 +19,7 @@ from enum import Enum
 from pathlib import Path
 from typing import BinaryIO, Final, Literal
 
+from distal.file_writer.at_rest import is_being_written, wait_until_at_rest
 from distal.file_writer.destinations import (
     ChangedError,
     LinkedError,
@@ -37,9 +37,6 @@ from distal.file_writer.temporary import create, remove_leftovers, temporary_pat
 _CANNOT_FLUSH: Final = (errno.EINVAL, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS)
 _KEPT_ATTRIBUTES: Final = ("user.", "system.posix_acl_access")
 _LARGEST_COMPARED: Final = 2**28  # bytes; a file that a person edits is far smaller
-# Another program that writes in place may not be done when its file is replaced.
-_AT_REST_S: Final = 0.05
-_LONGEST_REST_S: Final = 2.0
 
 
 class Unchecked(Enum):
@@ -361,8 +358,11 @@ def _other(path: Path, replaced: Path | None, target: Path, expected: str) -> by
         return None
     try:
         data = _read(replaced)
-        if data is not None and digest_of(data) != expected:
-            data = _at_rest(replaced)
+        if data is None:
+            return None
+        if digest_of(data) != expected or is_being_written(replaced):
+            wait_until_at_rest(replaced)
+            data = _read(replaced)
     except (OSError, SaveError):
         if not exchange(replaced, target):  # nobody has seen it
             os.replace(replaced, target)
@@ -370,18 +370,6 @@ def _other(path: Path, replaced: Path | None, target: Path, expected: str) -> by
     with suppress(OSError):
         replaced.unlink()
     return None if data is None or digest_of(data) == expected else data
-
-
-def _at_rest(path: Path) -> bytes | None:
-    """Return the content of a file that another program may still be writing."""
-    until = time.monotonic() + _LONGEST_REST_S
-    data = _read(path)
-    while time.monotonic() < until:
-        time.sleep(_AT_REST_S)
-        before, data = data, _read(path)
-        if before == data:
-            break
-    return data
 
 
 def _write_into(target: Path, data: bytes) -> None:
