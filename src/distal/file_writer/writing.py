@@ -100,8 +100,6 @@ def save(
                 _checked(path, target, expected)
                 _write_into(target, data)
             return SavedBytes(digest)
-        if expected is not ANY and expected:
-            _check_names(path, target)
         with _temporary(target) as (temporary, file):
             file.write(data)
             _finish(file, target)
@@ -296,6 +294,7 @@ def _put(
 
     Raises:
         ChangedError: The target is not what is expected.
+        LinkedError: It has several names, and ``expected`` is a digest.
         OSError: The file system reports an error.
     """
     if expected is ANY:
@@ -315,11 +314,16 @@ def _put(
             _checked(path, target, expected)
             raise
         return None
-    replaced: Path | None = temporary
-    if not exchange(temporary, target):
-        replaced = _kept_link(target)
+    _check_names(path, target)
+    if exchange(temporary, target):
+        return _other(path, temporary, target, expected)
+    backup = _kept_link(target)
+    try:
         os.replace(temporary, target)
-    return _other(path, replaced, target, expected)
+        return None if backup is None else _other(path, backup, target, expected)
+    finally:
+        if backup is not None:
+            backup.unlink(missing_ok=True)
 
 
 def _appear(path: Path, temporary: Path, target: Path) -> None:
@@ -352,10 +356,11 @@ def _kept_link(target: Path) -> Path | None:
     return backup
 
 
-def _other(path: Path, replaced: Path | None, target: Path, expected: str) -> bytes | None:
-    """Return the content of a replaced file, if it is not the expected one, and remove it."""
-    if replaced is None:
-        return None
+def _other(path: Path, replaced: Path, target: Path, expected: str) -> bytes | None:
+    """Return the content of a replaced file, if it is not the expected one.
+
+    If it cannot be read, or this is interrupted, it is put back: nobody has seen it.
+    """
     try:
         data = _read(replaced)
         if data is None:
@@ -363,12 +368,12 @@ def _other(path: Path, replaced: Path | None, target: Path, expected: str) -> by
         if digest_of(data) != expected or is_being_written(replaced):
             wait_until_at_rest(replaced)
             data = _read(replaced)
-    except (OSError, SaveError):
-        if not exchange(replaced, target):  # nobody has seen it
+    except BaseException as error:
+        if not exchange(replaced, target):
             os.replace(replaced, target)
-        raise SaveError(f"cannot write {path}: another program is writing it") from None
-    with suppress(OSError):
-        replaced.unlink()
+        if isinstance(error, OSError | SaveError):
+            raise SaveError(f"cannot write {path}: another program is writing it") from None
+        raise
     return None if data is None or digest_of(data) == expected else data
 
 
