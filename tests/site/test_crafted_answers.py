@@ -1,8 +1,8 @@
-"""Answers that a stranger's code makes up: none ends the playground's drawing.
+"""Answers that a stranger's code makes up end no drawing in the playground.
 
-The cell of these tests is no Python: it answers with the texts that a test gives it, in place of the
-worker's. Each message of a worker, with a field that is missing, of another type, huge or nested,
-is sent as the answer to a request; then the worker's own answer must be drawn.
+The cell of these tests is no Python: it answers with the texts that a test gives it, in place of
+the worker's. Each message of a worker, with a field that is missing, of another type, huge or
+nested, is sent as the answer to a request; then the worker's own answer must be drawn.
 """
 
 from __future__ import annotations
@@ -20,7 +20,6 @@ from typing import Any
 import pytest
 
 from distal.editor import messages
-from distal.editor.links import link_of
 from distal.editor.messages import encoded
 from distal.editor.worker import StudioWorker
 from distal.example_files import gallery
@@ -32,14 +31,13 @@ from tools.site import playground
 SLOW_MS = 120_000
 ID, REVISION = -12345, -12346
 TEXT = """from distal import *
-from distal.lang import slider, choice, color, point
+from distal.lang import color, point, slider
 
 size = slider("Size", 0.5, 0.1, 1.0)
-kind = choice("Kind", ["a", "b"])
 tint = color("Tint", "#d97757")
 place = point("Place", (0.0, 0.0, 0.0))
 ball = Sphere(size).translate(0.25, 0, 0)
-scene = Scene(ball | Box(0.3 + 0.1 * kind).translate(place).paint(tint), background="BACKGROUND")
+scene = Scene(ball | Box(0.3).translate(place).paint(tint), background="BACKGROUND")
 """
 RED, BLUE = "#ff0000", "#0000ff"
 
@@ -47,13 +45,13 @@ CELL = """<!doctype html><meta charset="utf-8"><script>
 let port, queue = [];
 const tell = (text) => port.postMessage(text);
 onmessage = ({ data, ports }) => {
-  if (data.queue) return void (queue = data.queue);
+  if (data.queue) return (queue = data.queue), parent.postMessage("queued", "*");
   [port] = ports;
   port.onmessage = ({ data }) => {
     if (data === "restart") return tell(READY);
     const { id, revision } = JSON.parse(data);
-    for (const text of queue.shift() ?? ['{"kind":"dropped","id":ID,"revision":REVISION}']) {
-      tell(text.replaceAll("ID", id).replaceAll("REVISION", revision));
+    for (const text of queue.shift() ?? ['{"kind":"dropped","id":@ID,"revision":@REVISION}']) {
+      tell(text.replaceAll("@ID", id).replaceAll("@REVISION", revision));
     }
   };
   tell(READY);
@@ -61,14 +59,21 @@ onmessage = ({ data, ports }) => {
 </script>"""
 
 # The answers to the next requests; resolves when they are shown, or refused.
-PLAY = """async ([queue, isRun]) => {
-  const frame = document.querySelector("iframe").contentWindow;
-  frame.postMessage({ queue }, "*");
-  await new Promise((resolve) => setTimeout(resolve));
-  while (!studio.looking.ready) await new Promise((resolve) => setTimeout(resolve));
+PLAY = """async (queue) => {
+  const end = performance.now() + 20_000;
+  const until = async (isDone) => {
+    while (!isDone()) {
+      if (performance.now() > end) throw new Error(`never: ${isDone}`);
+      await new Promise((resolve) => setTimeout(resolve));
+    }
+  };
+  const queued = new Promise((resolve) => addEventListener("message", resolve, { once: true }));
+  document.querySelector("iframe").contentWindow.postMessage({ queue }, "*");
+  await queued;
+  await until(() => studio.looking.ready);
   studio.looking.isStopped = false;
   studio.looking.look();
-  while (!studio.looking.isFree) await new Promise((resolve) => setTimeout(resolve));
+  await until(() => studio.looking.isFree);
 }"""
 # The color of the first pixel, which is the background's.
 COLOR = """async () => {
@@ -86,7 +91,7 @@ NOTICE = "() => document.querySelector('.notice').textContent"
 
 def wire(message: messages.Message) -> str:
     """A message as the cell has it, with names for the numbers of the request."""
-    return encoded(message).replace(str(ID), "ID").replace(str(REVISION), "REVISION")
+    return encoded(message).replace(str(ID), "@ID").replace(str(REVISION), "@REVISION")
 
 
 @pytest.fixture(scope="module")
@@ -110,9 +115,11 @@ def answers(worker: StudioWorker, kind: str, text: str, **more: Any) -> messages
 def samples(worker) -> dict[str, dict[str, Any]]:
     """A message of each kind that a worker answers a look with."""
     red = TEXT.replace("BACKGROUND", RED)
-    scene = answers(worker, "look", red)
+    scene = answers(worker, "look", red, guided=False)
     assert isinstance(scene, messages.SceneFound)
-    numbers = answers(worker, "look", red.replace("0.25", "0.26"), known=scene.key)
+    numbers = answers(
+        worker, "look", red.replace("0.25", "0.26"), known=scene.key, lean=True, guided=False
+    )
     assert isinstance(numbers, messages.NumbersFound)
     mistakes = answers(worker, "look", red + "x = (\n")
     printed = messages.Printed(id=ID, revision=REVISION, text="x")
@@ -134,7 +141,7 @@ def page(tmp_path_factory, worker):
     cell = folder / "python" / "cell.html"
     ready = json.dumps(encoded(worker.ready()))
     cell.write_text(CELL.replace("READY", ready), encoding="utf-8")
-    opened = playground.opened_examples([playground.START])[playground.START]
+    opened = {"main": "scene.py", "files": {"scene.py": TEXT.replace("BACKGROUND", RED)}}
     start = folder / "gallery" / f"{playground.START}.json"
     start.write_text(json.dumps(opened), encoding="utf-8")
     text = playground._page(folder)
@@ -171,8 +178,7 @@ def shown(folder: Path) -> Iterator[Any]:
         ),
     )
     page.set_default_timeout(SLOW_MS)
-    text = TEXT.replace("BACKGROUND", RED)
-    page.goto(address + link_of({"files": {"scene.py": text}, "main": "scene.py"}))
+    page.goto(address)
     page.wait_for_function("() => window.studio?.picture")
     page.evaluate("() => studio.channel.start()")
     page.wait_for_function("() => studio.looking.ready")
@@ -222,7 +228,7 @@ def mutated(message: dict[str, Any]) -> Iterator[tuple[str, str]]:
             name = (
                 f"{'.'.join(map(str, path))} = {json.dumps(value)[:40] if value is not ... else ''}"
             )
-            yield name, text.replace(str(ID), "ID").replace(str(REVISION), "REVISION")
+            yield name, text.replace(str(ID), "@ID").replace(str(REVISION), "@REVISION")
 
 
 COUNT = 20
@@ -231,44 +237,45 @@ COUNT = 20
 @pytest.mark.parametrize("kind", ["scene", "numbers", "mistakes", "printed", "progress", "ready"])
 def test_after_a_crafted_answer_the_next_one_is_drawn(page, worker, samples, kind):
     red, blue = (
-        wire(answers(worker, "look", TEXT.replace("BACKGROUND", color))) for color in (RED, BLUE)
+        wire(answers(worker, "look", TEXT.replace("BACKGROUND", color), guided=False))
+        for color in (RED, BLUE)
     )
     dropped = wire(messages.Dropped(id=ID, revision=REVISION))
     cases = list(mutated(samples[kind]))
     if not all_cases():
         cases = random.Random(kind).sample(cases, min(COUNT, len(cases)))
-    page.evaluate(PLAY, [[[red]], True])
+    page.evaluate(PLAY, [[red]])
     assert page.evaluate(COLOR) == "red"
     color = "red"
     for name, text in cases:
-        page.evaluate(PLAY, [[[text, dropped]], True])
+        page.evaluate(PLAY, [[text, dropped]])
         said = page.evaluate(NOTICE)
         if "broken answer" in said:
             assert page.evaluate(COLOR) == color, name  # the last picture stays
         color, good = ("blue", blue) if color == "red" else ("red", red)
-        page.evaluate(PLAY, [[[good]], True])
+        page.evaluate(PLAY, [[good]])
         assert page.evaluate(COLOR) == color, name
 
 
 def test_crafted_texts_that_are_no_messages_end_the_worker(page, worker):
-    red = wire(answers(worker, "look", TEXT.replace("BACKGROUND", RED)))
+    red = wire(answers(worker, "look", TEXT.replace("BACKGROUND", RED), guided=False))
     before = page.evaluate("() => studio.editor.view.state.doc.toString()")
     texts = ["{", "null", "[1]", '"x"', "{}", '{"kind":"__proto__"}', '{"kind":["scene"]}']
     texts += ["[" * 100_000, '{"kind":"changed","files":{"scene.py":"stolen"},"digests":{}}']
     texts += ['{"kind":"restarted","id":null,"reason":"made up"}', wire(worker.ready())]
     for text in texts:
-        page.evaluate(PLAY, [[[text]], True])
+        page.evaluate(PLAY, [[text]])
         said = page.evaluate(NOTICE)
         assert said.startswith("Stopped: the scene's code sent a broken answer ("), (text, said)
-        page.evaluate(PLAY, [[[red]], True])
+        page.evaluate(PLAY, [[red]])
         assert page.evaluate(COLOR) == "red"
         assert page.evaluate(NOTICE) == ""
     assert page.evaluate("() => studio.editor.view.state.doc.toString()") == before
 
 
 CRAFTED = {
-    "a million parameters": ("parameters", lambda p: p * 300_000, "parameters"),
-    "a million views": ("views", lambda v: v * 1_000_000, "scene.payload.views"),
+    "many parameters": ("parameters", lambda p: p * 10_000, "parameters"),
+    "many views": ("views", lambda v: v * 20_000, "scene.payload.views"),
     "a negative size": ("size", lambda _: [-4, 3], "scene.payload.size"),
     "no side": ("size", lambda _: [0, 3], "scene.payload.size"),
     "a program that is not there": (
@@ -304,25 +311,25 @@ CRAFTED = {
 @pytest.mark.parametrize("case", CRAFTED)
 def test_a_payload_that_no_player_can_show_is_named(page, worker, samples, case):
     field, change, expected = CRAFTED[case]
-    red = wire(answers(worker, "look", TEXT.replace("BACKGROUND", RED)))
+    red = wire(answers(worker, "look", TEXT.replace("BACKGROUND", RED), guided=False))
     made = copy.deepcopy(samples["scene"])
     made["payload"][field] = change(made["payload"][field])
-    text = json.dumps(made).replace(str(ID), "ID").replace(str(REVISION), "REVISION")
-    page.evaluate(PLAY, [[[red], [text]], True])
-    page.evaluate(PLAY, [[[text]], True])
+    text = json.dumps(made).replace(str(ID), "@ID").replace(str(REVISION), "@REVISION")
+    page.evaluate(PLAY, [[red]])
+    page.evaluate(PLAY, [[text]])
     assert f"broken answer ({expected})" in page.evaluate(NOTICE)
     assert page.evaluate(COLOR) == "red"
 
 
 def test_a_shader_that_the_driver_refuses_is_told_and_the_next_is_drawn(page, worker, samples):
-    blue = wire(answers(worker, "look", TEXT.replace("BACKGROUND", BLUE)))
+    blue = wire(answers(worker, "look", TEXT.replace("BACKGROUND", BLUE), guided=False))
     made = copy.deepcopy(samples["scene"])
     for program in made["payload"]["programs"]["data"]:
         program["fragment"] = "nonsense"
-    text = json.dumps(made).replace(str(ID), "ID").replace(str(REVISION), "REVISION")
-    page.evaluate(PLAY, [[[text]], True])
+    text = json.dumps(made).replace(str(ID), "@ID").replace(str(REVISION), "@REVISION")
+    page.evaluate(PLAY, [[text]])
     assert page.evaluate(COLOR) == "none"
-    page.evaluate(PLAY, [[[blue]], True])
+    page.evaluate(PLAY, [[blue]])
     assert page.evaluate(COLOR) == "blue"
 
 
@@ -334,5 +341,5 @@ def test_what_workers_send_is_never_refused(page, worker):
     for name in NAMES:
         text = gallery()[name].read_text(encoding="utf-8")
         for kind, more in (("look", {}), ("map", {}), ("count", {}), ("text", {}), ("check", {})):
-            page.evaluate(PLAY, [[[wire(answers(worker, kind, text, **more))]], True])
+            page.evaluate(PLAY, [[wire(answers(worker, kind, text, **more))]])
             assert "broken answer" not in page.evaluate(NOTICE), (name, kind)
