@@ -22,7 +22,7 @@ import pytest
 from distal.editor import messages
 from distal.editor.messages import encoded
 from distal.editor.worker import StudioWorker
-from distal.example_files import gallery
+from distal.example_files import all_examples, gallery
 from tests.browser import BrowserUnavailableError, browser
 from tests.kept_page import is_of_the_driver
 from tests.selection import all_cases
@@ -231,7 +231,7 @@ def mutated(message: dict[str, Any]) -> Iterator[tuple[str, str]]:
             yield name, text.replace(str(ID), "@ID").replace(str(REVISION), "@REVISION")
 
 
-COUNT = 20
+COUNT, MOST = 16, 1000  # in `make test` and in `make sweep`
 
 
 @pytest.mark.parametrize("kind", ["scene", "numbers", "mistakes", "printed", "progress", "ready"])
@@ -242,15 +242,15 @@ def test_after_a_crafted_answer_the_next_one_is_drawn(page, worker, samples, kin
     )
     dropped = wire(messages.Dropped(id=ID, revision=REVISION))
     cases = list(mutated(samples[kind]))
-    if not all_cases():
-        cases = random.Random(kind).sample(cases, min(COUNT, len(cases)))
+    cases = random.Random(kind).sample(cases, min(MOST if all_cases() else COUNT, len(cases)))
     page.evaluate(PLAY, [[red]])
     assert page.evaluate(COLOR) == "red"
     color = "red"
-    for name, text in cases:
+    for number, (name, text) in enumerate(cases):
         page.evaluate(PLAY, [[text, dropped]])
-        said = page.evaluate(NOTICE)
-        if "broken answer" in said:
+        if "broken answer" in page.evaluate(NOTICE):
+            if number % 8:
+                continue  # what is refused reaches nothing that draws
             assert page.evaluate(COLOR) == color, name  # the last picture stays
         color, good = ("blue", blue) if color == "red" else ("red", red)
         page.evaluate(PLAY, [[good]])
@@ -339,7 +339,7 @@ NAMES = sorted(gallery()) if all_cases() else ["melting", "coral", "planet", "ra
 def test_what_workers_send_is_never_refused(page, worker):
     """Of the whole gallery in ``make sweep``."""
     for name in NAMES:
-        text = gallery()[name].read_text(encoding="utf-8")
+        text = all_examples()[name].read_text(encoding="utf-8")
         for kind, more in (("look", {}), ("map", {}), ("count", {}), ("text", {}), ("check", {})):
             page.evaluate(PLAY, [[wire(answers(worker, kind, text, **more))]])
             assert "broken answer" not in page.evaluate(NOTICE), (name, kind)
