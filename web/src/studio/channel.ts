@@ -11,6 +11,8 @@ export interface Channel {
   /** Makes ready for requests, where that costs something; `ready` follows. */
   start?(): Promise<void>;
   post(request: Request): void;
+  /** An answer could not be shown, though its form is right: whoever sent it is ended, where that can be. */
+  refuse?(place: string): void;
   /** Called with every response. */
   onMessage: (response: Response) => void;
   /** Called when the connection opens or closes. */
