@@ -61,7 +61,7 @@ def test_a_port_that_is_taken_is_named(tmp_path):
 def test_ctrl_c_ends_it(tmp_path):
     running = started(tmp_path, "new.py")
     line = running.stdout.readline()
-    assert re.match(r"new\.py at http://127\.0\.0\.1:\d+/\?key=\S+$", line)
+    assert re.match(r"new\.py at http://127\.0\.0\.1:\d+/#key=\S+$", line)
     running.send_signal(signal.SIGINT)
     _, text = running.communicate(timeout=ENDS_S)
     assert running.returncode == 0

@@ -6,6 +6,7 @@
  */
 
 import type { Request, Response } from "../generated/messages";
+import type { Access } from "./access";
 
 export interface Channel {
   /** Makes ready for requests, where that costs something; `ready` follows. */
@@ -17,29 +18,16 @@ export interface Channel {
   onState: (isOpen: boolean) => void;
 }
 
-const RETRY_MS = 1500;
-
+/** The channel of the local studio. */
 export class SocketChannel implements Channel {
   onMessage: Channel["onMessage"] = () => {};
   onState: Channel["onState"] = () => {};
-  #socket: WebSocket | null = null;
 
-  constructor(readonly address: string) {
-    this.#open();
+  constructor(readonly access: Access) {
+    access.onText = (text) => this.onMessage(JSON.parse(text) as Response);
   }
 
   post(request: Request): void {
-    if (this.#socket?.readyState === WebSocket.OPEN) this.#socket.send(JSON.stringify(request));
-  }
-
-  #open(): void {
-    const socket = new WebSocket(this.address);
-    this.#socket = socket;
-    socket.onopen = () => this.onState(true);
-    socket.onmessage = ({ data }) => this.onMessage(JSON.parse(String(data)) as Response);
-    socket.onclose = () => {
-      this.onState(false);
-      setTimeout(() => this.#open(), RETRY_MS);
-    };
+    this.access.send(JSON.stringify(request));
   }
 }
