@@ -35,7 +35,7 @@ scene = Scene(ball | box, lights=DistantLight((1, 2, 3)), background="#123456",
 '''
 PLAYER = "() => document.querySelector('.picture .host')?.distal"
 SETTLED = "() => document.querySelector('.picture .host').distal.settled()"
-IDLE = "() => /\\d ms$/.test(document.querySelector('.work').textContent)"
+IDLE = "() => /\\d ms$/.test(document.querySelector('.work')?.textContent)"
 TEXT = "() => studio.editor.view.state.doc.toString()"
 
 

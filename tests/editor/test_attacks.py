@@ -128,7 +128,9 @@ def test_bytes_that_are_no_request_write_nothing_to_the_terminal(running, sent, 
     assert capfd.readouterr().err == ""
 
 
-@pytest.mark.parametrize("path", ["//[", "/%00", "/gallery/%00.json", "/results//", "/results/../x", "/\\..\\x"])
+@pytest.mark.parametrize(
+    "path", ["//[", "/%00", "/gallery/%00.json", "/results//", "/results/../x", "/\\..\\x"]
+)
 def test_odd_paths_are_not_there(running, path):
     assert asked(running, path)[0] == 404
 

@@ -73,7 +73,11 @@ def test_a_scene_that_loops_is_ended(tmp_path):
         page.wait_for_function(f"() => ({_TOLD})().includes('does a scene run for ever?')")
 
 
-def test_only_the_lesson_is_served_and_only_to_its_own_browser(tmp_path):
+def test_only_the_lesson_is_served_and_only_to_its_own_browser(tmp_path, monkeypatch):
+    def made(_, page):
+        page.write_text("the page")
+
+    monkeypatch.setattr(LessonServer, "_mistake_of_making", made)
     (tmp_path / "lesson.md").write_text(LESSON)
     (tmp_path / "ball.py").write_text(SCENE)
     server = LessonServer(tmp_path / "lesson.md")
@@ -93,7 +97,7 @@ def test_only_the_lesson_is_served_and_only_to_its_own_browser(tmp_path):
             addresses = [json.loads(socket.recv(timeout=60.0))["address"] for _ in range(2)]
         first = addresses[1]
         assert addresses[0] == ""
-        assert asked(server, first)[0] == 200
+        assert asked(server, first)[::2] == (200, b"the page")
         assert asked(server, first + "x")[0] == 404
         server._make()
         assert asked(server, first)[0] == 404  # the page has another address now

@@ -7,6 +7,7 @@ import http.client
 import json
 import threading
 import time
+from contextlib import contextmanager
 
 import pytest
 
@@ -38,7 +39,7 @@ def server(tmp_path):
 
 
 def host_of(server):
-    return server.address.split("/")[2]
+    return server._guard.authority  # to ask for the address makes a key
 
 
 def asked(server, path, **headers):
@@ -85,11 +86,12 @@ def secret_of(server):
         return admitted(socket, key_of(server), "key")["secret"]
 
 
+@contextmanager
 def connected(server, secret, **headers):
     """The socket of a page that is admitted."""
-    socket = opened(server, **headers)
-    admitted(socket, secret)
-    return socket
+    with opened(server, **headers) as socket:
+        admitted(socket, secret)
+        yield socket
 
 
 def until(socket, kind, number=None):

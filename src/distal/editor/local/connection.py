@@ -1,8 +1,8 @@
 """The socket of a tab, and the socket that all tabs come to: nobody waits for one that is slow.
 
 Input: texts to send. Output: texts that were received. Each tab has a queue and a thread that sends
-it; one that does not read (its page is at a breakpoint) is cut off when its queue is full, and comes
-back by itself. Uses ``websockets`` through its objects only.
+it. A tab that does not read (its page is at a breakpoint) is cut off when its queue is full, and
+comes back by itself. Uses ``websockets`` through its objects only.
 """
 
 from __future__ import annotations

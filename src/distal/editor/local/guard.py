@@ -3,7 +3,8 @@
 Input: the headers of a request, as ``websockets`` has them; the first messages of a socket. Output:
 whether they are answered. The address has a key that is good once; the page gets a secret for it,
 which it keeps. Page and server prove to each other that they have the same text, and send a proof
-only (decision 97): whoever else has the port later learns nothing. Needs the standard library alone.
+only (decision 97), so that whoever else has the port later learns nothing. Needs the standard
+library alone.
 
 A socket begins with four messages, all JSON objects; nonces and proofs are 64 hexadecimal digits:
 

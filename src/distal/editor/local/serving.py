@@ -1,8 +1,8 @@
 """A server on this machine for one person's browsers: pages, and a socket for each tab.
 
 Input: what a path gets, what a socket says. Output: an address that is good once. Files are served
-to every page of the server's own address, and have no secrets; what tells of the person's files goes
-through a socket, after page and server have proved that they belong together (``guard``). Uses
+to every page of the server's own address, and have no secrets; what tells of the person's files
+goes through a socket, after page and server have proved that they belong together (``guard``). Uses
 ``websockets``.
 """
 
@@ -32,7 +32,7 @@ MOST_TABS: Final = 8
 MOST_WAITING: Final = 16
 ADMISSION_S: Final = 5.0
 # How long an answer may take: the app's own files, and a large picture to a slow disk.
-FILE_S: Final = 30.0
+FILE_S: Final = 10.0
 RESULT_S: Final = 600.0
 _CLOSING_S: Final = 2.0  # for the end of a socket, and for all of them when the server ends
 
