@@ -204,7 +204,7 @@ class LocalServer(ABC):
 
     @abstractmethod
     def _settings(self) -> Mapping[str, object]:
-        """Return what an admitted page is told first."""
+        """Return what a page needs to begin, which it gets when it is admitted."""
 
     @abstractmethod
     def _talk(self, connection: TabConnection) -> None:
