@@ -54,7 +54,7 @@ export class Access {
     addEventListener("hashchange", () => this.#takeKey() && this.start());
     // Another tab of this browser has got a new secret.
     addEventListener("storage", ({ key }) => {
-      if (key === KEPT && this.#socket?.readyState !== WebSocket.OPEN) this.start();
+      if (key === KEPT && !this.isOpen) this.start();
     });
   }
 
@@ -71,8 +71,12 @@ export class Access {
     this.#socket = null;
   }
 
+  get isOpen(): boolean {
+    return this.#socket?.readyState === WebSocket.OPEN;
+  }
+
   send(text: string): void {
-    if (this.#socket?.readyState === WebSocket.OPEN) this.#socket.send(text);
+    if (this.isOpen) this.#socket!.send(text);
   }
 
   /** Takes the key out of the address, which the history and the screen show. */

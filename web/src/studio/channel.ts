@@ -12,6 +12,8 @@ export interface Channel {
   /** Makes ready for requests, where that costs something; `ready` follows. */
   start?(): Promise<void>;
   post(request: Request): void;
+  /** False while another program may answer at the page's address; undefined where there is no server. */
+  readonly isOpen?: boolean;
   /** Called with every response. */
   onMessage: (response: Response) => void;
   /** Called when the connection opens or closes. */
@@ -25,6 +27,10 @@ export class SocketChannel implements Channel {
 
   constructor(readonly access: Access) {
     access.onText = (text) => this.onMessage(JSON.parse(text) as Response);
+  }
+
+  get isOpen(): boolean {
+    return this.access.isOpen;
   }
 
   post(request: Request): void {
