@@ -340,8 +340,8 @@ def as_nobody(program, *words):
 
 def test_the_browser_is_given_a_file_and_no_key(server, monkeypatch):
     given = []
-    monkeypatch.setattr("webbrowser.open", given.append)
-    server.open_browser()
+    monkeypatch.setattr("webbrowser.open", lambda address: not given.append(address))
+    assert server.open_browser()
     file = Path(given[0].removeprefix("file://"))
     assert given == [file.as_uri()]
     assert server.address.split("key=")[1] not in given[0]

@@ -93,9 +93,11 @@ def studio(
 
 def _open_browser(server: LocalServer) -> None:
     try:
-        server.open_browser()
+        reason = "" if server.open_browser() else "there is none"
     except OSError as error:
-        say(f"warning: the browser is not opened ({error.strerror}): open the address above")
+        reason = error.strerror or str(error)
+    if reason:
+        say(f"warning: the browser is not opened ({reason}): open the address above yourself")
 
 
 def _watch_terminal(server: LocalServer) -> None:

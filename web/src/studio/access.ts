@@ -11,16 +11,16 @@ const PROOF = /^[0-9a-f]{64}$/;
 const RETRY_MS = 1500;
 /** How long a server may take to answer the first messages. */
 const ADMISSION_MS = 10_000;
-/** The codes of sockets that the server closes: the page has no access, and too many tabs are open. */
+/** The codes of sockets that the server closes: the page has no access, and there are too many pages. */
 const REFUSED = 4403;
 const BUSY = 1013;
 
-/** Why nobody answers: the server is away, too many tabs are open, or the page has no access. */
+/** Why nobody answers: the server is away, has too many pages, or gives this one no access. */
 export type Reason = "away" | "busy" | "refused";
 
 export const REASONS: Record<Reason, string> = {
   away: "The studio's server has ended.",
-  busy: "Too many tabs of the studio are open: close one.",
+  busy: "The studio has no place for another page now: close one of its tabs.",
   refused:
     "This page has no access to the studio. Press Enter in the terminal in which the studio runs, " +
     "and open the address that it prints.",

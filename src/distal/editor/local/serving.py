@@ -117,8 +117,10 @@ class LocalServer(ABC):
         """An address for one browser."""
         return self._guard.address()
 
-    def open_browser(self) -> None:
+    def open_browser(self) -> bool:
         """Open the browser with the address, which goes there by a file that only this user reads.
+
+        Returns whether there is a browser.
 
         Raises:
             OSError: The file cannot be written.
@@ -126,7 +128,7 @@ class LocalServer(ABC):
         with self._lock:
             self._key_file = self._key_file or KeyFile(self.address)
             place = self._key_file.path.as_uri()
-        webbrowser.open(place)
+        return webbrowser.open(place)
 
     @abstractmethod
     def serve(self) -> None:
