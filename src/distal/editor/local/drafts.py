@@ -1,0 +1,255 @@
+"""Drafts: the unsaved texts of each tab of the studio, which outlive the tab and the server.
+
+Input: a tab's text and the digest of what it began with. Output: a file for each tab and name; what
+is replaced goes to the versions (``versions.py``). A draft belongs to its tab while that lives, in
+this process or another: later the next tab that opens gets it. Needs no network.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import re
+import secrets
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from distal.editor.local.state_folder import LifeLock, is_alive, state_folder, write_private
+from distal.editor.local.versions import Versions, Why, sweep
+from distal.forking import new_lock
+
+# A text that was in the page for a second has been here for almost as long.
+_STANDING_S: Final = 0.7
+# So long the socket of a page that was loaded again may take to end.
+_LEAVING_S: Final = 1.0
+_TICK_S: Final = 0.02
+_NAME: Final = re.compile(r"([0-9a-f]{12})\.([0-9a-f]{12})\.json")
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """An unsaved text.
+
+    Attributes:
+        text: The text; lines end by a newline alone.
+        base: The digest of the bytes on the disk that it began with; "" for a new file.
+        since: When it came, in seconds since 1970.
+    """
+
+    text: str
+    base: str
+    since: float
+
+    @classmethod
+    def of(cls, path: Path) -> Draft | None:
+        """Return the draft in a file; None where there is none, or a damaged one."""
+        try:
+            found = json.loads(path.read_bytes())
+            made = cls(found["text"], found["base"], float(found["since"]))
+        except (OSError, ValueError, TypeError, KeyError, RecursionError):
+            return None
+        return made if isinstance(made.text, str) and isinstance(made.base, str) else None
+
+    def encoded(self) -> bytes:
+        """Return the draft as JSON; half a character of UTF-16 is kept, too."""
+        found = {"text": self.text, "base": self.base, "since": self.since}
+        return json.dumps(found, indent=1).encode()
+
+
+class Drafts:
+    """The drafts and versions of the files of one folder, for one server.
+
+    Args:
+        root: The folder of all drafts.
+        folder: The real folder of the scene.
+        clock: Gives seconds since 1970.
+    """
+
+    def __init__(self, root: Path, folder: Path, clock: Callable[[], float] = time.time) -> None:
+        self._folder = root / hashlib.sha256(str(folder).encode("utf-8", "replace")).hexdigest()
+        self.versions = Versions(self._folder, clock)
+        self._scene_folder, self._clock = folder, clock
+        self._server = secrets.token_hex(6)
+        self._life: LifeLock | None = None
+        self._tabs: set[str] = set()
+        self._texts: dict[tuple[str, str], Draft] = {}  # by tab and name: what its file has
+        self._lock = new_lock()
+
+    @classmethod
+    def of_user(cls, folder: Path) -> Drafts:
+        """Return the drafts of a folder in the user's state.
+
+        Raises:
+            PackageError: ``platformdirs`` is not installed.
+        """
+        root = state_folder() / "drafts"
+        sweep(root)
+        return cls(root, folder)
+
+    # Tabs
+
+    def entered(self, before: str = "") -> str:
+        """Return the name of a tab that opens: the one it had before, unless another tab has it.
+
+        Args:
+            before: The name that the page remembers; a tab that was duplicated has the original's.
+        """
+        end = time.monotonic() + _LEAVING_S
+        while before in self._tabs and time.monotonic() < end:
+            time.sleep(_TICK_S)
+        with self._lock:
+            is_good = re.fullmatch(r"[0-9a-f]{12}", before) and before not in self._tabs
+            tab = before if is_good else secrets.token_hex(6)
+            self._tabs.add(tab)
+        return tab
+
+    def left(self, tab: str) -> None:
+        """Note that a tab is gone; its drafts wait for the next one."""
+        with self._lock:
+            self._tabs.discard(tab)
+            for key in [key for key in self._texts if key[0] == tab]:
+                del self._texts[key]
+
+    def close(self) -> None:
+        """End: all tabs are gone."""
+        with self._lock:
+            self._tabs.clear()
+            if self._life is not None:
+                self._life.release()
+                self._life = None
+
+    # Texts
+
+    def put(self, tab: str, name: str, text: str, base: str) -> None:
+        """Keep a tab's text of a file; the one before becomes a version if it stood for a moment.
+
+        Raises:
+            OSError: It cannot be written; the draft before stays.
+        """
+        with self._lock:
+            before = self._of(tab, name)
+            if before is not None and (before.text, before.base) == (text, base):
+                return
+            now = self._clock()
+            since = now
+            if before is not None and before.text == text:
+                since = before.since
+            elif before is not None and now - before.since >= _STANDING_S:
+                self._keep(name, before, "typed")
+            draft = Draft(text, base, since)
+            self._live()
+            write_private(self._path(tab, name), draft.encoded())
+            self._texts[tab, name] = draft
+
+    def drop(self, tab: str, name: str, saved: str | None) -> None:
+        """Forget a tab's text of a file: the page has what the disk has.
+
+        A text that the disk does not have becomes a version.
+
+        Args:
+            tab: The tab.
+            name: The file.
+            saved: The text on the disk; None if it has none.
+
+        Raises:
+            OSError: The version cannot be written, or the draft not be removed.
+        """
+        with self._lock:
+            before = self._of(tab, name)
+            if before is None:
+                return
+            if before.text != saved:
+                self._keep(name, before, "typed")
+            self._path(tab, name).unlink(missing_ok=True)
+            self._texts.pop((tab, name), None)
+
+    def offered(self, tab: str, *, is_new: bool) -> tuple[dict[str, Draft], list[str]]:
+        """Return a tab's drafts, and the files of which there were others, which are versions now.
+
+        Args:
+            tab: The tab.
+            is_new: Whether its page has no texts yet: then it gets those of tabs that are gone.
+
+        Raises:
+            OSError: They cannot be read or renamed.
+        """
+        drafts: dict[str, Draft] = {}
+        others: list[str] = []
+        with self._lock:
+            for name, paths in self._abandoned(tab, is_new=is_new).items():
+                for path, draft in paths:
+                    if name not in drafts:
+                        if self._taken(path, self._path(tab, name)):
+                            drafts[name] = self._texts[tab, name] = draft
+                        continue
+                    if draft.text != drafts[name].text:
+                        self._keep(name, draft, "left")
+                        others.append(name)
+                    path.unlink(missing_ok=True)
+            return drafts, list(dict.fromkeys(others))
+
+    def _abandoned(self, tab: str, *, is_new: bool) -> dict[str, list[tuple[Path, Draft]]]:
+        """Return the drafts that a tab may have, by file: its own first, then the newest."""
+        found: dict[str, list[tuple[bool, float, Path, Draft]]] = {}
+        alive: dict[str, bool] = {self._server: True}
+        for path in self._folder.glob("*/*.json"):
+            parts = _NAME.fullmatch(path.name)
+            draft = Draft.of(path) if parts else None
+            if parts is None or draft is None:
+                continue
+            server, owner = parts.groups()
+            if server not in alive:
+                alive[server] = is_alive(self._lock_of(server))
+            is_own = owner == tab and (server == self._server or not alive[server])
+            is_lost = owner not in self._tabs if server == self._server else not alive[server]
+            if is_own or (is_lost and is_new):
+                found.setdefault(path.parent.name, []).append((is_own, draft.since, path, draft))
+        self._sweep_locks(alive)
+        return {
+            name: [(path, draft) for _, _, path, draft in sorted(each, key=_order, reverse=True)]
+            for name, each in found.items()
+        }
+
+    def _sweep_locks(self, alive: dict[str, bool]) -> None:
+        """Remove the locks of servers that ended and have no drafts."""
+        for path in self._folder.glob("*.alive"):
+            if path.stem not in alive and not is_alive(path):
+                with contextlib.suppress(OSError):
+                    path.unlink()
+
+    def _taken(self, path: Path, own: Path) -> bool:
+        """Make a draft this tab's; return whether no other server was faster."""
+        try:
+            self._live()
+            path.replace(own)
+        except FileNotFoundError:
+            return False
+        return True
+
+    def _keep(self, name: str, draft: Draft, why: Why) -> None:
+        self.versions.keep(name, draft.text.encode("utf-8", "replace"), why)
+
+    def _of(self, tab: str, name: str) -> Draft | None:
+        return self._texts.get((tab, name))
+
+    def _path(self, tab: str, name: str) -> Path:
+        return self._folder / name / f"{self._server}.{tab}.json"
+
+    def _lock_of(self, server: str) -> Path:
+        return self._folder / f"{server}.alive"
+
+    def _live(self) -> None:
+        """Take the lock that says that this server lives, before its first draft is there."""
+        if self._life is None:
+            self._life = LifeLock(self._lock_of(self._server))
+            about = self._folder / "folder.txt"  # for people who look for a text
+            with contextlib.suppress(OSError):
+                write_private(about, f"{self._scene_folder}\n".encode("utf-8", "replace"))
+
+
+def _order(found: tuple[bool, float, Path, Draft]) -> tuple[bool, float]:
+    return found[:2]
