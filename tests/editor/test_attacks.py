@@ -23,7 +23,7 @@ from distal.editor.local.files import SceneFiles
 from distal.editor.local.process import ChildProcess
 from distal.editor.local.scratch import RENDER, ScratchFolder, sweep
 from distal.editor.local.server import StudioServer
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from tests.editor.test_local_server import asked, connected, cookie_of, look, until
 
 pytest.importorskip("websockets")

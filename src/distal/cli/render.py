@@ -263,6 +263,7 @@ def render(
     from distal.cli.messages import say
     from distal.cli.preview import PreviewFile, described
     from distal.cli.report import picture_progress, stages
+    from distal.file_writer import name_beside
     from distal.images.picture import check_savable
     from distal.lang.render_options import LARGEST_SIDE_PX, RenderOptions
     from distal.scene.viewing.viewable import viewable
@@ -272,7 +273,7 @@ def render(
     suffix, _ = check_savable(output, bits)
     if transparent and suffix == ".jpg":
         raise UsageError("a JPEG has no transparency: -o FILE.png")
-    film = output.with_name(output.name + ".film")
+    film = name_beside(output, ".film")
     progress = picture_progress(shown_progress)
     preview = PreviewFile(output, bits, film, progress)
     paths = PathArguments(

@@ -21,7 +21,7 @@ import numpy as np
 
 from distal.devices.base import cancel_test
 from distal.devices.threads import usable_threads
-from distal.images.atomic_files import check_destination
+from distal.file_writer import check_destination
 from distal.images.picture import Picture
 from distal.lang.render_options import Cancel, RenderOptions, checked_samples, checked_size
 from distal.scene.steering import Steering

@@ -18,8 +18,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from distal.editor.local.state_folder import LifeLock, is_alive, state_folder, write_private
+from distal.editor.local.state_folder import state_folder, write_private
 from distal.editor.local.versions import Versions, Why, sweep
+from distal.file_writer.locks import is_over, process_name
 from distal.forking import new_lock
 
 # A text that was in the page for a second has been here for almost as long.
@@ -27,7 +28,10 @@ _STANDING_S: Final = 0.7
 # So long the socket of a page that was loaded again may take to end.
 _LEAVING_S: Final = 1.0
 _TICK_S: Final = 0.02
-_NAME: Final = re.compile(r"([0-9a-f]{12})\.([0-9a-f]{12})\.json")
+# The process (its file of locks and its token), the server in it, the tab.
+_NAME: Final = re.compile(r"([0-9a-f]{8})-([0-9a-f]{7})-([0-9a-f]{8})\.([0-9a-f]{12})\.json")
+
+_servers: Final[set[str]] = set()  # those of this process that have not ended
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +77,8 @@ class Drafts:
         self._folder = root / hashlib.sha256(str(folder).encode("utf-8", "replace")).hexdigest()
         self.versions = Versions(self._folder, clock)
         self._scene_folder, self._clock = folder, clock
-        self._server = secrets.token_hex(6)
-        self._life: LifeLock | None = None
+        self._server = secrets.token_hex(4)
+        _servers.add(self._server)
         self._tabs: set[str] = set()
         self._texts: dict[tuple[str, str], Draft] = {}  # by tab and name: what its file has
         self._lock = new_lock()
@@ -118,9 +122,7 @@ class Drafts:
         """End: all tabs are gone."""
         with self._lock:
             self._tabs.clear()
-            if self._life is not None:
-                self._life.release()
-                self._life = None
+            _servers.discard(self._server)
 
     # Texts
 
@@ -141,7 +143,7 @@ class Drafts:
             elif before is not None and now - before.since >= _STANDING_S:
                 self._keep(name, before, "typed")
             draft = Draft(text, base, since)
-            self._live()
+            self._say_whose()
             write_private(self._path(tab, name), draft.encoded())
             self._texts[tab, name] = draft
 
@@ -195,36 +197,25 @@ class Drafts:
     def _abandoned(self, tab: str, *, is_new: bool) -> dict[str, list[tuple[Path, Draft]]]:
         """Return the drafts that a tab may have, by file: its own first, then the newest."""
         found: dict[str, list[tuple[bool, float, Path, Draft]]] = {}
-        alive: dict[str, bool] = {self._server: True}
         for path in self._folder.glob("*/*.json"):
             parts = _NAME.fullmatch(path.name)
             draft = Draft.of(path) if parts else None
             if parts is None or draft is None:
                 continue
-            server, owner = parts.groups()
-            if server not in alive:
-                alive[server] = is_alive(self._lock_of(server))
-            is_own = owner == tab and (server == self._server or not alive[server])
-            is_lost = owner not in self._tabs if server == self._server else not alive[server]
-            if is_own or (is_lost and is_new):
+            lock_file, token, server, owner = parts.groups()
+            is_ours = server == self._server
+            is_gone = owner not in self._tabs if is_ours else _is_over(lock_file, token, server)
+            is_own = owner == tab and (is_ours or is_gone)
+            if is_own or (is_gone and is_new):
                 found.setdefault(path.parent.name, []).append((is_own, draft.since, path, draft))
-        self._sweep_locks(alive)
         return {
             name: [(path, draft) for _, _, path, draft in sorted(each, key=_order, reverse=True)]
             for name, each in found.items()
         }
 
-    def _sweep_locks(self, alive: dict[str, bool]) -> None:
-        """Remove the locks of servers that ended and have no drafts."""
-        for path in self._folder.glob("*.alive"):
-            if path.stem not in alive and not is_alive(path):
-                with contextlib.suppress(OSError):
-                    path.unlink()
-
     def _taken(self, path: Path, own: Path) -> bool:
         """Make a draft this tab's; return whether no other server was faster."""
         try:
-            self._live()
             path.replace(own)
         except FileNotFoundError:
             return False
@@ -237,18 +228,25 @@ class Drafts:
         return self._texts.get((tab, name))
 
     def _path(self, tab: str, name: str) -> Path:
-        return self._folder / name / f"{self._server}.{tab}.json"
+        process = "-".join(process_name())
+        return self._folder / name / f"{process}-{self._server}.{tab}.json"
 
-    def _lock_of(self, server: str) -> Path:
-        return self._folder / f"{server}.alive"
-
-    def _live(self) -> None:
-        """Take the lock that says that this server lives, before its first draft is there."""
-        if self._life is None:
-            self._life = LifeLock(self._lock_of(self._server))
-            about = self._folder / "folder.txt"  # for people who look for a text
+    def _say_whose(self) -> None:
+        """Write the name of the scene's folder, for people who look for a text."""
+        about = self._folder / "folder.txt"
+        if not about.exists():
             with contextlib.suppress(OSError):
                 write_private(about, f"{self._scene_folder}\n".encode("utf-8", "replace"))
+
+
+def _is_over(lock_file: str, token: str, server: str) -> bool:
+    """Whether a server has ended.
+
+    One of another machine may live; to take its draft loses nothing, since it writes it again.
+    """
+    if (lock_file, token) == process_name():
+        return server not in _servers
+    return is_over(lock_file, token) is not False
 
 
 def _order(found: tuple[bool, float, Path, Draft]) -> tuple[bool, float]:

@@ -16,12 +16,12 @@ from pathlib import Path
 
 from distal.diagnostics import LoadError
 from distal.editor.local.drafts import Drafts
-from distal.editor.local.source_file import NO_FILE, UNREADABLE, SourceFile, digest_of, plain
+from distal.editor.local.source_file import NO_FILE, UNREADABLE, SourceFile, plain
 from distal.editor.local.versions import Why
 from distal.editor.messages import Changed, DiskProblem, Saved
 from distal.editor.scene_folder import check_name
 from distal.forking import new_lock
-from distal.images.atomic_files import replacement
+from distal.file_writer import ChangedError, LinkedError, digest_of, save
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,12 +200,24 @@ class SceneFiles:
             if there.digest != (digest or NO_FILE):
                 return self._conflict(name, there)
             data = there.encoded(name, text)
-            with replacement(path) as file:
-                file.write(data)
+            try:
+                written = save(path, data, expected=there.digest, in_place=in_place)
+            except ChangedError:  # since it was read above
+                return self._conflict(name, self._file(name))
+            except LinkedError as error:
+                return self._conflict(name, there, refusal=str(error))
             # Not read again: what another program has written since then would be taken for ours.
             self._observe(name, self._written(path, there, data), "saved")
             self._told[name] = self._known[name].state
-            return Saved(digest=digest_of(data), unkept=self.unkept, order=self._order)
+            other = written.other
+            if other is not None:
+                self._keep(name, other, "other")
+            return Saved(
+                digest=written.digest,
+                other=None if other is None else version_text(other),
+                unkept=self.unkept,
+                order=self._order,
+            )
 
     def _written(self, path: Path, before: SourceFile, data: bytes) -> SourceFile:
         inode = 0
@@ -216,14 +228,16 @@ class SceneFiles:
             before, text=text, digest=digest_of(data), data=data, problem="", inode=inode
         )
 
-    def _conflict(self, name: str, there: SourceFile) -> Saved:
+    def _conflict(self, name: str, there: SourceFile, refusal: str = "") -> Saved:
+        self._observe(name, there)
         known = self._known.get(name)
         problem = (known.now.problem if known is not None else "") or there.problem
         return Saved(
             digest=there.digest,
             is_saved=False,
-            conflict=None if problem else there.text,
-            problem=problem,
+            conflict=None if problem or refusal else there.text,
+            problem="" if refusal else problem,
+            refusal=refusal,
             order=self._order,
         )
 

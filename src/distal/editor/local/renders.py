@@ -38,8 +38,8 @@ from distal.editor.messages import (
     RenderRequest,
 )
 from distal.editor.scene_folder import check_name, encoded_text, link_beside
+from distal.file_writer import SaveError, replacement
 from distal.forking import new_lock
-from distal.images.atomic_files import SaveError, replacement
 from distal.lang.lazy_module import LazyModule
 from distal.lang.progress_lines import KEY, LOADING, STAGES
 

@@ -7,7 +7,6 @@ the line ends that the file had. Needs the standard library alone.
 from __future__ import annotations
 
 import errno
-import hashlib
 import os
 import stat
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from typing import Final
 
 from distal.diagnostics import LoadError
 from distal.editor.scene_folder import encoded_text
+from distal.file_writer import digest_of
 
 LONGEST_FILE: Final = 8_000_000  # bytes of a file that is shown or saved
 NO_FILE: Final = ""  # the digest of a file that is not there
@@ -86,11 +86,6 @@ class SourceFile:
 def plain(text: str) -> str:
     """Return a text without byte order mark, whose lines end by a newline alone."""
     return text.removeprefix(_BOM).replace("\r\n", "\n").replace("\r", "\n")
-
-
-def digest_of(data: bytes) -> str:
-    """Return a short name of some bytes."""
-    return hashlib.sha256(data).hexdigest()[:16]
 
 
 def _opened(path: str, flags: int) -> int:

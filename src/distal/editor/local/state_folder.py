@@ -1,30 +1,17 @@
-"""Where the studio keeps what outlives it: a private folder of the user, and locks of processes.
+"""Files that outlive the studio, in a private folder of its user.
 
-Input: nothing, or the folder that ``DISTAL_STATE_DIR`` names. Output: paths, files of mode 0600 in
-folders of mode 0700. A file in it is complete or not there. Uses ``platformdirs``.
+Input: nothing, or a path and bytes. Output: the folder; files of mode 0600 in folders of mode 0700,
+each complete or not there. Uses ``platformdirs``.
 """
 
 from __future__ import annotations
 
 import contextlib
 import os
-import secrets
-import sys
-import time
 from pathlib import Path
-from typing import Final
 
+from distal.file_writer.temporary import create, remove_leftovers, temporary_path
 from distal.packages import imported
-
-if sys.platform == "win32":
-    import msvcrt
-else:
-    import fcntl
-
-FOLDER_VARIABLE: Final = "DISTAL_STATE_DIR"
-TEMPORARY: Final = ".tmp"  # what the name of an unfinished file ends in
-_PATIENCE_S: Final = 1.0  # so long another process may look whether a lock is free
-_TICK_S: Final = 0.01
 
 
 def state_folder() -> Path:
@@ -33,22 +20,19 @@ def state_folder() -> Path:
     Raises:
         PackageError: ``platformdirs`` is not installed.
     """
-    chosen = os.environ.get(FOLDER_VARIABLE, "")
-    if chosen:
-        return Path(chosen)
-    found: Path = imported("platformdirs").user_state_path("distal", appauthor=False)
-    return found
+    folder: Path = imported("platformdirs").user_state_path("distal", appauthor=False)
+    return folder
 
 
 def make_private(folder: Path) -> None:
-    """Make a folder, and those above it, which nobody else may enter.
+    """Make a folder, and those above it that are missing, which nobody else may enter.
 
     Raises:
         OSError: It cannot be made.
     """
     for path in (*reversed(folder.parents), folder):
-        with contextlib.suppress(FileExistsError):
-            if not path.is_dir():
+        if not path.is_dir():
+            with contextlib.suppress(FileExistsError):  # made in this moment
                 path.mkdir(mode=0o700)
 
 
@@ -56,71 +40,18 @@ def write_private(path: Path, data: bytes) -> None:
     """Write a file that only the user may read, completely or not at all.
 
     Raises:
-        OSError: It cannot be written.
+        OSError: It cannot be written; what was there stays.
     """
     make_private(path.parent)
-    temporary = path.with_name(f".{secrets.token_hex(8)}{TEMPORARY}")
+    remove_leftovers(path.parent)
+    temporary = temporary_path(path.parent)
     try:
-        flags = os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0)
-        with os.fdopen(os.open(temporary, flags, 0o600), "wb") as file:
+        with os.fdopen(create(temporary, 0o600), "wb") as file:
             file.write(data)
             file.flush()
-            with contextlib.suppress(OSError):  # some file systems have no fsync
+            with contextlib.suppress(OSError):  # a file system that cannot flush
                 os.fsync(file.fileno())
         os.replace(temporary, path)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            temporary.unlink()
-        raise
-
-
-class LifeLock:
-    """A lock that is taken while its process lives.
-
-    Args:
-        path: The file; it is made.
-
-    Raises:
-        OSError: It cannot be made.
-    """
-
-    def __init__(self, path: Path) -> None:
-        make_private(path.parent)
-        self.path = path
-        self._file = os.open(path, os.O_CREAT | os.O_RDWR, 0o600)
-        end = time.monotonic() + _PATIENCE_S
-        while not _is_taken_by_us(self._file) and time.monotonic() < end:
-            time.sleep(_TICK_S)
-
-    def release(self) -> None:
-        """Give it back; the file goes."""
-        with contextlib.suppress(OSError):
-            os.close(self._file)
-        with contextlib.suppress(OSError):
-            self.path.unlink()
-
-
-def is_alive(path: Path) -> bool:
-    """Whether a process has the lock of a file."""
-    try:
-        file = os.open(path, os.O_RDWR)
-    except FileNotFoundError:
-        return False
-    except OSError:
-        return True
-    try:
-        return not _is_taken_by_us(file)
     finally:
-        os.close(file)
-
-
-def _is_taken_by_us(file: int) -> bool:
-    """Take the lock of an open file; return whether it was free."""
-    try:
-        if sys.platform == "win32":
-            msvcrt.locking(file, msvcrt.LK_NBLCK, 1)
-        else:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        return False
-    return True
+        with contextlib.suppress(OSError):  # after success it no longer exists
+            temporary.unlink()

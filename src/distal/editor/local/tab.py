@@ -41,8 +41,8 @@ from distal.editor.messages import (
     encoded,
     parsed,
 )
+from distal.file_writer import SaveError
 from distal.forking import new_lock
-from distal.images.atomic_files import SaveError
 
 # Seconds that the author's code has, and that a compilation, a check or an export has after it.
 CODE_S: Final = 5.0

@@ -17,7 +17,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final, Literal, TypeAlias
 
-from distal.editor.local.state_folder import TEMPORARY, write_private
+from distal.editor.local.state_folder import write_private
 
 MOST: Final = 50  # of a file
 RECENT: Final = 10  # that are kept however close they are
@@ -158,11 +158,7 @@ def _least(versions: Sequence[Version]) -> Version:
 
 
 def sweep(root: Path, most: int = MOST_BYTES_IN_ALL) -> None:
-    """Remove what killed servers have not finished, and the oldest versions above some bytes."""
-    for path in (*root.glob(f"*/.*{TEMPORARY}"), *root.glob(f"*/**/.*{TEMPORARY}")):
-        with contextlib.suppress(OSError):
-            if time.time() - path.stat().st_mtime > _HOUR_S:
-                path.unlink()
+    """Remove the oldest versions of all folders until they have no more than some bytes."""
     found = [Version.of(path) for path in root.glob("*/*/versions/*.py")]
     versions = sorted(filter(None, found), key=lambda one: one.path.name)
     size = sum(version.size for version in versions)

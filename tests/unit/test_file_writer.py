@@ -5,7 +5,7 @@ import stat
 
 import pytest
 
-from distal.images.atomic_files import SaveError, replacement
+from distal.file_writer import SaveError, replacement
 
 
 def write(path, data=b"new"):
