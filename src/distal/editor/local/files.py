@@ -20,8 +20,8 @@ from distal.editor.local.source_file import NO_FILE, UNREADABLE, SourceFile, pla
 from distal.editor.local.versions import Why
 from distal.editor.messages import Changed, DiskProblem, Saved
 from distal.editor.scene_folder import check_name
-from distal.forking import new_lock
 from distal.file_writer import ChangedError, LinkedError, digest_of, save
+from distal.forking import new_lock
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,7 +57,7 @@ class SourceFile:
             about = "is a link to a file that is not there" if is_link else "is not there"
             return cls("", UNREADABLE if is_link else NO_FILE, problem=about)
         except OSError as error:
-            if path.is_dir():
+            if os.path.isdir(path):
                 return cls("", UNREADABLE, problem="is a folder")
             return cls("", UNREADABLE, problem=f"cannot be read: {error.strerror}")
         if len(data) > LONGEST_FILE:
