@@ -111,13 +111,13 @@ export class Looking {
   }
 
   async #lookOn(): Promise<void> {
-    const { client, costs, page, picture, texts, turning } = this.studio;
-    if (this.#isBusy || this.isStopped || !this.ready || turning.isOn) return;
+    const { client, costs, keeping, page, picture, texts, turning } = this.studio;
+    if (this.#isBusy || this.isStopped || !this.ready || turning.isOn || !texts.names.length) return;
     this.#isBusy = true;
     while (this.#done !== this.#wanted && !this.isStopped && !turning.isOn) {
       const wanted = this.#wanted;
       const { revision } = texts;
-      for (const name of texts.names) texts.keepDraft(name);
+      keeping.keep();
       page.work.textContent = "…";
       const answer = await client.ask({ kind: "look", ...this.source, guided: false });
       this.#done = wanted;
@@ -256,12 +256,9 @@ export class Looking {
   }
 
   connected(isOpen: boolean): void {
-    const { page, settings, turning } = this.studio;
-    if (isOpen) return page.tell(null);
+    if (isOpen) return;
     this.ready = null;
-    turning.drop();
-    if (settings.python) return;
-    page.tell("The studio's server has ended; your text is kept in this browser.");
+    this.studio.turning.drop();
   }
 }
 
