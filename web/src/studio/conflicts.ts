@@ -75,7 +75,7 @@ export class Conflicts {
       return page.tell(`${name} is not saved: what is there now ${problem}.`, ["Close", () => {}]);
     }
     const buttons = this.#choices(name, digest, text);
-    const about = text === null ? explained(digest) : "Nothing is overwritten yet. Undo brings either text back.";
+    const about = text === null ? explained(digest) : "Nothing is overwritten yet. The text that you leave is kept among the versions.";
     const dialog = sheet(
       text === null ? `${name} ${problem}` : `${name} is another text on the disk`,
       make("p", { role: "status" }, `${again}${about}`),
