@@ -315,9 +315,14 @@ class Studio:
         page.keep()
 
     def save(self, page: Page) -> None:
-        """Save; now and then another program saves between the check and the rename."""
+        """Save; now and then another program saves before it, or while it is written."""
+        chance = self.random.random()
+        if chance < 0.15 and self.file.is_file():
+            self.outside()  # which nobody has told the page
+            self.owed.setdefault(self.file.read_text(), "on the disk")
         before = self.file.read_text() if self.file.is_file() else None
-        with raced(self.outside if self.random.random() < 0.25 else None) as others:
+        moment = "before" if chance > 0.85 else "after" if chance > 0.7 else ""
+        with raced(self.outside, moment) as others:
             text = page.text
             answer = page.ask("save", file=NAME, text=text, digest=page.base[0] or None)
         for other in others:
@@ -331,6 +336,7 @@ class Studio:
             self.owe_disk()
             return
         assert before is None or before in page.agreed, f"{before!r} was overwritten; {self.steps}"
+        assert not others or result["other"] == others[0], "the page is not told of the other text"
         assert self.file.read_text() == text
         page.base = (result["digest"], text)
         if result["order"] >= page.disk[2]:
@@ -412,23 +418,28 @@ class Studio:
 
 
 class raced:  # noqa: N801 (a context)
-    """Lets another program save after the writer's last look at the file, before its rename."""
+    """Lets another program save at a moment of the writer: before or after its last look."""
 
-    def __init__(self, act: Callable[[], None] | None) -> None:
-        self.act, self.others = act, list[str]()
+    def __init__(self, act: Callable[[], None], moment: str) -> None:
+        self.act, self.moment, self.others = act, moment, list[str]()
 
     def __enter__(self) -> list[str]:
         self.checked = checked = writing._checked
 
-        def after_check(path: Path, target: Path, expected: Any) -> None:
+        def look(path: Path, target: Path, expected: Any) -> None:
+            if self.moment == "before" and expected:
+                self.save(target)
             checked(path, target, expected)
-            if self.act is not None and expected and Path(target).is_file():
-                act, self.act = self.act, None
-                act()
-                self.others.append(Path(target).read_text())
+            if self.moment == "after" and expected:
+                self.save(target)
 
-        writing._checked = after_check  # type: ignore[assignment]
+        writing._checked = look  # type: ignore[assignment]
         return self.others
+
+    def save(self, target: Path) -> None:
+        self.moment = ""
+        self.act()
+        self.others.append(target.read_text())
 
     def __exit__(self, *_: object) -> None:
         writing._checked = self.checked
