@@ -20,7 +20,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from distal.editor.local import drafts as drafts_module
 from distal.editor.local.drafts import Draft, Drafts
 from distal.editor.local.files import SceneFiles
 from distal.editor.local.tab import StudioTab
@@ -190,7 +189,10 @@ class Studio:
         page.disk = (*page.disk[:2], -1)
         page.sent(encoded(self.files.all()))
         page.session = StudioTab(
-            self.files, page.sent, saved=saved, start=SilentWorker  # type: ignore[arg-type]
+            self.files,
+            page.sent,
+            saved=saved,
+            start=SilentWorker,  # type: ignore[arg-type]
         )
         is_new = page.text is None
         greeted = page.ask("hello", tab=page.tab, is_new=is_new)["result"]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import ast
 import contextlib
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -99,18 +99,16 @@ class SceneFiles:
         with self._lock:
             return self._message(list(self._known))
 
-    def include(self, name: str) -> None:
-        """Show a file, too: one that a draft is of.
-
-        Raises:
-            LoadError: There is no such name.
-        """
-        path = self._path_of(name)
+    def included(self, names: Iterable[str]) -> Changed | None:
+        """Show more files, of which there are drafts; return those that are not known yet."""
         with self._lock:
-            if name not in self._known:
-                now = SourceFile.of(path)
-                blank = SourceFile("", NO_FILE)
-                self._known[name] = _Known(blank if now.problem else now, now)
+            new = [name for name in names if name not in self._known]
+            for name in new:
+                now = self._file(name)
+                self._known[name] = _Known(SourceFile("", NO_FILE) if now.problem else now, now)
+                self._keep(name, now.data, "opened")
+            self._told.update({name: self._known[name].state for name in new})
+            return self._message(new) if new else None
 
     @property
     def is_new(self) -> bool:

@@ -42,16 +42,17 @@ class TabKeeping:
         self._files = files
         self._tab = ""
 
-    def answered(self, request: Request) -> Message:
-        """Return the answer to a request."""
+    def answered(self, request: Request) -> list[Message]:
+        """Return the answer to a request, after what the app must know before it."""
+        self._before: list[Message] = []
         try:
             if not isinstance(request, HelloRequest):
                 check_name(request.file)
             result = self._result(request)
         except (LoadError, OSError) as error:
             reason = error.reason if isinstance(error, LoadError) else _reason(error)
-            return refusal(request.id, request.revision, reason)
-        return Answer(**request.numbers, request=request.kind, result=result)
+            return [refusal(request.id, request.revision, reason)]
+        return [*self._before, Answer(**request.numbers, request=request.kind, result=result)]
 
     def end(self) -> None:
         """Note that the tab is gone."""
@@ -92,6 +93,9 @@ class TabKeeping:
                     drafts.put(tab, name, text, "")
         except OSError as error:
             unkept = _reason(error)
+        changed = self._files.included(offered)
+        if changed is not None:
+            self._before.append(changed)
         texts = {n: UnsavedText(text=draft.text, digest=draft.base) for n, draft in offered.items()}
         return Greeted(tab=tab, drafts=texts, others=tuple(others), unkept=unkept)
 

@@ -101,7 +101,8 @@ class StudioTab:
         if isinstance(request, SaveRequest):
             self._tell(self._saved(request))
         elif isinstance(request, HelloRequest | DraftRequest | VersionsRequest | VersionRequest):
-            self._tell(self._keeping.answered(request))
+            for message in self._keeping.answered(request):
+                self._tell(message)
         elif isinstance(request, RenderRequest | CommandRequest | ChoicesRequest | CancelRequest):
             self._render(request)
         elif isinstance(request, AppRequest) and not isinstance(request, StopRequest):
