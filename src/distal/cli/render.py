@@ -306,7 +306,8 @@ def render(
         picture = rendered_picture(seen, arguments, wanted, options)
     rendered = time.perf_counter()
     picture.save(output, bits)
-    paths.forget()
+    if picture.provenance.mode == "path":
+        paths.forget()
     figures = {
         "load_s": loaded - begin,
         **dict.fromkeys(("compile_s", "render_s", "cache_hit", "lanes", "threads")),

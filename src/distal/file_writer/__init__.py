@@ -9,13 +9,14 @@ from distal.file_writer.destinations import (
     ChangedError,
     LinkedError,
     SaveError,
+    TakenError,
     check_destination,
     name_beside,
 )
 from distal.file_writer.writing import (
     ANY,
-    Anything,
-    Written,
+    SavedBytes,
+    Unchecked,
     digest_of,
     move_into_place,
     replacement,
@@ -24,11 +25,12 @@ from distal.file_writer.writing import (
 
 __all__ = [
     "ANY",
-    "Anything",
     "ChangedError",
     "LinkedError",
     "SaveError",
-    "Written",
+    "SavedBytes",
+    "TakenError",
+    "Unchecked",
     "check_destination",
     "digest_of",
     "move_into_place",

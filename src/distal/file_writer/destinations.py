@@ -33,6 +33,13 @@ class ChangedError(SaveError):
         self.digest, self.data = digest, data
 
 
+class TakenError(SaveError):
+    """There is a file already where a new one was to be made; nothing was written."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(f"cannot write {path}: it is there already")
+
+
 class LinkedError(SaveError):
     """The file has several names (hard links), of which replacing it would change only one.
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 import hashlib
 import os
 import secrets
-import socket
 import stat
 import sys
 import time
@@ -54,7 +53,7 @@ class _LockFile:
     def __init__(self, handle: int) -> None:
         self._handle = handle
         info = os.fstat(handle)
-        parts = (socket.gethostname(), info.st_dev, info.st_ino)
+        parts = (_machine(), info.st_dev, info.st_ino)
         self.name = hashlib.sha256(repr(parts).encode()).hexdigest()[:8]
 
     def take(self, place: int) -> bool:
@@ -223,6 +222,10 @@ def _state_folder() -> Path | None:
     except (RuntimeError, OSError, ValueError):
         return None
     return folder / "distal"
+
+
+def _machine() -> str:
+    return os.uname().nodename if hasattr(os, "uname") else os.environ.get("COMPUTERNAME", "")
 
 
 def _windows(handle: int, place: int, *, is_taken: bool) -> None:

@@ -24,6 +24,7 @@ from distal.file_writer.destinations import (
     ChangedError,
     LinkedError,
     SaveError,
+    TakenError,
     destination,
     reason,
     state,
@@ -41,17 +42,17 @@ _AT_REST_S: Final = 0.05
 _LONGEST_REST_S: Final = 2.0
 
 
-class Anything(Enum):
+class Unchecked(Enum):
     """The type of ``ANY``."""
 
     ANY = "any"
 
 
-ANY: Final = Anything.ANY
+ANY: Final = Unchecked.ANY
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
+class SavedBytes:
     """What a save has written.
 
     Attributes:
@@ -73,9 +74,9 @@ def save(
     path: Path,
     data: bytes,
     *,
-    expected: str | Literal[Anything.ANY] | None = ANY,
+    expected: str | Literal[Unchecked.ANY] | None = ANY,
     in_place: bool = False,
-) -> Written:
+) -> SavedBytes:
     """Write a file, unless it is not what the caller expects.
 
     Of several processes of a user that save with the same expectation one succeeds. What another
@@ -101,7 +102,7 @@ def save(
             with locked(target):
                 _checked(path, target, expected)
                 _write_into(target, data)
-            return Written(digest)
+            return SavedBytes(digest)
         if expected is not ANY and expected:
             _check_names(path, target)
         with _temporary(target) as (temporary, file):
@@ -109,7 +110,7 @@ def save(
             _finish(file, target)
             with locked(target):
                 other = _put(path, temporary, target, expected)
-    return Written(digest, other)
+    return SavedBytes(digest, None if other == data else other)
 
 
 @contextmanager
@@ -126,21 +127,23 @@ def replacement(path: Path, *, in_place: bool = False, new: bool = False) -> Ite
         new: Nothing may be there.
 
     Raises:
-        ChangedError: There is a file, and ``new`` is set.
+        TakenError: There is a file, and ``new`` is set.
         SaveError: The file system reports an error.
     """
     target = destination(path)
     with _one_line(path):
-        if new:
-            _checked(path, target, None)
+        if new and state(target) is not None:
+            raise TakenError(path)
         with _temporary(target) as (temporary, file):
             yield file
             _finish(file, target)
             with locked(target):
-                if in_place and state(target) is not None and not new:
+                if new:
+                    _appear(path, temporary, target)
+                elif in_place and state(target) is not None:
                     _write_into(target, temporary.read_bytes())
                 else:
-                    _put(path, temporary, target, None if new else ANY)
+                    _put(path, temporary, target, ANY)
 
 
 def move_into_place(temporary: Path, path: Path) -> None:
@@ -222,7 +225,7 @@ def _keep_owner(handle: int, target: Path, info: os.stat_result) -> None:
     mode = info.st_mode & 0o777  # as after writing into a file: no program runs as another user
     is_group_kept = os.fstat(handle).st_gid == info.st_gid
     if not is_group_kept:
-        mode &= 0o707 | (mode & 0o7) << 3  # another group may do what everybody may do
+        mode &= 0o707 | (mode & 0o7) << 3  # another group may do no more than everybody
     with suppress(OSError):  # a file system without modes
         os.fchmod(handle, mode)
     if not is_group_kept or not hasattr(os, "listxattr"):
@@ -262,12 +265,14 @@ def _read(target: Path) -> bytes | None:
         return None
     with os.fdopen(handle, "rb") as file:
         info = os.fstat(handle)
-        if not stat.S_ISREG(info.st_mode) or info.st_size > _LARGEST_COMPARED:
-            raise SaveError(f"cannot write {target}: another program has put something else there")
+        if not stat.S_ISREG(info.st_mode):
+            raise SaveError(f"cannot write {target}: it is no ordinary file")
+        if info.st_size > _LARGEST_COMPARED:
+            raise SaveError(f"cannot write {target}: there is a file of {info.st_size:,} bytes")
         return file.read()
 
 
-def _checked(path: Path, target: Path, expected: str | Literal[Anything.ANY] | None) -> None:
+def _checked(path: Path, target: Path, expected: str | Literal[Unchecked.ANY] | None) -> None:
     """Check that a file is what is expected.
 
     Raises:
@@ -282,7 +287,7 @@ def _checked(path: Path, target: Path, expected: str | Literal[Anything.ANY] | N
 
 
 def _put(
-    path: Path, temporary: Path, target: Path, expected: str | Literal[Anything.ANY] | None
+    path: Path, temporary: Path, target: Path, expected: str | Literal[Unchecked.ANY] | None
 ) -> bytes | None:
     """Rename a complete temporary file to its target; return what another program saved meanwhile.
 
@@ -307,7 +312,11 @@ def _put(
         return None
     _checked(path, target, expected)
     if not expected:
-        _appear(path, temporary, target)
+        try:
+            _appear(path, temporary, target)
+        except TakenError:
+            _checked(path, target, expected)
+            raise
         return None
     replaced: Path | None = temporary
     if not exchange(temporary, target):
@@ -320,7 +329,7 @@ def _appear(path: Path, temporary: Path, target: Path) -> None:
     """Rename a temporary file to a target where nothing may be.
 
     Raises:
-        ChangedError: There is something.
+        TakenError: There is something.
     """
     try:
         if os.name == "nt":
@@ -329,10 +338,10 @@ def _appear(path: Path, temporary: Path, target: Path) -> None:
             os.link(temporary, target)
             os.unlink(temporary)
     except FileExistsError:
-        _checked(path, target, None)
-        raise
+        raise TakenError(path) from None
     except OSError:  # no links in this file system
-        _checked(path, target, None)
+        if state(target) is not None:
+            raise TakenError(path) from None
         os.replace(temporary, target)
 
 
@@ -355,7 +364,8 @@ def _other(path: Path, replaced: Path | None, target: Path, expected: str) -> by
         if data is not None and digest_of(data) != expected:
             data = _at_rest(replaced)
     except (OSError, SaveError):
-        os.replace(replaced, target)  # nobody has seen it
+        if not exchange(replaced, target):  # nobody has seen it
+            os.replace(replaced, target)
         raise SaveError(f"cannot write {path}: another program is writing it") from None
     with suppress(OSError):
         replaced.unlink()

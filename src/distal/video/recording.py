@@ -244,6 +244,7 @@ class _RecordingJob:
     def _numbered(self) -> tuple[int, int]:
         make_folder(self.output.parent)
         frames = self._frames(self.output)
+        check_destination(frames.files[-1])
         rendered = self._write_frames(frames)
         return rendered, sum(file.stat().st_size for file in frames.files)
 
