@@ -118,6 +118,16 @@ def test_a_duplicated_tab_is_another_one(folder):
     assert second.greeted.tab != first.greeted.tab
 
 
+def test_a_page_that_connects_again_is_the_tab_that_it_was(folder):
+    files = server(folder)
+    first = Tab(files)
+    first.draft("mine\n")
+    again = Tab(files, before=first.greeted.tab, is_new=False)  # the first socket is not closed yet
+    assert again.greeted.tab == first.greeted.tab
+    first.keeping.end()
+    assert Tab(files).texts == {}  # the tab lives
+
+
 def test_a_page_that_connects_again_takes_no_draft_of_others(folder):
     files = server(folder)
     gone, alive = Tab(files), Tab(files)

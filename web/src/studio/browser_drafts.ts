@@ -13,6 +13,9 @@ interface Draft {
 }
 
 export class BrowserDrafts implements Keeping {
+  /** The files whose drafts are this tab's: those of others stay. */
+  #own = new Set<string>();
+
   constructor(
     readonly studio: Studio,
     readonly key: string,
@@ -25,8 +28,12 @@ export class BrowserDrafts implements Keeping {
     for (const name of texts.names) {
       const { text, base } = texts.state(name);
       try {
-        if (!texts.isChanged(name)) localStorage.removeItem(this.#keyOf(name));
-        else localStorage.setItem(this.#keyOf(name), JSON.stringify({ text, digest: base.digest } satisfies Draft));
+        if (!texts.isChanged(name)) {
+          if (this.#own.delete(name)) localStorage.removeItem(this.#keyOf(name));
+          continue;
+        }
+        this.#own.add(name);
+        localStorage.setItem(this.#keyOf(name), JSON.stringify({ text, digest: base.digest } satisfies Draft));
       } catch {
         // No storage, or a full one: the text is still in the editor.
       }

@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
+import os
 import re
 import secrets
 import time
@@ -74,12 +75,12 @@ class Drafts:
     """
 
     def __init__(self, root: Path, folder: Path, clock: Callable[[], float] = time.time) -> None:
-        self._folder = root / hashlib.sha256(str(folder).encode("utf-8", "replace")).hexdigest()
+        self._folder = root / hashlib.sha256(os.fsencode(folder)).hexdigest()
         self.versions = Versions(self._folder, clock)
         self._scene_folder, self._clock = folder, clock
         self._server = secrets.token_hex(4)
         _servers.add(self._server)
-        self._tabs: set[str] = set()
+        self._tabs: dict[str, object] = {}  # those that live, and what they belong to
         self._texts: dict[tuple[str, str], Draft] = {}  # by tab and name: what its file has
         self._lock = new_lock()
 
@@ -96,25 +97,31 @@ class Drafts:
 
     # Tabs
 
-    def entered(self, before: str = "") -> str:
+    def entered(self, owner: object, before: str = "", *, is_new: bool = True) -> str:
         """Return the name of a tab that opens: the one it had before, unless another tab has it.
 
         Args:
+            owner: Says in ``left`` that it is this one that goes.
             before: The name that the page remembers; a tab that was duplicated has the original's.
+            is_new: Whether the page has no texts yet; else it is the tab that had the name, whose
+                earlier connection has not ended.
         """
         end = time.monotonic() + _LEAVING_S
-        while before in self._tabs and time.monotonic() < end:
+        while is_new and before in self._tabs and time.monotonic() < end:
             time.sleep(_TICK_S)
         with self._lock:
-            is_good = re.fullmatch(r"[0-9a-f]{12}", before) and before not in self._tabs
-            tab = before if is_good else secrets.token_hex(6)
-            self._tabs.add(tab)
+            is_good = re.fullmatch(r"[0-9a-f]{12}", before)
+            is_free = before not in self._tabs or not is_new
+            tab = before if is_good and is_free else secrets.token_hex(6)
+            self._tabs[tab] = owner
         return tab
 
-    def left(self, tab: str) -> None:
+    def left(self, owner: object, tab: str) -> None:
         """Note that a tab is gone; its drafts wait for the next one."""
         with self._lock:
-            self._tabs.discard(tab)
+            if self._tabs.get(tab) is not owner:
+                return
+            del self._tabs[tab]
             for key in [key for key in self._texts if key[0] == tab]:
                 del self._texts[key]
 
@@ -236,7 +243,7 @@ class Drafts:
         about = self._folder / "folder.txt"
         if not about.exists():
             with contextlib.suppress(OSError):
-                write_private(about, f"{self._scene_folder}\n".encode("utf-8", "replace"))
+                write_private(about, os.fsencode(self._scene_folder) + b"\n")
 
 
 def _is_over(lock_file: str, token: str, server: str) -> bool:

@@ -268,7 +268,7 @@ class SceneFiles:
             text = known.last.text if file.problem and known is not None else file.text
             for beside in sorted(f"{module}.py" for module in _imported(text)):
                 path = self.folder / beside
-                if beside not in seen and path.is_file() and self._is_inside(path):
+                if beside not in seen and os.path.isfile(path) and self._is_inside(path):
                     seen.add(beside)
                     waiting.append(beside)
 

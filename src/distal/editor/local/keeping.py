@@ -58,7 +58,7 @@ class TabKeeping:
         """Note that the tab is gone."""
         drafts = self._files.drafts
         if drafts is not None and self._tab:
-            drafts.left(self._tab)
+            drafts.left(self, self._tab)
 
     def _result(self, request: Request) -> Greeted | Kept | VersionList | VersionText:
         drafts = self._files.drafts
@@ -81,8 +81,8 @@ class TabKeeping:
         if drafts is None:
             return Greeted(tab="", drafts={}, others=(), unkept=_NOWHERE)
         if self._tab:
-            drafts.left(self._tab)
-        self._tab = tab = drafts.entered(request.tab)
+            drafts.left(self, self._tab)
+        self._tab = tab = drafts.entered(self, request.tab, is_new=request.is_new)
         unkept, others = self._files.unkept, list[str]()
         offered: dict[str, Draft] = {}
         try:
@@ -102,7 +102,7 @@ class TabKeeping:
     def _kept(self, drafts: Drafts | None, request: DraftRequest) -> Kept:
         if drafts is None:
             return Kept(unkept=_NOWHERE)
-        self._tab = self._tab or drafts.entered()
+        self._tab = self._tab or drafts.entered(self)
         name, text = request.file, request.text
         try:
             if text is None:
