@@ -14,8 +14,8 @@ from tests.editor.studio_page import DESK, IDLE, SCENE, SLOW_MS, studio
 
 pytest.importorskip("websockets")
 
-BAR = "() => document.querySelector('.bar')"
-NO_BAR = "() => !document.querySelector('.bar')"
+BAR = "() => document.querySelector('.state-bar')"
+NO_BAR = "() => !document.querySelector('.state-bar')"
 STARTED = "() => window.studio?.editor.name"
 KEPT = "() => !sessionStorage.getItem('distal:unsent')"
 SERVER = """
@@ -41,7 +41,9 @@ def test_a_conflict_stays_until_a_person_has_chosen(tmp_path):
         theirs = f"# theirs\n{SCENE}"
         app.file.write_text(theirs)
         app.wait(BAR)
-        assert "scene.py was changed by another program" in app.page.locator(".bar").inner_text()
+        assert (
+            "scene.py was changed by another program" in app.page.locator(".state-bar").inner_text()
+        )
 
         # A save asks, and Cancel and Escape are no choice.
         for key in ("Cancel", "Escape"):
@@ -52,13 +54,13 @@ def test_a_conflict_stays_until_a_person_has_chosen(tmp_path):
             assert "# mine" in dialog.inner_text()
             app.page.keyboard.press("Escape") if key == "Escape" else press(app, key)
             assert app.file.read_text() == theirs
-            assert app.page.locator(".bar").is_visible()
+            assert app.page.locator(".state-bar").is_visible()
 
         # Another notice has its own place.
         app.page.evaluate("() => studio.page.tell('Something else', ['Close', () => {}])")
-        assert app.page.locator(".bar").is_visible()
+        assert app.page.locator(".state-bar").is_visible()
         app.page.evaluate("() => studio.page.tell(null)")
-        assert app.page.locator(".bar").is_visible()
+        assert app.page.locator(".state-bar").is_visible()
 
         # It is there after a reload, and the disk changes once more while the dialog is open.
         app.page.reload()
@@ -114,7 +116,7 @@ def test_keep_mine_and_take_the_other(tmp_path):
         # A file that is gone: its text stays, and is written again if one says so.
         app.file.rename(tmp_path / "moved.py")
         app.wait(BAR)
-        assert "scene.py was renamed to moved.py" in app.page.locator(".bar").inner_text()
+        assert "scene.py was renamed to moved.py" in app.page.locator(".state-bar").inner_text()
         app.page.keyboard.press("Control+s")
         app.page.locator("dialog.conflict").wait_for()
         assert not app.file.exists()
@@ -126,13 +128,13 @@ def test_keep_mine_and_take_the_other(tmp_path):
         # A folder in its place: why nothing is saved.
         app.file.unlink()
         app.file.mkdir()
-        app.wait("() => document.querySelector('.bar')?.textContent.includes('is a folder')")
+        app.wait("() => document.querySelector('.state-bar')?.textContent.includes('is a folder')")
         app.page.evaluate("() => studio.save()")
         assert "scene.py is not saved: what is there now is a folder" in (
             app.page.locator(".notice").inner_text()
         )
         app.file.rmdir()
-        app.wait("() => document.querySelector('.bar')?.textContent.includes('was deleted')")
+        app.wait("() => document.querySelector('.state-bar')?.textContent.includes('was deleted')")
         assert app.text == f"# mine\n{SCENE}"
 
 
@@ -148,7 +150,7 @@ def test_two_tabs_save_different_texts(tmp_path):
         press(second, "Overwrite the file")
         first.wait("() => studio.editor.view.state.doc.toString().startsWith('# b')")
         assert first.file.read_text() == f"# b\n{SCENE}"
-        assert first.page.locator(".bar").count() == 0
+        assert first.page.locator(".state-bar").count() == 0
 
 
 def test_two_tabs_have_drafts_of_their_own(tmp_path):
@@ -184,7 +186,8 @@ def started(tmp_path):
 
     def start():
         command = [sys.executable, "-c", SERVER, str(tmp_path / "scene.py")]
-        server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+        server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment)
         running.append(server)
         return server, server.stdout.readline().strip()
 
@@ -209,7 +212,7 @@ def test_unsaved_text_is_there_after_the_server_was_killed(tmp_path, started):
         page.wait_for_timeout(300)  # the last key is sent
         server.send_signal(signal.SIGKILL)
         server.wait()
-        page.locator(".bar", has_text="The studio's server has ended.").wait_for()
+        page.locator(".state-bar", has_text="The studio's server has ended.").wait_for()
         page.keyboard.type("# while it is away\n")
         page.wait_for_function("() => sessionStorage.getItem('distal:unsent')")
 

@@ -18,7 +18,7 @@ export class Page {
   readonly show = make("section", { className: "show", "aria-label": "Picture", tabIndex: -1 });
   readonly left = make("section", { className: "left", "aria-label": "Code", tabIndex: -1 });
   readonly notice = make("div", { className: "notice", role: "alert", hidden: true });
-  readonly bars = make("div", { className: "bars" });
+  readonly bars = make("div", { className: "state-bars" });
   readonly work = make("span", { className: "work" });
   readonly drawn = make("span", { className: "drawn" });
   readonly announcer = make("div", { className: "announcer", role: "status" });
@@ -81,7 +81,7 @@ export class Page {
     const old = bars.find((one) => one.dataset["key"] === key);
     if (text === null) return old?.remove();
     const buttons = actions.map(([label, onclick]) => make("button", { type: "button", onclick }, label));
-    const bar = make("div", { className: "bar", role: "alert" }, make("span", {}, text), ...buttons);
+    const bar = make("div", { className: "state-bar", role: "alert" }, make("span", {}, text), ...buttons);
     bar.dataset["key"] = key;
     if (old) old.replaceWith(bar);
     else this.bars.append(bar);
