@@ -212,7 +212,7 @@ def test_unsaved_text_is_there_after_the_server_was_killed(tmp_path, started):
         page.wait_for_timeout(300)  # the last key is sent
         server.send_signal(signal.SIGKILL)
         server.wait()
-        page.locator(".state-bar", has_text="The studio's server has ended.").wait_for()
+        page.locator(".state-bar", has_text="The studio's server is away.").wait_for()
         page.keyboard.type("# while it is away\n")
         page.wait_for_function("() => sessionStorage.getItem('distal:unsent')")
 

@@ -196,10 +196,11 @@ def test_what_cannot_be_kept_is_said_and_the_save_goes_on(folder):
     blocked.write_text("")
     files = server(folder, state=blocked / "state")
     tab = Tab(files)
-    assert tab.greeted.unkept == "Not a directory"
-    assert tab.draft("mine\n").startswith("Not a directory")
+    reason = f"Not a directory in {blocked / 'state'}"
+    assert tab.greeted.unkept == reason
+    assert tab.draft("mine\n") == reason
     saved = files.save("scene.py", "mine\n", DIGEST)
-    assert (saved.is_saved, saved.unkept) == (True, "Not a directory")
+    assert (saved.is_saved, saved.unkept) == (True, reason)
     assert (folder / "scene.py").read_text() == "mine\n"
 
 

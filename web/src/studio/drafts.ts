@@ -107,7 +107,7 @@ export class Drafts implements Keeping {
     this.keep();
     const { page } = this.studio;
     const where = this.#store() ? "in this tab, also when you reload it" : "in this page alone: leave it open";
-    page.bar("away", `The studio's server has ended. Unsaved text is kept ${where}. It goes to the server when that is back.`);
+    page.bar("away", `The studio's server is away. Unsaved text is kept ${where}; it goes to the server when that is back.`);
   }
 
   /** Keeps what the server does not have in the tab's storage; returns whether that was possible. */

@@ -110,13 +110,15 @@ export class Files {
   }
 
   async #saveAll(): Promise<void> {
-    const { conflicts, keeping, page, settings, tabs, texts } = this.studio;
+    const { conflicts, editor, keeping, page, settings, tabs, texts } = this.studio;
     keeping.keep();
     if (settings.python) {
       page.announcer.textContent = "Kept in this browser";
       return;
     }
-    for (const name of texts.names.filter((one) => texts.isChanged(one))) {
+    // What was deleted is asked about where one sees it, and not at each save of another file.
+    const isMeant = (name: string) => texts.hasOwn(name) || (texts.isChanged(name) && name === editor.name);
+    for (const name of texts.names.filter(isMeant)) {
       const isSaved = await this.#saveOne(name);
       tabs.fill();
       conflicts.show();

@@ -30,6 +30,11 @@ export class Texts {
     return state.kindOf(this.state(name)) !== "same";
   }
 
+  /** Whether the page has a text that was not on the disk. */
+  hasOwn(name: string): boolean {
+    return ["mine", "both"].includes(state.kindOf(this.state(name)));
+  }
+
   /** Whether the disk has another text than the one that the page's began with. */
   isOpen(name: string): boolean {
     return state.isOpen(this.state(name));
@@ -38,6 +43,13 @@ export class Texts {
   /** A file that was not there yet, as the disk has it; without a digest it is not on the disk. */
   take(name: string, text: string, digest: string, order = 0): void {
     this.#become(name, state.begun(text, digest, order));
+  }
+
+  /** Other texts take the place of all. */
+  begin(files: Record<string, string>): void {
+    this.#states = new Map(Object.entries(files).map(([name, text]) => [name, state.begun(text, "begun")]));
+    this.#now = { ...files };
+    this.revision += 1;
   }
 
   seen(name: string, disk: Disk): void {

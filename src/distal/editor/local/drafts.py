@@ -75,6 +75,7 @@ class Drafts:
     """
 
     def __init__(self, root: Path, folder: Path, clock: Callable[[], float] = time.time) -> None:
+        self.root = root
         self._folder = root / hashlib.sha256(os.fsencode(folder)).hexdigest()
         self.versions = Versions(self._folder, clock)
         self._scene_folder, self._clock = folder, clock
@@ -94,6 +95,10 @@ class Drafts:
         root = state_folder() / "drafts"
         sweep(root)
         return cls(root, folder)
+
+    def reason(self, error: OSError) -> str:
+        """Return why something cannot be kept, for people."""
+        return f"{error.strerror or error} in {self.root}"
 
     # Tabs
 

@@ -143,7 +143,7 @@ class SceneFiles:
             self.drafts.versions.keep(name, data, why)
             self.unkept = ""
         except OSError as error:
-            self.unkept = error.strerror or str(error)
+            self.unkept = self.drafts.reason(error)
 
     def _observe(self, name: str, now: SourceFile, why: Why = "other") -> None:
         """Note what is on the disk now."""

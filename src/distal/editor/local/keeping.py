@@ -50,7 +50,7 @@ class TabKeeping:
                 check_name(request.file)
             result = self._result(request)
         except (LoadError, OSError) as error:
-            reason = error.reason if isinstance(error, LoadError) else _reason(error)
+            reason = error.reason if isinstance(error, LoadError) else str(error)
             return [refusal(request.id, request.revision, reason)]
         return [*self._before, Answer(**request.numbers, request=request.kind, result=result)]
 
@@ -92,7 +92,7 @@ class TabKeeping:
                     offered[name] = Draft(text, "", 0.0)
                     drafts.put(tab, name, text, "")
         except OSError as error:
-            unkept = _reason(error)
+            unkept = drafts.reason(error)
         changed = self._files.included(offered)
         if changed is not None:
             self._before.append(changed)
@@ -112,7 +112,7 @@ class TabKeeping:
             else:
                 drafts.put(self._tab, name, text, request.digest)
         except OSError as error:
-            return Kept(unkept=_reason(error))
+            return Kept(unkept=drafts.reason(error))
         return Kept()
 
 
@@ -120,8 +120,3 @@ def refusal(id: int, revision: int, text: str) -> Mistakes:
     """Return the answer to what cannot be done."""
     mistakes = (Mistake(severity="error", message=text),)
     return Mistakes(id=id, revision=revision, mistakes=mistakes)
-
-
-def _reason(error: OSError) -> str:
-    where = f" ({error.filename})" if error.filename else ""
-    return f"{error.strerror or error}{where}"
