@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Final
 
 from distal.editor.local.state_folder import state_folder, write_private
-from distal.editor.local.versions import Versions, Why, sweep
+from distal.editor.local.versions import FileVersions, Why, sweep
 from distal.file_writer.locks import is_over, process_name
 from distal.forking import new_lock
 
@@ -77,7 +77,7 @@ class Drafts:
     def __init__(self, root: Path, folder: Path, clock: Callable[[], float] = time.time) -> None:
         self.root = root
         self._folder = root / hashlib.sha256(os.fsencode(folder)).hexdigest()
-        self.versions = Versions(self._folder, clock)
+        self.versions = FileVersions(self._folder, clock)
         self._scene_folder, self._clock = folder, clock
         self._server = secrets.token_hex(4)
         _servers.add(self._server)
