@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
-import sys
 
 import pytest
 
 from tests.browser import kept_page
+from tests.editor.keeping_in_browser import end, start
 from tests.editor.studio_page import DESK, IDLE, SCENE, SLOW_MS, studio
 
 pytest.importorskip("websockets")
@@ -18,15 +17,6 @@ BAR = "() => document.querySelector('.state-bar')"
 NO_BAR = "() => !document.querySelector('.state-bar')"
 STARTED = "() => window.studio?.editor.name"
 KEPT = "() => !sessionStorage.getItem('distal:unsent')"
-SERVER = """
-import sys
-from pathlib import Path
-from distal.editor.local.files import SceneFiles
-from distal.editor.local.server import StudioServer
-server = StudioServer(SceneFiles(Path(sys.argv[1])), limit=60.0)
-print(server.address, flush=True)
-server.serve()
-"""
 
 
 def press(app, name):
@@ -184,18 +174,13 @@ def started(tmp_path):
     """Starts servers as processes of their own; gives the process and its address."""
     running = []
 
-    def start():
-        command = [sys.executable, "-c", SERVER, str(tmp_path / "scene.py")]
-        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-        server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment)
-        running.append(server)
-        return server, server.stdout.readline().strip()
+    def begin():
+        running.append(start(tmp_path / "scene.py"))
+        return running[-1]
 
-    yield start
-    for server in running:
-        server.kill()
-        server.wait()
-        server.stdout.close()
+    yield begin
+    for server, _ in running:
+        end(server)
 
 
 def test_unsaved_text_is_there_after_the_server_was_killed(tmp_path, started):

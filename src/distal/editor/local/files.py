@@ -80,7 +80,7 @@ class SceneFiles:
     # Reading
 
     def read(self) -> Changed | None:
-        """Read the files again; return what has changed since then, or None.
+        """Read the files again; return what has changed since the last call, or None.
 
         Of a file that is gone, or has no text, the last text stays.
         """
