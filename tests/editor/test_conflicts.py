@@ -7,6 +7,7 @@ import signal
 
 import pytest
 
+from tests.accessibility import needs_axe, violations
 from tests.browser import kept_page
 from tests.editor.keeping_in_browser import end, start
 from tests.editor.studio_page import DESK, IDLE, SCENE, SLOW_MS, studio
@@ -23,6 +24,7 @@ def press(app, name):
     app.page.get_by_role("button", name=name, exact=True).click()
 
 
+@needs_axe
 def test_a_conflict_stays_until_a_person_has_chosen(tmp_path):
     with studio(tmp_path) as app:
         app.page.evaluate("() => studio.editor.goTo(1)")
@@ -41,6 +43,7 @@ def test_a_conflict_stays_until_a_person_has_chosen(tmp_path):
             dialog = app.page.locator("dialog.conflict")
             dialog.wait_for()
             assert "# theirs" in dialog.inner_text()
+            assert violations(app.page) == []
             assert "# mine" in dialog.inner_text()
             app.page.keyboard.press("Escape") if key == "Escape" else press(app, key)
             assert app.file.read_text() == theirs
@@ -76,6 +79,7 @@ def test_a_conflict_stays_until_a_person_has_chosen(tmp_path):
         assert kinds[:3] == ["saved here", "saved by another program", "saved by another program"]
         entries.nth(1).click()
         app.page.locator(".version", has_text="# newer").wait_for()
+        assert violations(app.page) == []
         press(app, "Put it into the page")
         assert app.text == newer
         app.page.evaluate("() => studio.editor.view.focus()")

@@ -13,6 +13,7 @@ import json
 import os
 import re
 import secrets
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -93,7 +94,8 @@ class Drafts:
             PackageError: ``platformdirs`` is not installed.
         """
         root = state_folder() / "drafts"
-        sweep(root)
+        # Thousands of files, perhaps: the studio does not wait for them.
+        threading.Thread(target=sweep, args=(root,), daemon=True).start()
         return cls(root, folder)
 
     def reason(self, error: OSError) -> str:
