@@ -49,7 +49,8 @@ class Shown:
         try:
             self.page.wait_for_function(condition, timeout=SLOW_MS)
         except PlaywrightTimeoutError as error:
-            says = {name: self.page.locator(name).inner_text() for name in (".notice", ".work")}
+            shown = (".state-bars", ".notice", ".work")
+            says = {name: self.page.locator(name).inner_text() for name in shown}
             error.add_note(f"the app says {says}, its mistakes are {self.mistakes!r}")
             raise
 

@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 from distal.diagnostics import LoadError
-from distal.editor.local import files as scene_files
+from distal.editor.local import source_file
 from distal.editor.local.files import SceneFiles
 from distal.editor.local.process import ChildProcess
 from distal.editor.local.scratch import RENDER, ScratchFolder, sweep
@@ -348,14 +348,17 @@ def test_a_module_that_leads_out_of_the_folder_is_not_shown(tmp_path):
 
 
 def test_files_that_are_too_long_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(scene_files, "LONGEST_FILE", 50)
+    monkeypatch.setattr(source_file, "LONGEST_FILE", 50)
     (tmp_path / "scene.py").write_text("# " + "x" * 40 + "\n")
     files = SceneFiles(tmp_path / "scene.py")
     with pytest.raises(LoadError, match=r"^'scene\.py' would have more than 50 bytes$"):
         files.save("scene.py", "#" * 51, files.all().digests["scene.py"])
     (tmp_path / "scene.py").write_text("#" * 51)
+    changed = files.read()
+    assert changed is not None
+    assert changed.problems["scene.py"].text == "has more than 50 bytes"
     with pytest.raises(LoadError, match=r"has more than 50 bytes$"):
-        files.read()
+        files.save("scene.py", "x = 1\n", files.all().digests["scene.py"])
 
 
 def test_a_folder_that_is_gone_is_told(tmp_path):

@@ -23,7 +23,7 @@ from distal.cli.messages import say
 from distal.editor.local.early import EarlyWorker
 from distal.editor.local.files import SceneFiles
 from distal.example_files import EXAMPLE_PREFIX, all_examples
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 
 if TYPE_CHECKING:
     from distal.editor.local.serving import LocalServer

@@ -9,7 +9,7 @@ export type FormRecord = Readonly<Record<string, Form>>;
 export const OF_WORKER: readonly string[] = ["ready", "scene", "numbers", "mistakes", "answer", "dropped", "printed", "progress"];
 
 /** By the kind of a request: the record of its result. */
-export const RESULTS: Readonly<Record<string, string>> = {"write": "Written", "count": "Counting", "time": "LineTiming", "map": "ShapeMap", "probe": "ProbeResult", "check": "Checked", "text": "EmittedText", "export": "ExportedFile", "render": "Rendered", "command": "Planned", "choices": "RenderChoices", "save": "Saved"};
+export const RESULTS: Readonly<Record<string, string>> = {"write": "Written", "count": "Counting", "time": "LineTiming", "map": "ShapeMap", "probe": "ProbeResult", "check": "Checked", "text": "EmittedText", "export": "ExportedFile", "render": "Rendered", "command": "Planned", "choices": "RenderChoices", "save": "Saved", "hello": "Greeted", "draft": "DraftAnswer", "versions": "VersionList", "version": "VersionText"};
 
 export const FORMS: Readonly<Record<string, Form | FormRecord>> = {
   "ready": {"abilities": ["[]", "s"], "versions": ["{}", "s"], "targets": ["[]", "s"], "formats": ["[]", "s"]},
@@ -56,5 +56,11 @@ export const FORMS: Readonly<Record<string, Form | FormRecord>> = {
   "Planned": {"command": "s"},
   "RenderChoices": {"formats": ["[]", "RenderFormat"], "modes": ["[]", "s"], "qualities": ["[]", "s"], "quality": "s", "largest_side": "i", "most_samples": "i", "path_samples": "i"},
   "RenderFormat": {"name": "s", "film": "b", "bits": ["[]", "i"], "lossy": "b", "loops": "b", "missing": ["|", "s", "0"]},
-  "Saved": {"digest": "s", "conflict": ["|", "s", "0"]},
+  "Saved": {"digest": "s", "is_saved": "b", "conflict": ["|", "s", "0"], "problem": "s", "refusal": "s", "other": ["|", "s", "0"], "unkept": "s", "order": "i"},
+  "Greeted": {"tab": "s", "drafts": ["{}", "UnsavedText"], "others": ["[]", "s"], "unkept": "s"},
+  "UnsavedText": {"text": "s", "digest": "s"},
+  "DraftAnswer": {"unkept": "s"},
+  "VersionList": {"versions": ["[]", "VersionEntry"]},
+  "VersionEntry": {"name": "s", "at": "n", "why": "s", "size": "i"},
+  "VersionText": {"text": "s"},
 };

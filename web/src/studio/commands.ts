@@ -119,7 +119,7 @@ function ofApp(studio: Studio): Command[] {
       ...(isLocal && { button: "Save" }),
       act: () => void studio.save(),
     },
-    ...(isLocal ? [] : [shareOf(studio)]),
+    isLocal ? versionsOf(studio) : shareOf(studio),
     {
       id: "help",
       text: "Show all keys",
@@ -129,6 +129,15 @@ function ofApp(studio: Studio): Command[] {
       act: () => help(studio.commands.all, settings.version),
     },
   ];
+}
+
+function versionsOf(studio: Studio): Command {
+  return {
+    id: "versions",
+    text: "Show the versions of this file",
+    words: "history backup restore earlier draft",
+    act: () => void studio.versions.open(studio.editor.name),
+  };
 }
 
 function shareOf({ sharing }: Studio): Command {

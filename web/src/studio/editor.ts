@@ -46,7 +46,7 @@ export interface EditorEvents extends Turning {
   pointed(name: string, line: number | null, isMouse: boolean): void;
 }
 
-const HIGHLIGHT = HighlightStyle.define([
+export const HIGHLIGHT = HighlightStyle.define([
   { tag: [tags.keyword, tags.operatorKeyword, tags.modifier], color: "var(--word)" },
   { tag: [tags.string, tags.special(tags.string)], color: "var(--text)" },
   { tag: [tags.comment, tags.docString], color: "var(--quiet)", fontStyle: "italic" },

@@ -111,8 +111,8 @@ export class Looking {
   }
 
   async #lookOn(): Promise<void> {
-    const { costs, picture, turning } = this.studio;
-    if (this.#isBusy || this.isStopped || !this.ready || turning.isOn) return;
+    const { costs, picture, texts, turning } = this.studio;
+    if (this.#isBusy || this.isStopped || !this.ready || turning.isOn || !texts.names.length) return;
     this.#isBusy = true;
     try {
       await this.#lookNow();
@@ -126,11 +126,11 @@ export class Looking {
 
   /** Asks until the newest text is answered. */
   async #lookNow(): Promise<void> {
-    const { client, page, texts, turning } = this.studio;
+    const { client, keeping, page, texts, turning } = this.studio;
     while (this.#done !== this.#wanted && !this.isStopped && !turning.isOn) {
       const wanted = this.#wanted;
       const { revision } = texts;
-      for (const name of texts.names) texts.keepDraft(name);
+      keeping.keep();
       page.work.textContent = "…";
       const answer = await client.ask({ kind: "look", ...this.source, guided: false });
       this.#done = wanted;
@@ -282,12 +282,10 @@ export class Looking {
   }
 
   connected(isOpen: boolean): void {
-    const { page, settings, turning } = this.studio;
+    const { page, turning } = this.studio;
     if (isOpen) return page.tell(null);
     this.ready = null;
     turning.drop();
-    if (settings.python) return;
-    page.tell("The studio's server has ended; your text is kept in this browser.");
   }
 }
 

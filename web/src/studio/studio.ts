@@ -11,12 +11,16 @@ import { Asking } from "./asking";
 import { CellChannel } from "./cell_channel";
 import type { Channel } from "./channel";
 import { Client } from "./client";
+import { Conflicts } from "./conflicts";
 import { CostBar } from "./cost_bar";
 import { Commands } from "./command_keys";
+import { BrowserDrafts } from "./browser_drafts";
+import { Drafts } from "./drafts";
 import { Editor } from "./editor";
 import { Emitted } from "./emitted";
 import { Files } from "./files";
 import { Jobs } from "./jobs";
+import type { Keeping } from "./keeping";
 import { Looking } from "./looking";
 import { Opening } from "./opening";
 import { Page } from "./page";
@@ -26,14 +30,19 @@ import { Sharing } from "./sharing";
 import { Tabs } from "./tabs";
 import { Texts } from "./texts";
 import { Turning } from "./turning";
+import { Versions } from "./versions";
 
 export class Studio {
-  readonly texts: Texts;
+  readonly texts = new Texts();
   readonly page = new Page(document.body);
   readonly looking = new Looking(this);
   readonly turning = new Turning(this);
   readonly asking = new Asking(this);
   readonly files = new Files(this);
+  readonly conflicts = new Conflicts(this);
+  readonly versions = new Versions(this);
+  readonly keeping: Keeping;
+  readonly browserDrafts: BrowserDrafts | null;
   readonly tabs = new Tabs(this);
   readonly opening = new Opening(this);
   readonly sharing = new Sharing(this);
@@ -50,11 +59,13 @@ export class Studio {
     readonly channel: Channel,
   ) {
     recallScheme();
-    const { folder, main } = settings;
+    const { folder, main, python } = settings;
     // In another page it is small, and a draft of the whole playground is none of its text.
     const isFramed = new URLSearchParams(location.search).has("embed");
     if (isFramed) this.page.beFramed(() => this.sharing.whole());
-    this.texts = new Texts(isFramed ? location.href : folder);
+    const drafts = new Drafts(this);
+    this.browserDrafts = python ? new BrowserDrafts(this, isFramed ? location.href : folder) : null;
+    this.keeping = this.browserDrafts ?? drafts;
     this.picture = this.#picture();
     this.costs = this.#costs();
     this.commands = new Commands(this);
@@ -67,14 +78,19 @@ export class Studio {
       changed: (message) => this.files.changed(message),
       printed: ({ text }) => this.page.print(text),
       restarted: ({ reason }) => this.looking.restarted(reason),
-      state: (isOpen) => this.looking.connected(isOpen),
+      state: (isOpen) => {
+        this.looking.connected(isOpen);
+        if (python) return;
+        this.files.connected(isOpen);
+        void drafts.connected(isOpen);
+      },
     });
     const announce = (text: string) => (this.page.announcer.textContent = text);
     this.jobs = new Jobs(this.client, announce, () => void this.sharing.export());
     this.page.work.after(this.jobs.chip);
     document.title = `${main} · distal`;
     if (settings.start) void this.opening.begin(settings.start);
-    addEventListener("beforeunload", () => this.texts.names.forEach((name) => this.texts.keepDraft(name)));
+    for (const end of ["beforeunload", "pagehide"]) addEventListener(end, () => this.keeping.keep());
   }
 
   save(): Promise<void> {

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any, Final
 from urllib.parse import unquote
 
-from distal.diagnostics import LoadError
 from distal.editor.local.connection import TabConnection
+from distal.editor.local.drafts import Drafts
 from distal.editor.local.early import EarlyWorker
 from distal.editor.local.files import SceneFiles
 from distal.editor.local.renders import CODE_S as RENDER_CODE_S
@@ -39,9 +39,10 @@ class StudioServer(LocalServer):
         limit: Seconds that the author's code has.
         early: A worker for the first tab.
         renders: The limits of time of renders; None for those of ``RenderLimits``.
+        drafts: Where drafts and versions are kept; None for the user's state.
 
     Raises:
-        PackageError: ``websockets`` is not installed.
+        PackageError: ``websockets`` or ``platformdirs`` is not installed.
         OSError: The port is taken.
     """
 
@@ -52,8 +53,11 @@ class StudioServer(LocalServer):
         limit: float = CODE_S,
         early: EarlyWorker | None = None,
         renders: RenderLimits | None = None,
+        drafts: Drafts | None = None,
     ) -> None:
         self._files, self._limit, self._early = files, limit, early
+        self._drafts = drafts or Drafts.of_user(files.folder)
+        files.keep_in(self._drafts)
         self._renders = RenderQueue(
             files.folder, renders or RenderLimits(max(limit, RENDER_CODE_S))
         )
@@ -74,6 +78,7 @@ class StudioServer(LocalServer):
             self._early.end()
         self._renders.close()
         super().close()
+        self._drafts.close()
 
     # Sockets
 
@@ -104,10 +109,7 @@ class StudioServer(LocalServer):
     def _look_at_files(self) -> None:
         """Tell all tabs what other programs have changed."""
         while not self._over.wait(_LOOK_S):
-            try:
-                changed = self._files.read()
-            except (LoadError, OSError):
-                continue  # while it is written; or gone: the app still has the text
+            changed = self._files.read()
             if changed is not None:
                 self._tell(changed)
 
