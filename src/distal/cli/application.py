@@ -26,6 +26,7 @@ from distal.cli.base import (
     load,
     reporting,
 )
+from distal.cli.exit_codes import ExitCode
 from distal.compiler.driver import COMPILE_TARGETS, IR_TARGET
 from distal.example_files import EXAMPLE_PREFIX, all_examples
 from distal.export.texts import with_header, write_files
@@ -101,7 +102,7 @@ def doctor() -> None:
     facts = examine()
     show(facts)
     if any(fact.state is State.BROKEN for fact in facts):
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.FAILED)
 
 
 def _place(command: CommandInfo) -> int:

@@ -23,6 +23,7 @@ from distal.lang.chosen_values import checked_values
 from distal.lang.functions import Image
 from distal.lang.parameters import Parameter
 from distal.scene.viewing.viewable import COLOR, Viewable, view_label
+from distal.source_text import decoded
 from distal.version import __version__
 
 FORMAT: Final = 1
@@ -158,7 +159,7 @@ def _documentation(seen: Viewable) -> str:
     if seen.file is None:
         return ""
     try:
-        return ast.get_docstring(ast.parse(seen.file.read_text(encoding="utf-8"))) or ""
+        return ast.get_docstring(ast.parse(decoded(seen.file.read_bytes()))) or ""
     except (OSError, ValueError, SyntaxError):  # edited or deleted since it was loaded
         return ""
 

@@ -20,9 +20,9 @@ from distal.diagnostics import LoadError
 from distal.editor.messages import Changed, Saved
 from distal.editor.scene_folder import check_name, encoded_text
 from distal.images.atomic_files import replacement
+from distal.source_text import SourceTextError, decoded, has_mark, with_plain_ends
 
 LONGEST_FILE: Final = 8_000_000  # bytes of a file that is shown or saved
-_BOM = "\ufeff"
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,13 +33,13 @@ class SourceFile:
         text: The text; lines end by a newline alone.
         digest: The digest of the file's bytes.
         ends: What ends lines on the disk.
-        mark: The byte order mark that begins the file, or "".
+        mark: Whether a byte order mark begins the file.
     """
 
     text: str
     digest: str
     ends: str = "\n"
-    mark: str = ""
+    mark: bool = False
 
     @classmethod
     def of(cls, path: Path) -> SourceFile:
@@ -51,17 +51,15 @@ class SourceFile:
         try:
             with open(path, "rb", opener=_opened) as file:
                 data = file.read(LONGEST_FILE + 1)
-            text = data.decode("utf-8")
+            text = decoded(data)
         except OSError as error:
             raise LoadError(f"'{path}' cannot be read: {error.strerror}") from None
-        except UnicodeDecodeError:
-            raise LoadError(f"'{path}' is not UTF-8 text") from None
+        except SourceTextError as error:
+            raise LoadError(f"'{path}' {error}") from None
         if len(data) > LONGEST_FILE:
             raise LoadError(f"'{path}' has more than {LONGEST_FILE:,} bytes")
-        mark = _BOM if text.startswith(_BOM) else ""
         ends = "\r\n" if "\r\n" in text else "\n"
-        plain = text.removeprefix(_BOM).replace("\r\n", "\n").replace("\r", "\n")
-        return cls(plain, digest_of(data), ends, mark)
+        return cls(with_plain_ends(text), digest_of(data), ends, has_mark(data))
 
     def encoded(self, name: str, text: str) -> bytes:
         """Return the bytes of a new text of this file.
@@ -69,7 +67,7 @@ class SourceFile:
         Raises:
             LoadError: It is too long, or has what no file can hold.
         """
-        data = encoded_text(name, self.mark + text.replace("\n", self.ends))
+        data = encoded_text(name, text.replace("\n", self.ends), mark=self.mark)
         if len(data) > LONGEST_FILE:
             raise LoadError(f"'{name}' would have more than {LONGEST_FILE:,} bytes")
         return data
