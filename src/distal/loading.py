@@ -21,7 +21,7 @@ from typing import Any, TypeAlias
 from weakref import WeakKeyDictionary
 
 from distal.author_errors import failure, hint_of_nothing, hint_of_syntax
-from distal.diagnostics import CompileError, Diagnostic, LoadError, Span
+from distal.diagnostics import CompileError, Diagnostic, LoadError, Span, readable
 from distal.error_codes import ErrorCode
 from distal.example_files import EXAMPLE_PREFIX, all_examples
 from distal.ir.nodes import EntryKind
@@ -40,7 +40,7 @@ class LoadedFrom:
     """Where an object was loaded from.
 
     Attributes:
-        source: ``FILE[:NAME]`` or ``example:NAME[:NAME]`` exactly as the caller wrote it.
+        source: ``FILE[:NAME]`` or ``example:NAME[:NAME]`` as the caller wrote it, as Unicode text.
         files: The file, and the modules in its folder that it imported.
         neighbours: The paths of these modules relative to the folder of the file, with slashes.
         digest: The result of ``digest_of`` for them.
@@ -141,7 +141,7 @@ def _made(
     """
     module, modules = _run(file, text, given)
     found = _pick(module, file, name)
-    written = str(path).replace(os.sep, "/")  # the same on every system
+    written = readable(path).replace(os.sep, "/")  # the same on every system
     source = written if name is None else f"{written}:{name}"
     folder = file.resolve().parent
     neighbours = tuple(path.relative_to(folder).as_posix() for path in modules)

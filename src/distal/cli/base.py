@@ -21,7 +21,7 @@ from distal.cli.arguments import UsageError, read_assignments, read_scene
 from distal.cli.exit_codes import ExitCode
 from distal.cli.messages import say
 from distal.devices.memory_limit import is_limited, require
-from distal.diagnostics import CompileError, DeviceError, LoadError
+from distal.diagnostics import CompileError, DeviceError, LoadError, readable
 from distal.images.atomic_files import SaveError
 from distal.lang.units import UNITS
 from distal.packages import explained
@@ -308,7 +308,7 @@ def answer(text: str) -> None:
         SaveError: It cannot be written, as to a file on a full disk.
     """
     try:
-        print(text, flush=True)
+        print(readable(text), flush=True)
     except BrokenPipeError:  # the reader closed the pipe
         raise
     except OSError as error:

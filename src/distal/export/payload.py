@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from distal.diagnostics import CompileError
+from distal.diagnostics import CompileError, readable
 from distal.export.page_options import PageOptions
 from distal.export.page_programs import Compile, PagePrograms
 from distal.export.pasted_code import code_around
@@ -139,7 +139,7 @@ def _steering(seen: Viewable, programs: PagePrograms, *, guided: bool) -> dict[s
 def name_of(seen: Viewable) -> str:
     """Return the name for people: the object's own, or that of its file if its own is generic."""
     if seen.name in _PLAIN_NAMES and seen.file is not None:
-        return seen.file.stem.replace("_", " ")
+        return readable(seen.file.stem).replace("_", " ")
     return seen.name.replace("_", " ")
 
 
