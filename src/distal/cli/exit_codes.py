@@ -31,7 +31,7 @@ class ExitCode(IntEnum):
         "there is a mistake in the scene",
         "a file cannot be read or written, or is none of its kind",
         "a package or a device is missing, or memory",
-        "`check`, `mesh --check`, `rerender --check` or `doctor` found something",
+        "`check`, `--check` or `doctor` found something",
     )
     USAGE = 2, "the command line is invalid"
     INTERRUPTED = 130, "it was interrupted, as by ctrl-C"  # as shells name SIGINT

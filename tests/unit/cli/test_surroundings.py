@@ -255,7 +255,7 @@ ENDS = {
         {"s.py": SCENE, "manifold3d.py": "raise ModuleNotFoundError(name='manifold3d')\n"},
         ("mesh", "s.py", "-o", "a.stl", "--simplify"),
     ),
-    "`check`, `mesh --check`, `rerender --check` or `doctor` found something": (
+    "`check`, `--check` or `doctor` found something": (
         {"s.py": STEEP},
         ("check", "s.py"),
     ),
