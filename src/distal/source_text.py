@@ -50,7 +50,8 @@ def decoded(data: bytes) -> str:
 def encoded(text: str, *, mark: bool = False) -> bytes:
     """Return the bytes of a Python file, in the encoding that the text names.
 
-    A text that names an encoding that there is not is written as UTF-8: Python reports the name.
+    A text that names an encoding that there is not, or that contradicts the mark, is written as
+    UTF-8: Python reports the name.
 
     Args:
         text: The text.
@@ -60,7 +61,7 @@ def encoded(text: str, *, mark: bool = False) -> bytes:
         SourceTextError: The encoding lacks a character of the text.
     """
     try:
-        named = _named_encoding(text.encode("utf-8", "replace")) or "utf-8"
+        named = "utf-8" if mark else _named_encoding(text.encode("utf-8", "replace")) or "utf-8"
         data = text.encode(named)
     except UnicodeEncodeError as error:
         line = text.count("\n", 0, error.start) + 1

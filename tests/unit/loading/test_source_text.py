@@ -132,6 +132,14 @@ def test_a_character_that_the_encoding_lacks_is_refused_before_the_file_changes(
     assert file.read_bytes() == before
 
 
+def test_a_name_that_contradicts_the_mark_or_is_none_is_written_as_utf_8():
+    text = "# coding: latin-1\nname = 'größe'\n"
+    assert encoded(text, mark=True) == MARK + text.encode()
+    assert (
+        encoded(text.replace("latin-1", "nonsense")) == text.replace("latin-1", "nonsense").encode()
+    )
+
+
 def test_lines_are_those_of_python(tmp_path):
     assert lines_of("a\x0c\nb\x85c\u2028d\n") == ["a\x0c\n", "b\x85c\u2028d\n"]
     file = tmp_path / "s.py"
