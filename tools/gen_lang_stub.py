@@ -157,6 +157,7 @@ def slider(
     log: bool = False,
     group: str = "",
     help: str = "",
+    name: str | None = None,
 ) -> float: ...
 def integer(
     label: str,
@@ -167,8 +168,16 @@ def integer(
     *,
     group: str = "",
     help: str = "",
+    name: str | None = None,
 ) -> int: ...
-def toggle(label: str, default: bool = False, *, group: str = "", help: str = "") -> bool: ...
+def toggle(
+    label: str,
+    default: bool = False,
+    *,
+    group: str = "",
+    help: str = "",
+    name: str | None = None,
+) -> bool: ...
 def choice(
     label: str,
     options: Sequence[str],
@@ -176,6 +185,7 @@ def choice(
     *,
     group: str = "",
     help: str = "",
+    name: str | None = None,
 ) -> int: ...
 def color(
     label: str,
@@ -183,6 +193,7 @@ def color(
     *,
     group: str = "",
     help: str = "",
+    name: str | None = None,
 ) -> vec3: ...
 @overload
 def point(
@@ -191,6 +202,7 @@ def point(
     *,
     group: str = "",
     help: str = "",
+    name: str | None = None,
 ) -> vec3: ...
 @overload
 def point(
@@ -199,6 +211,7 @@ def point(
     *,
     group: str = "",
     help: str = "",
+    name: str | None = None,
 ) -> vec2: ...
 def gradient(field: Callable[[Floats], float], p: Floats) -> Floats: ...
 def value_and_gradient(field: Callable[[Floats], float], p: Floats) -> tuple[float, Floats]: ...

@@ -1,7 +1,8 @@
 """Write ``docs/reference/options.md``: the options of scenes, pictures, videos, pages and cells.
 
-Input: the signatures of what takes them, and their docstrings. Output: the page: each option with
-its type, its default and its meaning. ``--check`` writes nothing and fails when the page is stale.
+Input: the signatures of what takes them, and their docstrings; the exit codes of the commands.
+Output: the page: each option with its type, its default and its meaning; each exit code.
+``--check`` writes nothing and fails when the page is stale.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from distal import Scene, Shape
+from distal.cli.exit_codes import ExitCode
 from distal.export.page_options import PageOptions
 from distal.notebook.widget import LiveView
 from distal.video.recording import video
@@ -44,7 +46,14 @@ _LEFT_OUT: Final = {"self", "obj", "path"}
 
 def page() -> str:
     """Return the text of the page."""
-    return HEAD + "\n".join(_section(title, *found) for title, found in TAKEN_BY.items())
+    sections = [_section(title, *found) for title, found in TAKEN_BY.items()]
+    return HEAD + "\n".join([*sections, _exit_codes()])
+
+
+def _exit_codes() -> str:
+    rows = "".join(f"| {code.value} | {cause} |\n" for code in ExitCode for cause in code.causes)
+    about = "A command ends with one of these. What is wrong is said on stderr."
+    return f"## Exit codes\n\n{about}\n\n| code | meaning |\n|---|---|\n{rows}"
 
 
 def _section(title: str, takes: Callable[..., Any], about: str) -> str:

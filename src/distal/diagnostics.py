@@ -37,6 +37,22 @@ _INVISIBLE: Final = frozenset(
 )
 
 
+def readable(name: object) -> str:
+    r"""Return the name of a file as Unicode text: bytes of it that are no UTF-8 as ``\xNN``.
+
+    Python reads such bytes, and in a locale without UTF-8 all others than ASCII, as half characters
+    (surrogates), which no file can hold.
+
+    Args:
+        name: The name or path, as Python has it.
+    """
+    text = str(name)
+    try:
+        return text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
+    except UnicodeEncodeError:  # other half characters, which Windows allows
+        return text.encode("utf-8", "backslashreplace").decode("utf-8")
+
+
 def printable(text: object, limit: int = LONGEST_SHOWN) -> str:
     """Return an external text on one line: control characters escaped, long texts cut.
 
@@ -44,7 +60,7 @@ def printable(text: object, limit: int = LONGEST_SHOWN) -> str:
         text: Any object; converted by ``str``.
         limit: Maximum number of characters.
     """
-    whole = str(text)
+    whole = readable(text)
     safe = "".join(map(_escaped, whole[: limit + 1]))
     return safe if len(safe) <= limit else f"{safe[: limit - 1]}…"
 
@@ -140,7 +156,7 @@ def place_json(span: Span | None) -> dict[str, Any] | None:
     if span is None:
         return None
     return {
-        "file": span.file,
+        "file": readable(span.file),
         "line": span.line,
         "column": span.col + 1,
         "end_line": span.end_line or span.line,

@@ -6,6 +6,7 @@ The text of a file is read once and run once, so a later edit of the file has no
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import importlib
 import linecache
@@ -13,19 +14,20 @@ import os
 import sys
 import time
 import types
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
 from weakref import WeakKeyDictionary
 
 from distal.author_errors import failure, hint_of_nothing, hint_of_syntax
-from distal.diagnostics import CompileError, Diagnostic, LoadError, Span
+from distal.diagnostics import CompileError, Diagnostic, LoadError, Span, readable
 from distal.error_codes import ErrorCode
 from distal.example_files import EXAMPLE_PREFIX, all_examples
 from distal.ir.nodes import EntryKind
 from distal.lang.composed import Composed
 from distal.lang.functions import FrameBuffer, Func, Image
+from distal.source_text import SourceTextError, decoded, lines_of, with_plain_ends
 
 # The objects that a scene file may define.
 SceneCode: TypeAlias = Func | Composed
@@ -38,7 +40,7 @@ class LoadedFrom:
     """Where an object was loaded from.
 
     Attributes:
-        source: ``FILE[:NAME]`` or ``example:NAME[:NAME]`` exactly as the caller wrote it.
+        source: ``FILE[:NAME]`` or ``example:NAME[:NAME]`` as the caller wrote it, as Unicode text.
         files: The file, and the modules in its folder that it imported.
         neighbours: The paths of these modules relative to the folder of the file, with slashes.
         digest: The result of ``digest_of`` for them.
@@ -139,7 +141,7 @@ def _made(
     """
     module, modules = _run(file, text, given)
     found = _pick(module, file, name)
-    written = str(path).replace(os.sep, "/")  # the same on every system
+    written = readable(path).replace(os.sep, "/")  # the same on every system
     source = written if name is None else f"{written}:{name}"
     folder = file.resolve().parent
     neighbours = tuple(path.relative_to(folder).as_posix() for path in modules)
@@ -208,10 +210,10 @@ def _run(
     """Run a file; return its module and the files of the modules in its folder that it imported."""
     name = "distal_scene_" + "".join(c if c.isalnum() else "_" for c in file.stem)
     module = types.ModuleType(name)
-    module.__file__ = str(file)
+    module.__file__ = os.path.abspath(file)
     module.__dict__.update(given or {})
     filename = str(file)
-    linecache.cache[filename] = (len(text), None, text.splitlines(keepends=True), filename)
+    linecache.cache[filename] = (len(text), None, lines_of(text), module.__file__)
     try:
         code = compile(text, filename, "exec", dont_inherit=True)
     except SyntaxError as error:
@@ -227,7 +229,8 @@ def _run(
     sys.path.insert(0, folder)
     importlib.invalidate_caches()  # a module may be newer than Python's cached list of the folder
     try:
-        exec(code, module.__dict__)
+        with _same_folder_after():
+            exec(code, module.__dict__)
     except CompileError:
         raise
     except SystemExit as error:
@@ -243,6 +246,23 @@ def _run(
             sys.path.remove(folder)
         neighbours = _forget_neighbours(Path(folder), known)
     return module, neighbours
+
+
+@contextlib.contextmanager
+def _same_folder_after() -> Iterator[None]:
+    """Return to the working folder that a file may leave by ``os.chdir``.
+
+    Names of outputs are relative to the folder in which the author gave them.
+    """
+    before = None
+    with contextlib.suppress(OSError):  # it was deleted
+        before = os.getcwd()
+    try:
+        yield
+    finally:
+        if before is not None:
+            with contextlib.suppress(OSError):
+                os.chdir(before)
 
 
 def _digest(text: str, folder: Path, neighbours: Iterable[str]) -> str:
@@ -290,9 +310,9 @@ def _is_directly_in(module: types.ModuleType | None, folder: Path) -> bool:
 
 def _read(file: Path) -> str:
     try:
-        return file.read_text(encoding="utf-8")
-    except UnicodeDecodeError:
-        raise LoadError(f"{file} is not text in UTF-8") from None
+        return with_plain_ends(decoded(file.read_bytes()))
+    except SourceTextError as error:
+        raise LoadError(f"{file} {error}") from None
     except OSError as error:
         raise LoadError(f"cannot read {file}: {error.strerror}") from None
 

@@ -142,5 +142,5 @@ def test_a_link_out_of_the_folder_is_not_written(folder, tmp_path_factory):
 
 def test_a_file_that_is_no_text_is_refused(tmp_path):
     (tmp_path / "scene.py").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(LoadError, match="is not UTF-8 text"):
+    with pytest.raises(LoadError, match="is text in UTF-16; save it as UTF-8"):
         SceneFiles(tmp_path / "scene.py")

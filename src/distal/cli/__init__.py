@@ -1,8 +1,7 @@
 """The ``distal`` command: parses the command line, calls the library, reports errors.
 
 Input: the arguments of the command line. Output: files, text on stdout (data only), messages on
-stderr, and an exit code: 0, 1 for a mistake in a scene or a file, 2 for a wrong command line, 130
-after ctrl-C. Contains no algorithms.
+stderr, and an exit code (``distal.cli.exit_codes``). Contains no algorithms.
 """
 
 from __future__ import annotations
@@ -14,6 +13,7 @@ import sys
 import threading
 import warnings
 
+from distal.cli.exit_codes import ExitCode
 from distal.interrupting import interrupt_main
 from distal.lang.notices import receive_notices
 
@@ -76,18 +76,22 @@ def main() -> None:
     try:
         _open_what_is_closed()
         # Nothing slow runs before the try, so that ctrl-C never prints a traceback.
+        from distal.cli.ending import run_to_its_end
+        from distal.cli.terminal import forget_impossible_sizes
+
         wanted = next(iter(sys.argv[1:]), "")
         if _is_scene(wanted):
             sys.argv.insert(1, wanted := "render")
         name = wanted if wanted in COMMANDS and wanted not in SHORT else "application"
+        forget_impossible_sizes()
         module = importlib.import_module(f"distal.cli.{name}")
 
         sys.unraisablehook = _unraisable
         warnings.showwarning = _show_warning
         receive_notices(_show_notice)
-        module.application()
+        run_to_its_end(module.application)
     except KeyboardInterrupt:
-        sys.exit(130)
+        sys.exit(ExitCode.INTERRUPTED)
     except Exception as error:
         from distal.packages import explained
 
@@ -95,4 +99,4 @@ def main() -> None:
         if found is None:
             raise
         print(f"error: {found}", file=sys.stderr)
-        sys.exit(1)
+        sys.exit(ExitCode.FAILED)

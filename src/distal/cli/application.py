@@ -26,7 +26,9 @@ from distal.cli.base import (
     load,
     reporting,
 )
+from distal.cli.exit_codes import ExitCode
 from distal.compiler.driver import COMPILE_TARGETS, IR_TARGET
+from distal.diagnostics import readable
 from distal.example_files import EXAMPLE_PREFIX, all_examples
 from distal.export.texts import with_header, write_files
 from distal.file_writer import check_destination
@@ -101,7 +103,7 @@ def doctor() -> None:
     facts = examine()
     show(facts)
     if any(fact.state is State.BROKEN for fact in facts):
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.FAILED)
 
 
 def _place(command: CommandInfo) -> int:
@@ -116,7 +118,7 @@ def _file_name(scene: str) -> str:
     path = read_scene(scene)[0]
     if path.startswith(EXAMPLE_PREFIX):
         return f"{path.removeprefix(EXAMPLE_PREFIX)}.py"
-    return Path(path).name
+    return readable(Path(path).name)
 
 
 def _check_pass(name: str) -> None:

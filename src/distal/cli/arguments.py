@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+import unicodedata
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
@@ -159,7 +160,7 @@ def read_assignments(texts: Iterable[str], parameters: Sequence[Parameter]) -> d
     values: dict[str, Value] = {}
     for text in texts:
         name, equals, value = text.partition("=")
-        name = name.strip()
+        name = unicodedata.normalize("NFKC", name.strip())  # some keyboards decompose letters
         if not equals or not name:
             raise UsageError(f"--set takes name=value, not '{text:.60}'\n{_listing(parameters)}")
         if name not in known:

@@ -18,9 +18,10 @@ from typing import TYPE_CHECKING, Annotated, Final, ParamSpec
 import typer
 
 from distal.cli.arguments import UsageError, read_assignments, read_scene
+from distal.cli.exit_codes import ExitCode
 from distal.cli.messages import say
 from distal.devices.memory_limit import is_limited, require
-from distal.diagnostics import CompileError, DeviceError, LoadError
+from distal.diagnostics import CompileError, DeviceError, LoadError, readable
 from distal.file_writer import SaveError
 from distal.lang.units import UNITS
 from distal.packages import explained
@@ -50,7 +51,7 @@ application = typer.Typer(
 
 def _show_version(wanted: bool) -> None:
     if wanted:
-        print(f"distal {__version__}")
+        print(f"distal {__version__}", flush=True)
         raise typer.Exit
 
 
@@ -106,32 +107,56 @@ def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
     @functools.wraps(command)
     def run(*args: Arguments.args, **kwargs: Arguments.kwargs) -> None:
         try:
+            check_working_folder()
             if command.__name__ not in _WITHOUT_ARRAYS:
                 prepare_for_arrays()
             command(*args, **kwargs)
         except UsageError as error:
             say(f"error: {error}")
-            raise typer.Exit(2) from None
+            raise typer.Exit(ExitCode.USAGE) from None
         except (CompileError, LoadError) as error:
             say(error if isinstance(error, CompileError) else f"error: {error}")
             if kwargs.get("as_json"):
                 errors = [diagnostic.to_json() for diagnostic in error.diagnostics]
                 answer(json.dumps({"version": 1, "errors": errors}))
-            raise typer.Exit(1) from None
+            raise typer.Exit(ExitCode.FAILED) from None
         except (SaveError, DeviceError) as error:
             say(f"error: {error}")
-            raise typer.Exit(1) from None
+            raise typer.Exit(ExitCode.FAILED) from None
         except KeyboardInterrupt:
-            raise typer.Exit(130) from None
+            raise typer.Exit(ExitCode.INTERRUPTED) from None
         except Exception as error:
-            found = error if isinstance(error, MemoryError) else explained(error)
-            if found is None:
+            line = _line_of(error)
+            if line is None:
                 raise
-            short = "not enough memory: " if isinstance(found, MemoryError) else ""
-            say(f"error: {short}{found}".rstrip(": "))
-            raise typer.Exit(1) from None
+            say(f"error: {line}")
+            raise typer.Exit(ExitCode.FAILED) from None
 
     return run
+
+
+def check_working_folder() -> None:
+    """Check that there is a working folder, which names of files are relative to.
+
+    Raises:
+        SaveError: It was deleted.
+    """
+    try:
+        os.getcwd()
+    except OSError:
+        raise SaveError("the working folder was deleted; change to another one") from None
+
+
+def _line_of(error: Exception) -> str | None:
+    """Return what to print of an error of the surroundings; None for a fault in distal."""
+    if isinstance(error, Warning):
+        return f"{error} (a filter of Python's makes this warning an error)"
+    if isinstance(error, OSError) and error.filename is not None:
+        return f"cannot use {error.filename}: {error.strerror or error}"
+    cause = error if isinstance(error, MemoryError) else explained(error)
+    if isinstance(cause, MemoryError):
+        return f"not enough memory: {cause}".rstrip(": ")
+    return None if cause is None else str(cause)
 
 
 SceneArgument = Annotated[
@@ -283,7 +308,7 @@ def answer(text: str) -> None:
         SaveError: It cannot be written, as to a file on a full disk.
     """
     try:
-        print(text, flush=True)
+        print(readable(text), flush=True)
     except BrokenPipeError:  # the reader closed the pipe
         raise
     except OSError as error:

@@ -26,6 +26,7 @@ from distal.cli.base import (
     load,
     reporting,
 )
+from distal.cli.exit_codes import ExitCode
 from distal.diagnostics import LoadError
 from distal.error_codes import ErrorCode
 
@@ -66,7 +67,7 @@ def check(
     else:
         answer("\n".join(report_lines(report)))
     if not report.holds:
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.FAILED)
 
 
 def report_lines(report: ValidationReport) -> Iterator[str]:

@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from distal.cli.base import answer
 from distal.cli.doctor import MachineFact, State
 
 _MARKS: Final = {
@@ -34,4 +35,7 @@ def show(facts: Iterable[MachineFact]) -> None:
             table.add_row(_MARKS[row.state], Text(row.subject), Text(row.detail))
             if row.remedy:
                 table.add_row("", "", Text(f"fix: {row.remedy}", "cyan"))
-    Console().print(table)
+    console = Console()
+    with console.capture() as text:
+        console.print(table)
+    answer(text.get().rstrip("\n"))

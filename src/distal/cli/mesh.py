@@ -33,6 +33,7 @@ from distal.cli.base import (
     load,
     reporting,
 )
+from distal.cli.exit_codes import ExitCode
 from distal.diagnostics import LoadError
 
 if TYPE_CHECKING:
@@ -113,7 +114,7 @@ def mesh(
         for line in report_lines(output, found, unit):
             say(line)
     if check and any(any(made.report["check"].values()) for made in found.meshes):
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.FAILED)
 
 
 def load_solid(

@@ -15,6 +15,7 @@ from types import TracebackType
 from typing import IO, Final, Self
 
 from distal.cli.messages import say
+from distal.diagnostics import readable
 from distal.forking import new_lock
 from distal.lang.progress_lines import COMPILING, KEY, RENDERING
 
@@ -71,7 +72,7 @@ class _ProgressWriter:
 
     def answer(self, line: str) -> None:
         """Write a line of data."""
-        self._stream.write(f"{line}\n")
+        self._stream.write(f"{readable(line)}\n")
         self._stream.flush()
 
 

@@ -21,6 +21,7 @@ from distal.cli.base import (
     chosen_device,
     reporting,
 )
+from distal.cli.exit_codes import ExitCode
 from distal.diagnostics import printable_lines
 
 if TYPE_CHECKING:
@@ -112,10 +113,10 @@ def rerender(
             found = library.difference(plan, made)
             answer(printable_lines(_difference_line(picture, found)))
             if not found.is_none:
-                raise typer.Exit(1)
+                raise typer.Exit(ExitCode.FAILED)
     except (ReadError, library.RerenderError) as error:
         say(f"error: {error}")
-        raise typer.Exit(1) from None
+        raise typer.Exit(ExitCode.FAILED) from None
 
 
 def _kept_bits(kind: str, bits: int, target: Path) -> int | None:

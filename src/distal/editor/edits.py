@@ -108,13 +108,15 @@ def _default_of(node: ast.AST, name: str) -> ast.expr | None:
     called = node.func.id if isinstance(node.func, ast.Name) else node.func.attr
     if called not in _DECLARES or not node.args or not isinstance(node.args[0], ast.Constant):
         return None
-    label = str(node.args[0].value)
-    if name not in (label, parameter_name(label)):
+    by_name = {keyword.arg: keyword.value for keyword in node.keywords}
+    label, chosen = node.args[0].value, by_name.get("name")
+    try:
+        own = parameter_name(label, getattr(chosen, "value", None))
+    except (ValueError, TypeError):  # Python reports it
         return None
-    for keyword in node.keywords:
-        if keyword.arg == "default":
-            return keyword.value
-    return node.args[1] if len(node.args) > 1 else None
+    if name not in (label, own):
+        return None
+    return by_name.get("default", node.args[1] if len(node.args) > 1 else None)
 
 
 def _camera(file: str, text: str, camera: str) -> list[Edit]:

@@ -12,6 +12,7 @@ from pathlib import Path, PurePath
 from typing import Final
 
 from distal.diagnostics import LoadError
+from distal.source_text import SourceTextError, encoded
 
 MOST_LINKS: Final = 1000  # entries of the scene's folder
 
@@ -27,17 +28,21 @@ def check_name(name: str) -> None:
         raise LoadError(f"'{shown}' is not the name of a Python file")
 
 
-def encoded_text(name: str, text: str) -> bytes:
+def encoded_text(name: str, text: str, *, mark: bool = False) -> bytes:
     """Return the bytes of a file's text.
 
+    Args:
+        name: The name of the file.
+        text: Its text, which may name its encoding.
+        mark: Whether a byte order mark begins the file.
+
     Raises:
-        LoadError: It has half a character (a lone surrogate), which no file can hold.
+        LoadError: It has a character that its encoding lacks, or half a character.
     """
     try:
-        return text.encode("utf-8")
-    except UnicodeEncodeError as error:
-        line = text.count("\n", 0, error.start) + 1
-        raise LoadError(f"line {line} of '{name}' has a character that is not Unicode") from None
+        return encoded(text, mark=mark)
+    except SourceTextError as error:
+        raise LoadError(f"'{name}' {error}") from None
 
 
 def link_beside(source: Path, folder: Path) -> None:

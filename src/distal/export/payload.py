@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from distal.diagnostics import CompileError
+from distal.diagnostics import CompileError, readable
 from distal.export.page_options import PageOptions
 from distal.export.page_programs import Compile, PagePrograms
 from distal.export.pasted_code import code_around
@@ -23,6 +23,7 @@ from distal.lang.chosen_values import checked_values
 from distal.lang.functions import Image
 from distal.lang.parameters import Parameter
 from distal.scene.viewing.viewable import COLOR, Viewable, view_label
+from distal.source_text import decoded
 from distal.version import __version__
 
 FORMAT: Final = 1
@@ -138,7 +139,7 @@ def _steering(seen: Viewable, programs: PagePrograms, *, guided: bool) -> dict[s
 def name_of(seen: Viewable) -> str:
     """Return the name for people: the object's own, or that of its file if its own is generic."""
     if seen.name in _PLAIN_NAMES and seen.file is not None:
-        return seen.file.stem.replace("_", " ")
+        return readable(seen.file.stem).replace("_", " ")
     return seen.name.replace("_", " ")
 
 
@@ -158,7 +159,7 @@ def _documentation(seen: Viewable) -> str:
     if seen.file is None:
         return ""
     try:
-        return ast.get_docstring(ast.parse(seen.file.read_text(encoding="utf-8"))) or ""
+        return ast.get_docstring(ast.parse(decoded(seen.file.read_bytes()))) or ""
     except (OSError, ValueError, SyntaxError):  # edited or deleted since it was loaded
         return ""
 

@@ -17,6 +17,7 @@ from distal.backends.base import Artifact
 from distal.backends.clike.module_text import comment_text
 from distal.backends.targets import Declares
 from distal.compiler.driver import TEXT_TABLE_FROM, run_passes
+from distal.diagnostics import readable
 from distal.export.exported import Exported
 from distal.export.page_options import TextOptions
 from distal.file_writer import SaveError, replacement
@@ -124,7 +125,7 @@ def text(seen: Viewable, target: str, options: TextOptions) -> Artifact:
     text_of = image.text() if isinstance(image, Composed) else image
     module = lower(text_of, table_from=TEXT_TABLE_FROM if description.buffers else None)
     artifact = emit(run_passes(with_values(module, values), description), description)
-    name = seen.file.name if seen.file is not None else ""
+    name = readable(seen.file.name) if seen.file is not None else ""
     return replace(artifact, text=with_header(artifact, target, name))
 
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final, TypeAlias, TypeVar
 
-from distal.diagnostics import LONGEST_MESSAGE, printable
+from distal.diagnostics import LONGEST_MESSAGE, printable, readable
 from distal.ir.limits import FRAME_SECONDS
 from distal.lang.live_textures import NO_KEYS, Keys, checked_keys
 from distal.version import __version__
@@ -154,7 +154,7 @@ def texts(origin: Provenance, size: tuple[int, int]) -> dict[str, str]:
         found["distal:layers"] = ",".join(origin.layers)
     if origin.freeze:
         found["distal:freeze"] = "true"
-    return found
+    return {key: readable(text) for key, text in found.items()}
 
 
 def _frame_texts(origin: Provenance) -> dict[str, str]:

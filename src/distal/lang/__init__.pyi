@@ -145,6 +145,7 @@ def slider(
     log: bool = False,
     group: str = "",
     help: str = "",
+    name: str | None = None,
 ) -> float: ...
 def integer(
     label: str,
@@ -155,8 +156,16 @@ def integer(
     *,
     group: str = "",
     help: str = "",
+    name: str | None = None,
 ) -> int: ...
-def toggle(label: str, default: bool = False, *, group: str = "", help: str = "") -> bool: ...
+def toggle(
+    label: str,
+    default: bool = False,
+    *,
+    group: str = "",
+    help: str = "",
+    name: str | None = None,
+) -> bool: ...
 def choice(
     label: str,
     options: Sequence[str],
@@ -164,6 +173,7 @@ def choice(
     *,
     group: str = "",
     help: str = "",
+    name: str | None = None,
 ) -> int: ...
 def color(
     label: str,
@@ -171,6 +181,7 @@ def color(
     *,
     group: str = "",
     help: str = "",
+    name: str | None = None,
 ) -> vec3: ...
 @overload
 def point(
@@ -179,6 +190,7 @@ def point(
     *,
     group: str = "",
     help: str = "",
+    name: str | None = None,
 ) -> vec3: ...
 @overload
 def point(
@@ -187,6 +199,7 @@ def point(
     *,
     group: str = "",
     help: str = "",
+    name: str | None = None,
 ) -> vec2: ...
 def gradient(field: Callable[[Floats], float], p: Floats) -> Floats: ...
 def value_and_gradient(field: Callable[[Floats], float], p: Floats) -> tuple[float, Floats]: ...

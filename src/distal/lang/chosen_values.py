@@ -14,8 +14,9 @@ from distal.lang.parameters import Parameter
 
 
 def by_key(parameters: Iterable[Parameter]) -> dict[str, Parameter]:
-    """Return parameters by all that names them: their labels, and their names."""
-    return {key: p for p in parameters for key in (p.label, p.name)}
+    """Return parameters by all that names them: their names, and labels that are no names."""
+    listed = list(parameters)
+    return {p.label: p for p in listed} | {p.name: p for p in listed}
 
 
 def checked_values(

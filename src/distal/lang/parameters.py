@@ -8,6 +8,7 @@ compiled program each parameter is a uniform called ``name``; this module does n
 
 from __future__ import annotations
 
+import keyword
 import re
 import unicodedata
 from collections.abc import Sequence
@@ -51,7 +52,7 @@ class Parameter(Symbolic):
     """One adjustable value of a scene. Operators and built-ins applied to it return expressions.
 
     Attributes:
-        name: Identifier made from the label: the name of the uniform and the name for ``--set``.
+        name: Identifier, chosen or made from the label: the name of the uniform, and for ``--set``.
         label: The name shown to a person.
         kind: The kind of control.
         default: float, int, bool, the option's index for a choice, a tuple of linear red, green,
@@ -244,11 +245,12 @@ def slider(
     log: bool = False,
     group: str = "",
     help: str = "",
+    name: str | None = None,
 ) -> Parameter:
     """Declare a float between ``low`` and ``high`` that a person moves with a slider.
 
     Args:
-        label: The name shown to a person; its letters and digits form the parameter's name.
+        label: The name shown to a person, in any script.
         default: The initial value.
         low: Smallest value.
         high: Largest value.
@@ -256,12 +258,14 @@ def slider(
         log: Make equal steps multiply the value; ``low`` must then be above 0.
         group: The heading under which it is listed.
         help: One sentence about its effect.
+        name: The name in ``--set``, ``render`` and interfaces; None makes one of the label's
+            letters and digits.
 
     Raises:
         TypeError: An argument has the wrong type.
         ValueError: The range is empty or the default is out of range.
     """
-    name = parameter_name(label)
+    name = parameter_name(label, name)
     low, high = as_float(label, low), as_float(label, high)
     step = None if step is None else as_float(label, step)
     _check_range(label, low, high, step)
@@ -283,23 +287,26 @@ def integer(
     *,
     group: str = "",
     help: str = "",
+    name: str | None = None,
 ) -> Parameter:
     """Declare a whole number between ``low`` and ``high``; an int in scene code.
 
     Args:
-        label: The name shown to a person; its letters and digits form the parameter's name.
+        label: The name shown to a person, in any script.
         default: The initial value.
         low: Smallest value.
         high: Largest value.
         step: Distance between positions.
         group: The heading under which it is listed.
         help: One sentence about its effect.
+        name: The name in ``--set``, ``render`` and interfaces; None makes one of the label's
+            letters and digits.
 
     Raises:
         TypeError: An argument is not a whole number.
         ValueError: The range is empty, the default is out of range, or a value exceeds 32 bits.
     """
-    name = parameter_name(label)
+    name = parameter_name(label, name)
     low, high, step = (as_int(label, n) for n in (low, high, step))
     _check_range(label, low, high, step)
     return _checked(
@@ -309,21 +316,35 @@ def integer(
     )
 
 
-def toggle(label: str, default: bool = False, *, group: str = "", help: str = "") -> Parameter:
+def toggle(
+    label: str,
+    default: bool = False,
+    *,
+    group: str = "",
+    help: str = "",
+    name: str | None = None,
+) -> Parameter:
     """Declare an on/off switch; a bool in scene code.
 
     Args:
-        label: The name shown to a person; its letters and digits form the parameter's name.
+        label: The name shown to a person, in any script.
         default: The initial value.
         group: The heading under which it is listed.
         help: One sentence about its effect.
+        name: The name in ``--set``, ``render`` and interfaces; None makes one of the label's
+            letters and digits.
 
     Raises:
         TypeError: The default is not a bool.
     """
     return _checked(
         Parameter(
-            parameter_name(label), label, ParameterKind.TOGGLE, default, group=group, help=help
+            parameter_name(label, name),
+            label,
+            ParameterKind.TOGGLE,
+            default,
+            group=group,
+            help=help,
         )
     )
 
@@ -335,21 +356,24 @@ def choice(
     *,
     group: str = "",
     help: str = "",
+    name: str | None = None,
 ) -> Parameter:
     """Declare a choice between named options; in scene code an int, the index from 0.
 
     Args:
-        label: The name shown to a person; its letters and digits form the parameter's name.
+        label: The name shown to a person, in any script.
         options: The names of the options.
         default: The initial option, by name or by index from 0.
         group: The heading under which it is listed.
         help: One sentence about its effect.
+        name: The name in ``--set``, ``render`` and interfaces; None makes one of the label's
+            letters and digits.
 
     Raises:
         TypeError: An option is not a text.
         ValueError: There are no options, a name is empty or repeated, or there is no such default.
     """
-    name = parameter_name(label)
+    name = parameter_name(label, name)
     if isinstance(options, str):
         raise TypeError(f"'{label}' takes a list of options, not one text")
     named = tuple(options)
@@ -374,15 +398,18 @@ def color(
     *,
     group: str = "",
     help: str = "",
+    name: str | None = None,
 ) -> Parameter:
     """Declare a color; in scene code a vec3 of linear red, green and blue.
 
     Args:
-        label: The name shown to a person; its letters and digits form the parameter's name.
+        label: The name shown to a person, in any script.
         default: The initial color: "#rrggbb" in sRGB, a CSS name ("tomato"), or three linear
             numbers from 0 to 1.
         group: The heading under which it is listed.
         help: One sentence about its effect.
+        name: The name in ``--set``, ``render`` and interfaces; None makes one of the label's
+            letters and digits.
 
     Raises:
         TypeError: The default is neither a text nor three numbers.
@@ -390,7 +417,7 @@ def color(
     """
     return _checked(
         Parameter(
-            parameter_name(label),
+            parameter_name(label, name),
             label,
             ParameterKind.COLOR,
             as_color(label, default),
@@ -406,14 +433,17 @@ def point(
     *,
     group: str = "",
     help: str = "",
+    name: str | None = None,
 ) -> Parameter:
     """Declare a point; a vec2 or vec3 in scene code, depending on the length of the default.
 
     Args:
-        label: The name shown to a person; its letters and digits form the parameter's name.
+        label: The name shown to a person, in any script.
         default: The initial point: 2 or 3 coordinates in scene units.
         group: The heading under which it is listed.
         help: One sentence about its effect.
+        name: The name in ``--set``, ``render`` and interfaces; None makes one of the label's
+            letters and digits.
 
     Raises:
         TypeError: The default is not made of numbers.
@@ -421,25 +451,62 @@ def point(
     """
     where = as_point(label, default, (2, 3))
     return Parameter(
-        parameter_name(label), label, ParameterKind.POINT, where, group=group, help=help
+        parameter_name(label, name), label, ParameterKind.POINT, where, group=group, help=help
     )
 
 
-def parameter_name(label: object) -> str:
-    """Return the identifier made from the letters and digits of a label."""
+def parameter_name(label: object, name: object = None) -> str:
+    """Return the name of a parameter: the chosen one, or one made from its label.
+
+    A name is a Python identifier in the form in which Python keeps identifiers (NFKC), so that it
+    can be the name of an argument. The back ends write it with ASCII letters.
+
+    Args:
+        label: The label.
+        name: The name that the author chose; None makes one of the label's letters and digits.
+
+    Raises:
+        TypeError: The label or the name is not a text.
+        ValueError: The label is empty, or has no letter or digit; or the name is no identifier.
+    """
     if not isinstance(label, str):
         raise TypeError(f"a parameter's label is a text, not {type(label).__name__}")
     if not label.strip():
         raise ValueError("a parameter needs a label")
     if not label.isprintable():
         raise ValueError(f"a parameter's label is one line of printable text, not {label!r}")
-    # Accents are removed from their letters, so that "Größe" becomes grosse and not gr_e.
-    letters = unicodedata.normalize("NFKD", label.casefold())
-    letters = "".join(c for c in letters if not unicodedata.combining(c))
-    name = re.sub(r"[^a-z0-9]+", "_", letters).strip("_")
-    if not name:
-        raise ValueError(f"the label '{label}' has no Latin letter or digit to make a name of")
-    return f"p_{name}" if name[0].isdigit() else name
+    if name is not None:
+        return _chosen_name(label, name)
+    # Accents are removed from Latin letters, so that "Größe" becomes grosse and not gr_e; in other
+    # scripts a mark makes another letter.
+    letters: list[str] = []
+    for char in unicodedata.normalize("NFKD", label.casefold()):
+        if not unicodedata.combining(char) or not _is_latin(letters[-1:]):
+            letters.append(char)
+    whole = unicodedata.normalize("NFKC", "".join(letters))
+    parts = "".join(c if f"a{c}".isidentifier() else "_" for c in whole)
+    derived = re.sub(r"_+", "_", parts).strip("_")
+    if not derived:
+        raise ValueError(
+            f"the label '{label}' has no letter or digit to make a name of; choose one: name=\"…\""
+        )
+    return derived if derived.isidentifier() else f"p_{derived}"
+
+
+def _chosen_name(label: str, name: object) -> str:
+    if not isinstance(name, str):
+        raise TypeError(f"'{label}': name is a text, not {type(name).__name__}")
+    # In JavaScript "__proto__" is no ordinary key.
+    if not name.isidentifier() or keyword.iskeyword(name) or name.startswith("_"):
+        raise ValueError(
+            f"'{label}': name is a Python identifier that begins with a letter, like radius_2, "
+            f"not {name!r:.60}"
+        )
+    return unicodedata.normalize("NFKC", name)
+
+
+def _is_latin(letter: Sequence[str]) -> bool:
+    return bool(letter) and unicodedata.name(letter[0], "").startswith("LATIN ")
 
 
 def _checked(parameter: Parameter) -> Parameter:

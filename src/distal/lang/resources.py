@@ -25,6 +25,7 @@ from distal.ir.types import (
     Type,
     vector_of,
 )
+from distal.lang.source import folder_of
 from distal.lang.values import VectorValue, uint
 
 WRAPS = ("repeat", "clamp")
@@ -44,9 +45,9 @@ def checked_axes(axes: object) -> str:
 
 
 def beside(file: str, data: Any) -> Any:
-    """Return file names as paths in the folder of ``file``, where such files exist.
+    """Return file names as paths in the folder of ``file``, or else in the working folder.
 
-    "example:FILE" is a file of the examples.
+    Names of files that do not exist stay as they are. "example:FILE" is a file of the examples.
     """
     if isinstance(data, list | tuple) and len(data) == 6:  # the faces of a cube map
         return [beside(file, part) if isinstance(part, str | PathLike) else part for part in data]
@@ -54,8 +55,11 @@ def beside(file: str, data: Any) -> Any:
         return data
     if (example := data_file(os.fspath(data))) is not None:
         return str(example)
-    candidate = os.path.join(os.path.dirname(os.path.abspath(file)), os.fspath(data))
-    return candidate if os.path.exists(candidate) else data
+    name = os.fspath(data)
+    candidate = os.path.join(os.path.abspath(folder_of(file)), name)
+    if os.path.exists(candidate):
+        return candidate
+    return os.path.abspath(name) if os.path.exists(name) else data
 
 
 def _shown(data: Any) -> str:

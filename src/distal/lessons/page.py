@@ -18,6 +18,7 @@ from typing import Any, Final, assert_never
 
 from PIL import Image as PillowImage
 
+from distal.diagnostics import readable
 from distal.export.exported import Exported
 from distal.export.page import ICON, NO_SCRIPT, escaped, player_script, policy, stage
 from distal.export.page_options import PageOptions
@@ -284,7 +285,7 @@ def _goal(part: Goal, made: StagedLesson) -> str:
 
 def _code(made: StagedLesson) -> str:
     """Return the scene's source, folded to the lines that matter."""
-    name = Path(made.seen.file).name if made.seen.file else "scene.py"
+    name = readable(Path(made.seen.file).name) if made.seen.file else "scene.py"
     parts = []
     for text, first, is_shown in folded(made.source, made.lesson.head.code):
         block = code_block(python(text), label=f"Code from line {first}")

@@ -48,7 +48,7 @@ def read(path: str | Path) -> Lesson:
     """
     file = Path(path)
     try:
-        text = file.read_text(encoding="utf-8")
+        text = file.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
         raise LoadError(f"{file} is not text in UTF-8") from None
     except OSError as error:

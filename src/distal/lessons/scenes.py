@@ -18,6 +18,7 @@ from distal.lessons.document import Goal, Layers, Lesson, Phrases, Try
 from distal.lessons.mistakes import choice_hint, mistake
 from distal.loading import load, split_source
 from distal.scene.viewing.viewable import Viewable, viewable
+from distal.source_text import decoded, with_plain_ends
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +133,7 @@ def _values(
 
 def _source(seen: Viewable) -> str:
     file = seen.file
-    return Path(file).read_text(encoding="utf-8") if file is not None else ""
+    return with_plain_ends(decoded(Path(file).read_bytes())) if file is not None else ""
 
 
 def _definitions(source: str) -> dict[str, ast.stmt]:

@@ -35,7 +35,7 @@ def started(folder, *words, browser=("--no-browser",)):
         (["picture.png"], "'picture.png' is not a Python file"),
         (["none/scene.py"], "there is no folder 'none'"),
         (["example:none"], "there is no example 'none'; 'distal examples' lists them"),
-        (["binary.py"], "binary.py' is not UTF-8 text"),
+        (["binary.py"], "binary.py' is text in UTF-16; save it as UTF-8"),
         (["--port", "99999"], "65535"),
         (["--time-limit", "0"], "0"),
     ],

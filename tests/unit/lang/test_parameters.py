@@ -21,10 +21,23 @@ MODE = choice("Mode", ["flat", "lit", "2"], "lit")
         ("a__b--c_", "a_b_c"),
         ("3D", "p_3d"),
         ("Épaisseur", "epaisseur"),
+        ("半径", "半径"),
+        ("Радиус (мм)", "радиус_мм"),
+        ("Ø", "ø"),
+        ("µ", "μ"),
+        ("x²", "x2"),
+        ("①", "p_1"),
+        ("٣ نقاط", "p_٣_نقاط"),
+        ("Ghế", "ghe"),
     ],
 )
 def test_name_is_an_identifier_made_of_the_label(label, name):
     assert slider(label, 0.5).name == name
+
+
+def test_chosen_name_is_kept_in_the_form_of_python():
+    assert slider("°", 0.5, name="Winkel").name == "Winkel"
+    assert integer("A", 1, name="ﬁn").name == "fin"
 
 
 @pytest.mark.parametrize(
@@ -55,7 +68,16 @@ def test_hex_color_is_decoded_from_srgb():
     ("define", "error", "words"),
     [
         (lambda: slider("", 0.5), ValueError, "needs a label"),
-        (lambda: slider("速度", 0.5), ValueError, "速度"),
+        (lambda: slider("°", 0.5), ValueError, 'choose one: name="…"'),
+        (
+            lambda: slider("a", 0.5, name="a b"),
+            ValueError,
+            "with a letter, like radius_2, not 'a b'",
+        ),
+        (lambda: toggle("a", name="class"), ValueError, "Python identifier"),
+        (lambda: slider("a", 0.5, name="__proto__"), ValueError, "begins with a letter"),
+        (lambda: point("a", name=""), ValueError, "Python identifier"),
+        (lambda: color("a", name=7), TypeError, "'a': name is a text, not int"),
         (lambda: slider("a\nb", 0.5), ValueError, "one line"),
         (lambda: slider(3, 0.5), TypeError, "label is a text"),
         (lambda: slider("A", 0.5, 1.0, 0.0), ValueError, "'A': low (1) must be below high (0)"),

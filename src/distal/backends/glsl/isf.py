@@ -22,7 +22,7 @@ from distal.backends.clike.module_names import ModuleNames
 from distal.backends.clike.names import Namer, Reserved
 from distal.backends.glsl.targets import ISF_MOUSE, refuse_live_textures
 from distal.backends.glsl.writer import Glsl100Writer
-from distal.diagnostics import CompileError
+from distal.diagnostics import CompileError, readable
 from distal.error_codes import ErrorCode
 from distal.ir.nodes import Module, Origin, Resource, ResourceDeclaration, UniformDeclaration
 from distal.ir.types import Texture, TextureShape
@@ -66,7 +66,7 @@ class IsfHeader:
             elif uniform.origin is Origin.FRAME and uniform.name == "mouse":
                 inputs.append(_point(ISF_MOUSE, "Mouse", (0.0, 0.0), (0.0, 1.0)))
         span = module.function(module.entry).span
-        file = PurePath(span.file).name if span is not None else ""
+        file = readable(PurePath(span.file).name) if span is not None else ""
         described: dict[str, Any] = {
             "DESCRIPTION": f"The picture of {file or 'a scene'}, written by distal {__version__}",
             "CREDIT": file,
@@ -195,7 +195,7 @@ def _file_name(resource: ResourceDeclaration) -> str:
             None,
             "save it as a picture, and declare Texture2D of the file",
         )
-    return PurePath(data).name
+    return readable(PurePath(data).name)
 
 
 class IsfWriter(Glsl100Writer):

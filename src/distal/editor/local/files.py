@@ -16,12 +16,13 @@ from pathlib import Path
 
 from distal.diagnostics import LoadError
 from distal.editor.local.drafts import Drafts
-from distal.editor.local.source_file import NO_FILE, UNREADABLE, SourceFile, plain
+from distal.editor.local.source_file import NO_FILE, UNREADABLE, SourceFile
 from distal.editor.local.versions import Why
 from distal.editor.messages import Changed, DiskProblem, Saved
 from distal.editor.scene_folder import check_name
 from distal.file_writer import ChangedError, LinkedError, digest_of, save
 from distal.forking import new_lock
+from distal.source_text import SourceTextError, decoded, with_plain_ends
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,7 +222,7 @@ class SceneFiles:
         inode = 0
         with contextlib.suppress(OSError):
             inode = path.stat().st_ino
-        text = plain(data.decode("utf-8"))
+        text = with_plain_ends(decoded(data))
         return replace(
             before, text=text, digest=digest_of(data), data=data, problem="", inode=inode
         )
@@ -297,8 +298,12 @@ class SceneFiles:
 
 
 def version_text(data: bytes) -> str:
-    """Return the text of a version's bytes; what is not UTF-8 is replaced."""
-    return plain(data.decode("utf-8", "replace"))
+    """Return the text of a version's bytes; what is no text in its encoding is replaced."""
+    try:
+        text = decoded(data)
+    except SourceTextError:
+        text = data.decode("utf-8", "replace")
+    return with_plain_ends(text)
 
 
 def _imported(text: str) -> set[str]:

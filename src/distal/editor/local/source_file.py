@@ -16,11 +16,11 @@ from typing import Final
 from distal.diagnostics import LoadError
 from distal.editor.scene_folder import encoded_text
 from distal.file_writer import digest_of
+from distal.source_text import SourceTextError, decoded, has_mark, with_plain_ends
 
 LONGEST_FILE: Final = 8_000_000  # bytes of a file that is shown or saved
 NO_FILE: Final = ""  # the digest of a file that is not there
 UNREADABLE: Final = "?"  # that of one whose bytes are not known: nothing is written there
-_BOM = "\ufeff"
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class SourceFile:
         text: The text; lines end by a newline alone. "" where there is a problem.
         digest: The digest of the file's bytes, ``NO_FILE`` or ``UNREADABLE``.
         ends: What ends lines on the disk.
-        mark: The byte order mark that begins the file, or "".
+        mark: Whether a byte order mark begins the file.
         data: The bytes.
         problem: Why it has no text, for a sentence that begins with its name; "" where it has one.
         inode: Names the file among those of its folder, whatever it is called; 0 if unknown.
@@ -40,7 +40,7 @@ class SourceFile:
     text: str
     digest: str
     ends: str = "\n"
-    mark: str = ""
+    mark: bool = False
     data: bytes = b""
     problem: str = ""
     inode: int = 0
@@ -64,12 +64,11 @@ class SourceFile:
             return cls("", UNREADABLE, problem=f"has more than {LONGEST_FILE:,} bytes")
         digest = digest_of(data)
         try:
-            text = data.decode("utf-8")
-        except UnicodeDecodeError:
-            return cls("", digest, data=data, problem="is not UTF-8 text", inode=inode)
-        mark = _BOM if text.startswith(_BOM) else ""
+            text = decoded(data)
+        except SourceTextError as error:
+            return cls("", digest, data=data, problem=str(error), inode=inode)
         ends = "\r\n" if "\r\n" in text else "\n"
-        return cls(plain(text), digest, ends, mark, data, inode=inode)
+        return cls(with_plain_ends(text), digest, ends, has_mark(data), data, inode=inode)
 
     def encoded(self, name: str, text: str) -> bytes:
         """Return the bytes of a new text of this file.
@@ -77,15 +76,10 @@ class SourceFile:
         Raises:
             LoadError: It is too long, or has what no file can hold.
         """
-        data = encoded_text(name, self.mark + text.replace("\n", self.ends))
+        data = encoded_text(name, text.replace("\n", self.ends), mark=self.mark)
         if len(data) > LONGEST_FILE:
             raise LoadError(f"'{name}' would have more than {LONGEST_FILE:,} bytes")
         return data
-
-
-def plain(text: str) -> str:
-    """Return a text without byte order mark, whose lines end by a newline alone."""
-    return text.removeprefix(_BOM).replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _opened(path: str, flags: int) -> int:

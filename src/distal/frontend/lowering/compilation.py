@@ -247,9 +247,7 @@ class Compilation:
         known = self._uniforms.get(name)
         if known is not None and known[0] != parameter:
             message = f"two parameters are called '{name}'"
-            hint = (
-                f"their labels: '{known[0].label}' and '{parameter.label}', with different ranges"
-            )
+            hint = f'they differ, so one needs another name: name="{name}_2"'
             labels = [Label(p, "the first is here") for p in (known[0].span,) if p is not None]
             raise CompileError.at(ErrorCode.PARAMETER, message, parameter.span, hint, tuple(labels))
         if known is None:

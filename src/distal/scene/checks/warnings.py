@@ -7,7 +7,6 @@ spoil a picture; ``validation`` measures more precisely.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from typing import Any, Final, NamedTuple
 from weakref import WeakSet
@@ -15,7 +14,6 @@ from weakref import WeakSet
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.diagnostics import Span
 from distal.fields.boxes import given_slope
 from distal.fields.guarantees import Primitive
 from distal.frontend import Assembly
@@ -30,7 +28,7 @@ from distal.scene.lowering.picture import SceneLowering
 from distal.scene.lowering.shapes import ZERO_CELL
 from distal.scene.lowering.slope_limit import loses_slope, may_be_endless, refuse_steepness
 from distal.scene.objects.field import BaseShape
-from distal.scene.tree.errors import refuse
+from distal.scene.tree.errors import refuse, warn
 from distal.scene.tree.node import Node
 from distal.session import SESSION
 
@@ -143,7 +141,7 @@ def _look(node: Node, params: Mapping[str, Any], time: float) -> None:
         refuse(f"'{node.name}' gives no number at any of {PLACES} places", hint, node.place)
     if not np.isfinite(values).all():
         at = _shown(p[~np.isfinite(values)][0])
-        _warn(f"'{node.name}' gives no number at {at}; rays that come there see nothing", node)
+        warn(f"'{node.name}' gives no number at {at}; rays that come there see nothing", node.place)
     _look_at_slope(node, value, p, values, float(np.max(high - low)))
 
 
@@ -168,7 +166,7 @@ def _look_at_slope(node: Node, value: Any, p: Points, here: Points, size: float)
     if change[at] > slack * claimed:
         found = f"'{node.name}' changes by {change[at]:.3g} per unit near {_shown(p[at])}"
         hint = f"rays may pass through it; give slope={1.05 * change[at]:.2g} or more"
-        _warn(f"{found}, more than its {kind} slope {claimed:g}: {hint}", node)
+        warn(f"{found}, more than its {kind} slope {claimed:g}: {hint}", node.place)
 
 
 def _box(node: Node, params: Mapping[str, Any], time: float) -> tuple[Points, Points]:
@@ -205,7 +203,7 @@ def warn_of_black(scene: Any, picture: Any, params: Mapping[str, Any], time: flo
         where, hint = hidden_camera(scene)
         refuse(f"the camera is {where}, and all around it is dark", hint, scene.place)
     if not _is_dark(scene):  # which is said already
-        _warn("the picture is black: no light comes from what the camera sees", scene)
+        warn("the picture is black: no light comes from what the camera sees", scene.place)
 
 
 def hidden_camera(scene: Any) -> tuple[str, str]:
@@ -228,9 +226,9 @@ def warn_of_camera(scene: Any) -> None:
         scene: The scene, rendered in mode "direct".
     """
     if scene.camera.lens is not None:
-        _warn("the camera's aperture blurs in mode='path' only: everything is sharp", scene)
+        warn("the camera's aperture blurs in mode='path' only: everything is sharp", scene.place)
     if scene.shutter > 0.0:
-        _warn("the scene's shutter blurs in mode='path' only: nothing moves", scene)
+        warn("the scene's shutter blurs in mode='path' only: nothing moves", scene.place)
 
 
 def warn_of_darkness(scene: Any) -> None:
@@ -240,8 +238,9 @@ def warn_of_darkness(scene: Any) -> None:
         scene: The scene.
     """
     if _is_dark(scene):
-        _warn(
-            "the scene has no lights: its shapes are black; leave out lights= for usual ones", scene
+        warn(
+            "the scene has no lights: its shapes are black; leave out lights= for usual ones",
+            scene.place,
         )
 
 
@@ -261,7 +260,7 @@ def warn_of_lost_rays(scene: Any, lost: Mapping[str, float]) -> None:
     """
     if lost.get("inside", 0.0) >= 1.0:
         where, hint = hidden_camera(scene)
-        _warn(f"the camera is {where}: {hint}", scene)
+        warn(f"the camera is {where}: {hint}", scene.place)
     found = {why: share for why, share in lost.items() if share > MOST_LOST and why != "inside"}
     if not found:
         return
@@ -279,7 +278,7 @@ def warn_of_lost_rays(scene: Any, lost: Mapping[str, float]) -> None:
         more.append(f"steps={2 * (scene.steps or 160)} or more")
     if "far" in found:
         more.append("a larger far, or fog that hides what is far away")
-    _warn(f"{causes_found}: give {' and '.join(more)}", scene)
+    warn(f"{causes_found}: give {' and '.join(more)}", scene.place)
 
 
 def shows(values: NDArray[np.float32]) -> bool:
@@ -307,14 +306,6 @@ class _Eye(Composed):
         origin = field_of(self._scene.camera.emit(made.composer, site), "origin")
         value = Call(field.name, (origin, *field.captures), FLOAT)
         return assembly.define("eye", (), FLOAT, (Return(value),), self._scene.place)
-
-
-def _warn(message: str, of: Any) -> None:
-    place: Span | None = of.place
-    if place is None:
-        warnings.warn(message, stacklevel=2)
-    else:
-        warnings.warn_explicit(message, UserWarning, place.file, place.line)
 
 
 def _shown(p: Points) -> str:

@@ -86,9 +86,14 @@ def annotation_of(type: Type | None, *, is_color: bool = False) -> str:
     return "Color" if is_color else "Vector"
 
 
-def documentation_of(declaration: Declaration) -> str:
-    """Return the scene function's docstring with the arguments that authors pass."""
-    text = inspect.getdoc(declaration.function) or ""
+def documentation_of(declaration: Declaration) -> str | None:
+    """Return the scene function's docstring with the arguments that authors pass.
+
+    None where Python keeps no docstrings (``python -OO``): nothing but ``help()`` reads them.
+    """
+    text = inspect.getdoc(declaration.function)
+    if text is None:
+        return None
     described = {e.name: _wrapped(f"{e.name}: {e.doc}") for e in declaration.extras}
     head, found, rest = text.partition("Args:\n")
     entries, separator, rest = rest.partition("\n\n")

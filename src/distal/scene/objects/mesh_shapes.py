@@ -5,10 +5,8 @@ Input: a file or arrays, a spacing. Output: a node that every target compiles, a
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from distal.diagnostics import LoadError, Span
@@ -21,9 +19,9 @@ from distal.lang.units import meters_of
 from distal.scene.lowering.derived import DistanceOf
 from distal.scene.objects.materials import as_material
 from distal.scene.objects.patterns import volume_colors
-from distal.scene.objects.volume_shapes import brick_node, grid_node
+from distal.scene.objects.volume_shapes import beside_author, brick_node, grid_node
 from distal.scene.tree.calls import Pattern
-from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.errors import refuse, refuse_kind, warn
 from distal.scene.tree.node import Node
 
 if TYPE_CHECKING:
@@ -142,15 +140,6 @@ def _imported(
     return importing.imported_file(beside_author(source, place), wanted)
 
 
-def beside_author(source: str | PathLike[str], place: Span | None) -> Path:
-    """Return the path of a file, beside the author's file if it is there."""
-    path = Path(source)
-    if place is not None and not path.is_absolute():
-        beside = Path(place.file).parent / path
-        path = beside if beside.exists() else path
-    return path
-
-
 def _measured(found: Imported, place: Span | None) -> Node:
     """Return the node, with a report of how far its surface is from the mesh."""
     rows = found.places.shape[:2]
@@ -175,10 +164,7 @@ def tell(messages: Sequence[str], line: str, place: Span | None) -> None:
         place: The author's line.
     """
     for message in messages:
-        if place is None:
-            warnings.warn(message, stacklevel=2)
-        else:
-            warnings.warn_explicit(message, UserWarning, place.file, place.line)
+        warn(message, place)
     notice(line)
 
 

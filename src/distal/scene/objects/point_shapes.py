@@ -12,7 +12,8 @@ from distal.diagnostics import LoadError, Span
 from distal.lang.lazy_module import LazyModule
 from distal.lang.parameter_values import as_float
 from distal.lang.units import meters_of
-from distal.scene.objects.mesh_shapes import beside_author, sampled_node, tell, values_at
+from distal.scene.objects.mesh_shapes import sampled_node, tell, values_at
+from distal.scene.objects.volume_shapes import beside_author
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
 

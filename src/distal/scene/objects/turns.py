@@ -6,10 +6,10 @@ Input: the angles of an author's rotation. Output: a warning at that line.
 from __future__ import annotations
 
 import math
-import warnings
 from typing import Any, Final
 
 from distal.diagnostics import Span
+from distal.scene.tree.errors import warn
 
 # Rotations by 30, 45 or 90 radians are unlikely; 15 may be the last value of a loop.
 LEAST_DEGREES: Final = 30
@@ -26,7 +26,4 @@ def warn_of_degrees(place: Span | None, *angles: Any) -> None:
                 f"angles are radians, and {angle:g} of them are {turns:.3g} turns; "
                 f"for degrees write np.radians({angle:g})"
             )
-            if place is None:
-                warnings.warn(message, stacklevel=3)
-            else:
-                warnings.warn_explicit(message, UserWarning, place.file, place.line)
+            warn(message, place)

@@ -6,7 +6,6 @@ compiles.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
@@ -20,8 +19,9 @@ from distal.lang.lazy_module import LazyModule
 from distal.lang.notices import notice
 from distal.lang.parameter_values import as_float
 from distal.lang.resources import AXES, Buffer, Texture3D, checked_axes
+from distal.lang.source import folder_of
 from distal.scene.objects.binding import bound
-from distal.scene.tree.errors import refuse
+from distal.scene.tree.errors import refuse, warn
 from distal.scene.tree.node import Node
 
 if TYPE_CHECKING:
@@ -53,9 +53,7 @@ def volume_node(source: Any, place: Span | None, *, spacing: Any, axes: Any, lev
         given = None if spacing is None else _three(spacing)
         at = None if level is None else as_float("level", level)
         if isinstance(source, str | PathLike):
-            path = Path(source)
-            if place is not None and (Path(place.file).parent / path).exists():
-                path = Path(place.file).parent / path
+            path = beside_author(source, place)
             found = volumes.read_volume(path)
             is_ordered = path.suffix.lower() != ".npy"
         else:
@@ -70,7 +68,7 @@ def volume_node(source: Any, place: Span | None, *, spacing: Any, axes: Any, lev
     except (TypeError, ValueError) as error:
         refuse(str(error), "spacing=0.5, or spacing=(0.5, 0.5, 1.0) along x, y and z", place)
     if level is None and field.scale < 1.0:
-        _warn(
+        warn(
             f"neighboring samples differ by up to {1.0 / field.scale:.3g} times their distance, so "
             "they are no distances: they are divided by that; give spacing= if it is another one, "
             "or level= if they are no distances",
@@ -128,8 +126,10 @@ def _three(spacing: Any) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _warn(message: str, place: Span | None) -> None:
-    if place is None:
-        warnings.warn(message, stacklevel=2)
-    else:
-        warnings.warn_explicit(message, UserWarning, place.file, place.line)
+def beside_author(source: str | PathLike[str], place: Span | None) -> Path:
+    """Return the path of a file, beside the author's file if it is there."""
+    path = Path(source)
+    if place is not None and not path.is_absolute():
+        beside = Path(folder_of(place.file)) / path
+        path = beside if beside.exists() else path
+    return path

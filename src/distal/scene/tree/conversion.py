@@ -31,6 +31,7 @@ from distal.lang.parameter_values import (
 from distal.lang.parameters import Parameter
 from distal.lang.places import CELL, places_in
 from distal.lang.resources import Buffer, Texture2D, Texture3D, TextureValue
+from distal.lang.source import folder_of
 from distal.lang.values import VectorValue
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.whole_numbers import whole_ends
@@ -576,7 +577,8 @@ def beside(value: str | os.PathLike[str], place: Span | None) -> str | os.PathLi
     """Return a file's path in the folder of the author's file if it exists there, else the name."""
     if place is None:
         return value
-    candidate = os.path.join(os.path.dirname(os.path.abspath(place.file)), os.fspath(value))
+    folder = os.path.abspath(folder_of(place.file))
+    candidate = os.path.join(folder, os.fspath(value))
     return candidate if os.path.exists(candidate) else value
 
 

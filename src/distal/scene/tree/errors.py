@@ -7,6 +7,7 @@ an exception that is printed like every other error in a scene, and that ``excep
 
 from __future__ import annotations
 
+import warnings
 from typing import NoReturn
 
 from distal.diagnostics import CompileError, Diagnostic, Span
@@ -20,6 +21,29 @@ class SceneValueError(CompileError, ValueError):
 
 class SceneTypeError(CompileError, TypeError):
     """A scene object does not accept a value of this type."""
+
+
+class SceneWarningError(CompileError, UserWarning):
+    """A warning about a scene object, which a filter of Python's makes an error."""
+
+
+def warn(message: str, place: Span | None) -> None:
+    """Warn of a scene object at the author's line.
+
+    Args:
+        message: What may be wrong, and what to write instead.
+        place: The author's line, if it is known.
+
+    Raises:
+        SceneWarningError: A filter makes warnings errors.
+    """
+    try:
+        if place is None:
+            warnings.warn(message, stacklevel=3)
+        else:
+            warnings.warn_explicit(message, UserWarning, place.file, place.line)
+    except UserWarning:
+        raise SceneWarningError([Diagnostic(ErrorCode.OBJECT, message, place)]) from None
 
 
 def refuse(message: str, hint: str | None = None, place: Span | None = None) -> NoReturn:
