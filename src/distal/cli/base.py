@@ -22,6 +22,7 @@ from distal.cli.messages import say
 from distal.devices.memory_limit import is_limited, require
 from distal.diagnostics import CompileError, DeviceError, LoadError
 from distal.images.atomic_files import SaveError
+from distal.interrupting import EXIT_CODE, CtrlCRaises
 from distal.lang.units import UNITS
 from distal.packages import explained
 from distal.runtime import device_names
@@ -106,6 +107,13 @@ def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
     @functools.wraps(command)
     def run(*args: Arguments.args, **kwargs: Arguments.kwargs) -> None:
         try:
+            with CtrlCRaises():
+                reported(*args, **kwargs)
+        except KeyboardInterrupt:
+            raise typer.Exit(EXIT_CODE) from None
+
+    def reported(*args: Arguments.args, **kwargs: Arguments.kwargs) -> None:
+        try:
             if command.__name__ not in _WITHOUT_ARRAYS:
                 prepare_for_arrays()
             command(*args, **kwargs)
@@ -121,8 +129,6 @@ def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
         except (SaveError, DeviceError) as error:
             say(f"error: {error}")
             raise typer.Exit(1) from None
-        except KeyboardInterrupt:
-            raise typer.Exit(130) from None
         except Exception as error:
             found = error if isinstance(error, MemoryError) else explained(error)
             if found is None:

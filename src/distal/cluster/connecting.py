@@ -10,27 +10,20 @@ import json
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
 from distal.cluster.errors import ClusterError, words
+from distal.cluster.local import LOCAL, local_client
 from distal.cluster.pool import TIMEOUT_S, WorkerPool
 from distal.devices.threads import usable_threads
 from distal.packages import imported
 
 _CONNECT_S: Final = 10.0
 _OTHER_SERVER: Final = "what listens there does not answer as a scheduler does"
-_LOCAL: Final = "local"
 _PROTOCOLS: Final = ("tcp", "tls", "ucx", "ws", "wss")
 _FORMS: Final = "local, local:4, tcp://host:8786, tls://host:8786, or the scheduler's file"
-# The scheduler of "local" is in this process, and its logs hold messages: 11 kB for each frame.
-_SHORT_LOGS: Final = {
-    "distributed.admin.log-length": 100,
-    "distributed.admin.low-level-log-length": 50,
-    "distributed.admin.system-monitor.log-length": 100,
-    "distributed.diagnostics.computations.max-history": 10,
-}
 _CERTIFICATE: Final = "Dask's settings distributed.comm.tls.ca-file, client.cert and client.key"
 
 
@@ -50,8 +43,8 @@ def connected(
         ClusterError: There is no such cluster.
         PackageError: ``distal[cluster]`` is not installed.
     """
-    if where == _LOCAL or where.startswith(f"{_LOCAL}:"):
-        with _local(_count(where)) as client:
+    if where == LOCAL or where.startswith(f"{LOCAL}:"):
+        with local_client(_count(where)) as client:
             yield WorkerPool(client, timeout=timeout, tell=tell)
         return
     client = _client(where)
@@ -62,33 +55,12 @@ def connected(
 
 
 def _count(where: str) -> int:
-    text = where.removeprefix(_LOCAL).removeprefix(":")
+    text = where.removeprefix(LOCAL).removeprefix(":")
     if not text:
         return usable_threads()
     if not text.isdigit() or not 1 <= int(text) <= 1024:
         raise ClusterError(f"'{where}': local:N has 1 to 1024 processes")
     return int(text)
-
-
-@contextmanager
-def _local(count: int) -> Iterator[Any]:
-    distributed = imported("distributed")
-    with imported("dask").config.set(_SHORT_LOGS):
-        cluster = distributed.LocalCluster(
-            n_workers=count,
-            threads_per_worker=1,
-            processes=True,
-            host="127.0.0.1",
-            dashboard_address="127.0.0.1:0",
-            silence_logs=50,
-        )
-        try:
-            with distributed.Client(cluster, set_as_default=False) as client:
-                yield client
-        finally:
-            # On a busy machine processes end late; they are daemons, and end with this one.
-            with suppress(TimeoutError):
-                cluster.close()
 
 
 def _check_file(path: Path) -> None:

@@ -1,0 +1,209 @@
+"""The cluster of ``--cluster local``: a scheduler in this process, workers in processes beside it.
+
+Input: a number of workers. Output: a client, for the time of a block. All of it speaks TLS with
+credentials that live as long as the block, and listens on 127.0.0.1 alone, one port for the
+scheduler and one for each worker. Workers are ordinary processes, not those of Python's
+``multiprocessing``, which needs semaphores; they are not in this process's group, so ctrl-C of a
+terminal does not reach them, and they end when their input is closed, so also when this process is
+killed.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Iterator, Mapping, Sized
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any, Final, Self
+
+from distal.cluster.errors import ClusterError
+from distal.forking import new_lock
+from distal.packages import imported, loading
+
+LOCAL: Final = "local"
+# How a scheduler or a worker listens.
+AT_HOME: Final[Mapping[str, Any]] = {"host": "127.0.0.1", "protocol": "tls://"}
+# How long workers may take to join, in seconds: on a busy machine they import slowly.
+_JOIN_S: Final = 60.0
+_LOOK_S: Final = 0.02
+# How long after the end of a process the next one begins, in seconds.
+_AGAIN_S: Final = 0.2
+# How long each part of the cluster may take to end, in seconds.
+_CLOSE_S: Final = 1.0
+# The scheduler is in this process, and its logs hold messages: 11 kB for each frame.
+_SHORT_LOGS: Final = {
+    "distributed.admin.log-length": 100,
+    "distributed.admin.low-level-log-length": 50,
+    "distributed.admin.system-monitor.log-length": 100,
+    "distributed.diagnostics.computations.max-history": 10,
+}
+# -P: without the folder of the scene, whose files may have the names of modules.
+_COMMAND: Final = (
+    *("-P", "-c"),
+    "import sys, json; settings = json.loads(sys.stdin.buffer.raw.readline()); "
+    "sys.path[:] = settings['path']; from distal.cluster.local_worker import run; run(settings)",
+)
+_OUTSIDE_THIS_GROUP: Final[Mapping[str, Any]] = (
+    {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
+    if sys.platform == "win32"
+    else {"start_new_session": True}
+)
+
+
+@contextmanager
+def local_client(count: int) -> Iterator[Any]:
+    """Start a cluster of processes of one thread each, for the time of a block.
+
+    Args:
+        count: How many workers.
+
+    Raises:
+        ClusterError: The workers do not start.
+        PackageError: Dask, or what it makes credentials with, is not installed.
+    """
+    distributed: Any = imported("distributed")
+    imported("cryptography")
+    with loading("cryptography"):
+        security = distributed.Security.temporary()
+    with imported("dask").config.set(_SHORT_LOGS), _Workers(security, count) as workers:
+        cluster = distributed.SpecCluster(
+            workers={},
+            scheduler={
+                "cls": without_http(distributed.Scheduler),
+                "options": {"port": 0, "security": security, **AT_HOME},
+            },
+            security=security,
+            silence_logs=logging.CRITICAL,
+            shutdown_on_close=False,  # at Python's end Dask would wait for what was interrupted
+        )
+        client = None
+        try:
+            workers.start(cluster.scheduler.address)
+            workers.wait(cluster.scheduler.workers)
+            client = distributed.Client(cluster, set_as_default=False)
+            yield client
+        finally:
+            # First, so that none of them does what nobody waits for.
+            workers.end()
+            for server in filter(None, (client, cluster)):
+                with suppress(TimeoutError):
+                    server.close(timeout=_CLOSE_S)
+
+
+def without_http(server: Any) -> Any:
+    """Return the class of a server of Dask that opens no port for web pages, which need no key."""
+    return type(server.__name__, (server,), {"start_http_server": lambda *_, **__: None})
+
+
+class _Workers:
+    """The processes of the workers, and a folder for them; one that ends is started again.
+
+    Args:
+        security: The credentials; they reach a process by its input, never as a file, argument or
+            variable.
+        count: How many.
+    """
+
+    def __init__(self, security: Any, count: int) -> None:
+        values = {name: getattr(security, name) for name in security.__slots__}
+        self._settings: dict[str, Any] = {
+            "path": [entry for entry in sys.path if isinstance(entry, str)],
+            "security": {n: v for n, v in values.items() if isinstance(v, str | bool)},
+            "memory": 1.0 / count,
+        }
+        self._count = count
+        self._processes: dict[int, subprocess.Popen[bytes]] = {}
+        self._threads: list[threading.Thread] = []
+        self._lock = new_lock()
+        self._is_ending = threading.Event()
+        self._ends = 0  # how many processes have ended by themselves
+
+    def __enter__(self) -> Self:
+        # Nobody else can look into it: its mode is 0700.
+        self._folder = Path(tempfile.mkdtemp(prefix="distal-cluster-"))
+        self._settings["folder"] = str(self._folder)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.end()
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+    def start(self, scheduler: str) -> None:
+        """Start the processes for the scheduler of an address."""
+        self._settings["scheduler"] = scheduler
+        for number in range(self._count):
+            thread = threading.Thread(target=self._keep, args=(number,), daemon=True)
+            self._threads.append(thread)
+            thread.start()
+
+    def wait(self, joined: Sized) -> None:
+        """Wait until all have joined the scheduler, or some and time is up.
+
+        Args:
+            joined: Those that the scheduler knows.
+
+        Raises:
+            ClusterError: They end as they start, or none has joined in time.
+        """
+        deadline = time.monotonic() + _JOIN_S
+        while len(joined) < self._count:
+            is_late = time.monotonic() > deadline
+            if is_late and joined:
+                return
+            if is_late or self._ends > self._count:
+                what = f"have not joined in {_JOIN_S:g} s" if is_late else "end as they start"
+                raise ClusterError(f"the workers of '{LOCAL}' {what}: {self._last_words()}")
+            time.sleep(_LOOK_S)  # not in Dask, where ctrl-C prints a traceback
+
+    def end(self) -> None:
+        """End the processes."""
+        self._is_ending.set()
+        with self._lock:
+            for process in self._processes.values():
+                process.kill()
+        for thread in self._threads:
+            thread.join(_CLOSE_S)
+
+    def _keep(self, number: int) -> None:
+        """Start a process, again whenever it ends, until all are to end."""
+        while True:
+            with self._lock:
+                if self._is_ending.is_set():
+                    return
+                process = self._processes[number] = self._begun(number)
+            stdin: Any = process.stdin
+            with suppress(OSError), process:  # it may have ended already
+                stdin.write(json.dumps(self._settings).encode() + b"\n")
+                stdin.flush()
+                process.wait()
+            self._ends += 1
+            self._is_ending.wait(_AGAIN_S)
+
+    def _begun(self, number: int) -> subprocess.Popen[bytes]:
+        with open(self._messages(number), "wb") as messages:
+            return subprocess.Popen(
+                [sys.executable, *_COMMAND],
+                stdin=subprocess.PIPE,
+                stdout=messages,
+                stderr=messages,
+                **_OUTSIDE_THIS_GROUP,
+            )
+
+    def _messages(self, number: int) -> Path:
+        return self._folder / f"{number}.txt"
+
+    def _last_words(self) -> str:
+        """Return the last line that one of them has written."""
+        for number in range(self._count):
+            with suppress(OSError):
+                lines = self._messages(number).read_text("utf-8", "replace").strip().splitlines()
+                if lines:
+                    return lines[-1]
+        return "they say nothing"
