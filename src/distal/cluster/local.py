@@ -72,15 +72,15 @@ def local_client(count: int) -> Iterator[Any]:
     imported("cryptography")
     with loading("cryptography"):
         security = distributed.Security.temporary()
-    with imported("dask").config.set(_SHORT_LOGS), _Workers(security, count) as workers:
+    silent = imported("distributed.utils").silence_logging_cmgr(logging.CRITICAL)
+    with silent, imported("dask").config.set(_SHORT_LOGS), _Workers(security, count) as workers:
         cluster = distributed.SpecCluster(
             workers={},
             scheduler={
                 "cls": without_http(distributed.Scheduler),
-                "options": {"port": 0, "security": security, **AT_HOME},
+                "options": {**AT_HOME, "port": 0, "security": security, **workers.place},
             },
             security=security,
-            silence_logs=logging.CRITICAL,
             shutdown_on_close=False,  # at Python's end Dask would wait for what was interrupted
         )
         client = None
@@ -134,6 +134,11 @@ class _Workers:
     def __exit__(self, *_: object) -> None:
         self.end()
         shutil.rmtree(self._folder, ignore_errors=True)
+
+    @property
+    def place(self) -> dict[str, str]:
+        """Where a server of Dask writes, and not to a folder that every user shares."""
+        return {"local_directory": str(self._folder)}
 
     def start(self, scheduler: str) -> None:
         """Start the processes for the scheduler of an address."""
