@@ -126,7 +126,7 @@ class Bench:
 
     def __init__(self, command: Command, folder: Path, environment: Mapping[str, str]) -> None:
         self.command, self._folder = command, folder
-        self._before: dict[str, bytes] = {}
+        self._before = {"part.py": SCENE.encode()}
         self._environment = {
             **os.environ,
             **environment,
@@ -138,12 +138,18 @@ class Bench:
         if command.before:
             self.run(command.before.split())
             self._before = dict(self._files())
-        self.run(command.words.split(), command.seconds)  # what it compiles is kept
+        self.whole: End | None = None
+        self.seconds = command.seconds or 0.0
+
+    def measure(self) -> None:
+        """Run the command undisturbed: how long it takes, and what it writes."""
+        words = self.command.words.split()
+        self.run(words, self.command.seconds)  # what it compiles is kept
         begin = time.monotonic()
-        self.whole = self.run(command.words.split(), command.seconds)
-        self.seconds = command.seconds or time.monotonic() - begin
-        if self.whole.code != (0 if command.seconds is None else 130):
-            raise SystemExit("\n".join((command.words, *self.whole.errors)))
+        self.whole = self.run(words, self.command.seconds)
+        self.seconds = self.command.seconds or time.monotonic() - begin
+        if self.whole.code != (0 if self.command.seconds is None else 130):
+            raise SystemExit("\n".join((self.command.words, *self.whole.errors)))
 
     def interrupted(self, moment: float, *, cold: bool = False) -> End:
         """Run the command, and interrupt it.
@@ -207,16 +213,19 @@ class Bench:
         for name in ("work", "temporary"):
             shutil.rmtree(self._folder / name, ignore_errors=True)
             (self._folder / name).mkdir()
-        for name, content in {"part.py": SCENE.encode(), **self._before}.items():
+        for name, content in self._before.items():
             (self._folder / "work" / name).write_bytes(content)
 
     def is_of_python(self, end: End) -> bool:
         """Return whether a run ended before the first line of distal ran, or after the last one."""
         said = "\n".join(end.errors)
         if end.code == -signal.SIGINT:
-            is_whole = _said(end) == _said(self.whole) and end.files == self.whole.files
-            return is_whole or not said
+            return not said or self._is_whole(end)
         return "KeyboardInterrupt" in said and "distal" not in said.replace("from distal.cli", "")
+
+    def _is_whole(self, end: End) -> bool:
+        whole = self.whole
+        return whole is not None and (_said(end), end.files) == (_said(whole), whole.files)
 
     def faults(self, end: End) -> list[str]:
         """Return what is wrong with a run that was interrupted."""
@@ -225,7 +234,8 @@ class Bench:
             found.append(f"ended after {end.seconds:.1f} s")
         if end.code not in (0, 130):
             found.append(f"exit code {end.code}")
-        more = list((_said(end) - _said(self.whole)).elements())
+        usual = Counter[str]() if self.whole is None else _said(self.whole)
+        more = list((_said(end) - usual).elements())
         if len(more) > 1:
             found.append(f"{len(more)} lines on stderr")
         if end.processes:
@@ -233,7 +243,7 @@ class Bench:
         if end.temporary:
             found.append(f"temporary files left: {', '.join(end.temporary)}")
         for name, content in end.files.items():
-            whole = self.whole.files.get(name)
+            whole = self._before.get(name) if self.whole is None else self.whole.files.get(name)
             if content != whole and not any(Path(name).match(each) for each in self.command.kept):
                 found.append(f"{'a part of' if whole is not None else 'left'} {name}")
         return found
@@ -281,6 +291,7 @@ def swept(name: str, count: int, rng: random.Random, environment: Mapping[str, s
     faults, ends, slowest = 0, Counter[str](), 0.0
     with tempfile.TemporaryDirectory(prefix="distal-interrupts-") as folder:
         bench = Bench(COMMANDS[name], Path(folder), environment)
+        bench.measure()
         for moment in moments(rng, bench.seconds, count):
             end = bench.interrupted(moment, cold=rng.random() < 0.2)
             if bench.is_of_python(end):

@@ -1,0 +1,75 @@
+"""Ctrl-C on a terminal at some moments of some commands; ``make sweep-interrupts`` takes many."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from tools.sweep_interrupts import COMMANDS, Bench
+
+# Ctrl-C as soon as the command imports anything of its own.
+EARLY = """
+import builtins, signal, sys
+signal.signal(signal.SIGINT, signal.{handler})
+import distal.cli
+plain = builtins.__import__
+def interrupted(name, *more):
+    if name == "distal.cli.running":
+        signal.raise_signal(signal.SIGINT)
+    return plain(name, *more)
+builtins.__import__ = interrupted
+sys.argv[1:] = ["examples"]
+distal.cli.main()
+"""
+
+
+def run(code):
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    return subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=60
+    )
+
+
+@pytest.mark.parametrize(("handler", "code"), [("default_int_handler", 130), ("SIG_IGN", 0)])
+def test_while_a_command_is_imported(handler, code):
+    """It ends without a word; a shell's job in the background goes on."""
+    done = run(EARLY.format(handler=handler))
+    assert (done.returncode, done.stderr) == (code, "")
+    assert ("example:" in done.stdout) == (code == 0)
+
+
+def test_a_library_leaves_signals_alone():
+    code = (
+        "import signal; before = signal.getsignal(signal.SIGINT)\n"
+        "import distal, distal.cli.running, distal.cli.render\n"
+        "assert signal.getsignal(signal.SIGINT) is before"
+    )
+    assert run(code).returncode == 0
+
+
+def test_the_first_lines_of_the_command_import_next_to_nothing():
+    """What is imported before them is interrupted with a traceback."""
+    code = "import re, sys; before = set(sys.modules); import distal.cli; {}"
+    loaded = eval(run(code.format("print(sorted(set(sys.modules) - before))")).stdout)
+    assert set(loaded) <= {
+        *("distal", "distal.public_names", "distal.version", "distal.cli", "distal.interrupting"),
+        *("importlib", "importlib._bootstrap", "importlib._bootstrap_external", "warnings"),
+        *("signal", "_signal", "__future__"),
+    }
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="groups of processes are those of POSIX")
+@pytest.mark.parametrize(
+    ("name", "moment"),
+    [("new", 0.08), ("render", 0.5), ("mesh", 1.0), ("cluster", 0.9), ("cluster", 2.0)],
+)
+def test_a_group_of_processes(name, moment, tmp_path):
+    bench = Bench(COMMANDS[name], tmp_path, {})
+    end = bench.interrupted(moment)
+    if end.code == -signal.SIGINT and not end.errors:
+        pytest.skip("Python had not started yet")
+    assert not bench.faults(end), end.errors
