@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 
 import distributed
@@ -65,8 +66,9 @@ def plain(frame: Frame) -> vec3:
 
 
 @pytest.fixture(scope="module")
-def folder():
+def folder(tmp_path_factory):
     """A folder for temporary files that everybody can enter, as the system's."""
+    tmp_path_factory.getbasetemp()  # not in it
     with tempfile.TemporaryDirectory() as path, pytest.MonkeyPatch.context() as changed:
         os.chmod(path, 0o755)
         changed.setattr(tempfile, "tempdir", path)
@@ -94,8 +96,12 @@ def listening():
 
 def workers():
     """The processes of the workers."""
-    children = psutil.Process().children()
-    return [child for child in children if "local_worker" in " ".join(child.cmdline())]
+    found = []
+    for child in psutil.Process().children():
+        with suppress(psutil.Error):  # it ends just now
+            if "local_worker" in " ".join(child.cmdline()):
+                found.append(child)
+    return found
 
 
 def stranger(ports, files=(), user=0):
@@ -115,11 +121,12 @@ def test_one_port_each_on_this_machine_alone(pool):
     assert all(address.startswith("tls://127.0.0.1:") for address in known)
 
 
-def test_a_stranger_gets_no_answer(pool):
+def test_a_stranger_gets_no_answer(pool, tmp_path):
     ports = {port for _, port in listening()}
     assert stranger(ports)[0] == []
     plain = {"host": "127.0.0.1", "port": 0, "dashboard_address": "127.0.0.1:0"}
-    scheduler = {"cls": distributed.Scheduler, "options": plain}
+    options = {**plain, "local_directory": str(tmp_path)}
+    scheduler = {"cls": distributed.Scheduler, "options": options}
     with distributed.SpecCluster({}, scheduler):
         # The same questions to a scheduler without TLS, and to its pages.
         assert len(stranger({port for _, port in listening()} - ports)[0]) == 2
