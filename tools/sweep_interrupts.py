@@ -219,8 +219,8 @@ class Bench:
     def is_of_python(self, end: End) -> bool:
         """Return whether a run ended before the first line of distal ran, or after the last one."""
         said = "\n".join(end.errors)
-        if end.code == -signal.SIGINT:
-            return not said or self._is_whole(end)
+        if end.code == -signal.SIGINT and (not said or self._is_whole(end)):
+            return True
         return "KeyboardInterrupt" in said and "distal" not in said.replace("from distal.cli", "")
 
     def _is_whole(self, end: End) -> bool:
