@@ -229,6 +229,13 @@ def test_workers_that_end_as_they_start(tmp_path):
     assert "distributed cannot be loaded: OSError: no luck" in error
 
 
+def test_no_folder_for_temporary_files(monkeypatch, tmp_path):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "nowhere"))
+    said = r"^'local' needs a folder for temporary files: .*No such file or directory"
+    with pytest.raises(ClusterError, match=said), connected("local:1"):
+        pass
+
+
 def test_the_process_that_started_it_is_killed(tmp_path):
     """Its workers end with it, and remove the folder."""
     code = (

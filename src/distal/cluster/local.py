@@ -12,6 +12,8 @@ from __future__ import annotations
 
 import json
 import logging
+import os
+import secrets
 import shutil
 import subprocess
 import sys
@@ -23,7 +25,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Final, Self
 
-from distal.cluster.errors import ClusterError
+from distal.cluster.errors import ClusterError, words
 from distal.forking import new_lock
 from distal.packages import imported, loading
 
@@ -74,15 +76,7 @@ def local_client(count: int) -> Iterator[Any]:
         security = distributed.Security.temporary()
     silent = imported("distributed.utils").silence_logging_cmgr(logging.CRITICAL)
     with silent, imported("dask").config.set(_SHORT_LOGS), _Workers(security, count) as workers:
-        cluster = distributed.SpecCluster(
-            workers={},
-            scheduler={
-                "cls": without_http(distributed.Scheduler),
-                "options": {**AT_HOME, "port": 0, "security": security, **workers.place},
-            },
-            security=security,
-            shutdown_on_close=False,  # at Python's end Dask would wait for what was interrupted
-        )
+        cluster = _scheduler(security, workers.made_folder())
         client = None
         try:
             workers.start(cluster.scheduler.address)
@@ -95,6 +89,25 @@ def local_client(count: int) -> Iterator[Any]:
             for server in filter(None, (client, cluster)):
                 with suppress(TimeoutError):
                     server.close(timeout=_CLOSE_S)
+
+
+def _scheduler(security: Any, folder: str) -> Any:
+    """Return a cluster of Dask that has no workers yet.
+
+    Raises:
+        ClusterError: It does not start, as on a full disk.
+    """
+    distributed: Any = imported("distributed")
+    options = {**AT_HOME, "port": 0, "security": security, "local_directory": folder}
+    try:
+        return distributed.SpecCluster(
+            workers={},
+            scheduler={"cls": without_http(distributed.Scheduler), "options": options},
+            security=security,
+            shutdown_on_close=False,  # at Python's end Dask would wait for what was interrupted
+        )
+    except (OSError, RuntimeError) as error:
+        raise ClusterError(f"the scheduler of '{LOCAL}' does not start: {words(error)}") from None
 
 
 def without_http(server: Any) -> Any:
@@ -124,21 +137,34 @@ class _Workers:
         self._lock = new_lock()
         self._is_ending = threading.Event()
         self._ends = 0  # how many processes have ended by themselves
+        self._error = ""  # why one could not be started
+        # Python's libraries of arithmetic would have a thread for each processor in each worker.
+        single = imported("dask").config.get("distributed.nanny.pre-spawn-environ")
+        self._environment = {**{name: str(value) for name, value in single.items()}, **os.environ}
+        self._name = f"distal-cluster-{secrets.token_hex(8)}"
+        self._folder: Path | None = None
 
     def __enter__(self) -> Self:
-        # Nobody else can look into it: its mode is 0700.
-        self._folder = Path(tempfile.mkdtemp(prefix="distal-cluster-"))
-        self._settings["folder"] = str(self._folder)
         return self
 
     def __exit__(self, *_: object) -> None:
         self.end()
-        shutil.rmtree(self._folder, ignore_errors=True)
+        if self._folder is not None:
+            shutil.rmtree(self._folder, ignore_errors=True)
 
-    @property
-    def place(self) -> dict[str, str]:
-        """Where a server of Dask writes, and not to a folder that every user shares."""
-        return {"local_directory": str(self._folder)}
+    def made_folder(self) -> str:
+        """Make the folder in which Dask writes, and not into one that all users share.
+
+        Raises:
+            ClusterError: There is no place for it.
+        """
+        try:
+            self._folder = Path(tempfile.gettempdir()) / self._name
+            os.mkdir(self._folder, 0o700)
+        except OSError as error:
+            raise ClusterError(f"'{LOCAL}' needs a folder for temporary files: {error}") from None
+        self._settings["folder"] = str(self._folder)
+        return str(self._folder)
 
     def start(self, scheduler: str) -> None:
         """Start the processes for the scheduler of an address."""
@@ -182,30 +208,40 @@ class _Workers:
             with self._lock:
                 if self._is_ending.is_set():
                     return
-                process = self._processes[number] = self._begun(number)
-            stdin: Any = process.stdin
-            with suppress(OSError), process:  # it may have ended already
-                stdin.write(json.dumps(self._settings).encode() + b"\n")
-                stdin.flush()
-                process.wait()
+                process = self._begun(number)
+            if process is not None:
+                stdin: Any = process.stdin
+                with suppress(OSError), process:  # it may have ended already
+                    stdin.write(json.dumps(self._settings).encode() + b"\n")
+                    stdin.flush()
+                    process.wait()
             self._ends += 1
             self._is_ending.wait(_AGAIN_S)
 
-    def _begun(self, number: int) -> subprocess.Popen[bytes]:
-        with open(self._messages(number), "wb") as messages:
-            return subprocess.Popen(
-                [sys.executable, *_COMMAND],
-                stdin=subprocess.PIPE,
-                stdout=messages,
-                stderr=messages,
-                **_OUTSIDE_THIS_GROUP,
-            )
+    def _begun(self, number: int) -> subprocess.Popen[bytes] | None:
+        """Start a process, which then waits for its settings; None if the system does not."""
+        try:
+            with open(self._messages(number), "wb") as messages:
+                process = self._processes[number] = subprocess.Popen(
+                    [sys.executable, *_COMMAND],
+                    stdin=subprocess.PIPE,
+                    stdout=messages,
+                    stderr=messages,
+                    env=self._environment,
+                    **_OUTSIDE_THIS_GROUP,
+                )
+        except OSError as error:
+            self._error = words(error)
+            return None
+        return process
 
     def _messages(self, number: int) -> Path:
-        return self._folder / f"{number}.txt"
+        return Path(self._settings["folder"]) / f"{number}.txt"
 
     def _last_words(self) -> str:
-        """Return the last line that one of them has written."""
+        """Return the last line that one of them has written, or why there is none."""
+        if self._error:
+            return self._error
         for number in range(self._count):
             with suppress(OSError):
                 lines = self._messages(number).read_text("utf-8", "replace").strip().splitlines()
