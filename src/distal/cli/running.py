@@ -11,6 +11,8 @@ import os
 import sys
 import threading
 import warnings
+from contextlib import suppress
+from typing import NoReturn
 
 from distal.cli import COMMANDS, SHORT
 from distal.interrupting import EXIT_CODE, interrupt_main
@@ -62,6 +64,14 @@ def _is_scene(argument: str) -> bool:
     return ends or argument.startswith("example:")
 
 
+def _leave() -> NoReturn:
+    """End the process after ctrl-C: threads may be in LLVM, for which Python would wait."""
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError):
+            stream.flush()
+    os._exit(EXIT_CODE)
+
+
 def run() -> None:
     """Run the command line of this process."""
     try:
@@ -77,7 +87,11 @@ def run() -> None:
         receive_notices(_show_notice)
         module.application()
     except KeyboardInterrupt:  # on the way into a command, or out of it
-        sys.exit(EXIT_CODE)
+        _leave()
+    except SystemExit as end:
+        if end.code == EXIT_CODE:
+            _leave()
+        raise
     except Exception as error:
         from distal.packages import explained
 

@@ -11,11 +11,11 @@ import os
 import subprocess
 import sys
 import threading
-from collections.abc import Sequence
-from concurrent.futures import Future
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, wait
 from contextlib import suppress
 from functools import cache
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from distal.devices.features import CpuLevel, level_named
 from distal.devices.features import machine as architecture_here
@@ -26,6 +26,8 @@ from distal.diagnostics import printable
 from distal.forking import kept_free
 from distal.packages import loading
 
+Result = TypeVar("Result")
+_LOOK_S: Final = 0.1  # until the main thread looks for ctrl-C
 _APART: Final = "from distal.devices.jit import _serve; _serve()"
 _LLVM_BYTES: Final = 32 * 2**20  # for LLVM's tables of targets and a loader, with a margin
 
@@ -94,7 +96,7 @@ def compile_object(
             return compile_apart(text, level, chosen, assembly=assembly)
         except ChildProcessError as error:
             raise MemoryError(f"LLVM cannot compile the scene within ulimit{error}") from None
-    return _compiled(text, level, chosen, assembly)
+    return _beside(lambda: _compiled(text, level, chosen, assembly))
 
 
 def compile_objects(texts: Sequence[str], level: CpuLevel, llvm_level: int) -> list[bytes]:
@@ -111,6 +113,10 @@ def compile_objects(texts: Sequence[str], level: CpuLevel, llvm_level: int) -> l
     """
     if len(texts) == 1 or is_limited():
         return [compile_object(text, level, llvm_level) for text in texts]
+    return _beside(lambda: _compiled_together(texts, level, llvm_level))
+
+
+def _compiled_together(texts: Sequence[str], level: CpuLevel, llvm_level: int) -> list[bytes]:
     llvm_binding()
     made: list[Future[bytes]] = [Future() for _ in texts]
 
@@ -128,6 +134,31 @@ def compile_objects(texts: Sequence[str], level: CpuLevel, llvm_level: int) -> l
     for i in range(1 + len(started), len(texts)):
         work(i)
     return [each.result() for each in made]
+
+
+def _beside(work: Callable[[], Result]) -> Result:
+    """Return the result of some work of LLVM, for which the main thread only waits.
+
+    So ctrl-C takes effect at once, and not after the seconds of a large scene. LLVM then goes on,
+    and Python waits for it at its end; a command does not.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        return work()
+    ended: Future[Result] = Future()
+
+    def run() -> None:
+        try:
+            ended.set_result(work())
+        except BaseException as error:
+            ended.set_exception(error)
+
+    try:
+        start_threads([threading.Thread(target=run)], [])
+    except MemoryError:
+        return work()
+    while not wait([ended], _LOOK_S).done:  # limited, so that ctrl-C is handled on every platform
+        pass
+    return ended.result()
 
 
 def compile_apart(
