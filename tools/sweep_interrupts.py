@@ -3,8 +3,8 @@
 Input: names of commands, how many moments of each, a seed. Output: a line for each command; the
 exit code is 1 if one has a fault. A run must end within 3 s, by exit code 130, or 0 where it had
 finished; with one more line on stderr than an undisturbed run at most, and no traceback; without a
-process, a temporary file or a part of a file. The first and the last milliseconds belong to Python,
-which does not run this program then: what ends there is counted, and is no fault.
+process, a temporary file or a part of a file. What ends before the first line of ``main``, or in
+Python's own last milliseconds, is counted, and is no fault.
 """
 
 from __future__ import annotations
@@ -45,8 +45,7 @@ _START: Final = "import sys, re\nfrom distal.cli import main\nsys.exit(main())" 
 _LEFT_S: Final = 3.0  # from ctrl-C to the end of a process
 _TO_DIE_S: Final = 0.5  # until a process that was ended is gone from the table
 _MARK: Final = "DISTAL_SWEPT"
-# Of a run in Python's own start or end: it dies by the signal, or says where it was.
-_PYTHONS: Final = "Python's own"
+_OUTSIDE: Final = "outside of main"
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +56,7 @@ class Command:
         words: Its command line.
         seconds: When it is interrupted at the latest; None for its own time.
         kept: What it may leave, as patterns: what the next run goes on with.
+        lines: How many lines it may add on stderr.
         before: A command line that makes what it needs.
         needs_screen: Whether it opens a window.
     """
@@ -64,6 +64,7 @@ class Command:
     words: str
     seconds: float | None = None
     kept: tuple[str, ...] = ()
+    lines: int = 1
     before: str = ""
     needs_screen: bool = False
 
@@ -74,6 +75,7 @@ COMMANDS: Final[Mapping[str, Command]] = {
     "preview": Command(
         "render part.py:scene --mode path --samples 64 --size 160x120 -o out.png",
         kept=("out.png", "out.png.film"),
+        lines=2,  # what is kept, and how to go on
     ),
     "video": Command(_FILM, kept=(".film.mp4.distal/*",)),
     "cluster": Command(f"{_FILM} --cluster local:2", kept=(".film.mp4.distal/*",)),
@@ -218,12 +220,12 @@ class Bench:
         for name, content in self._before.items():
             (self._folder / "work" / name).write_bytes(content)
 
-    def is_of_python(self, end: End) -> bool:
-        """Return whether a run ended before the first line of distal ran, or after the last one."""
+    def is_outside(self, end: End) -> bool:
+        """Return whether a run ended before ``main``, or after it, by the signal."""
         said = "\n".join(end.errors)
         if end.code == -signal.SIGINT and (not said or self._is_whole(end)):
             return True
-        return "KeyboardInterrupt" in said and "distal" not in said.replace("from distal.cli", "")
+        return "KeyboardInterrupt" in said and ", in main\n" not in said
 
     def _is_whole(self, end: End) -> bool:
         whole = self.whole
@@ -238,7 +240,7 @@ class Bench:
             found.append(f"exit code {end.code}")
         usual = Counter[str]() if self.whole is None else _said(self.whole)
         more = list((_said(end) - usual).elements())
-        if len(more) > 1:
+        if len(more) > self.command.lines or "Traceback" in "".join(more):
             found.append(f"{len(more)} lines on stderr")
         if end.processes:
             found.append(f"processes left: {', '.join(end.processes)}")
@@ -296,8 +298,8 @@ def swept(name: str, count: int, rng: random.Random, environment: Mapping[str, s
         bench.measure()
         for moment in moments(rng, bench.seconds, count):
             end = bench.interrupted(moment, cold=rng.random() < 0.2)
-            if bench.is_of_python(end):
-                ends[_PYTHONS] += 1
+            if bench.is_outside(end):
+                ends[_OUTSIDE] += 1
                 continue
             ends[str(end.code)] += 1
             slowest = max(slowest, end.seconds)
