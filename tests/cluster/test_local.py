@@ -18,6 +18,7 @@ from distributed.security import Security
 
 from distal.cluster import ClusterError, connected, connecting
 from distal.lang import Frame, image, vec3
+from distal.video import video
 from tests.cluster.schedulers import wait
 
 # What another user can try: to talk to a port without TLS, and to read files of a process.
@@ -62,7 +63,7 @@ print(json.dumps([sorted(port for port in answers if any(answers[port])), read])
 @image
 def plain(frame: Frame) -> vec3:
     """A picture."""
-    return vec3(frame.coord.x / 64.0, frame.coord.y / 48.0, 0.5)
+    return vec3(frame.coord.x / 64.0, frame.coord.y / 48.0, 0.5 + 0.5 * frame.time)
 
 
 @pytest.fixture(scope="module")
@@ -162,6 +163,18 @@ def test_the_key_is_in_no_file_argument_or_variable(pool, folder):
         assert "PRIVATE KEY" not in public and "CERTIFICATE" not in public
     texts = [path.read_bytes() for path in folder.rglob("*") if path.is_file()]
     assert texts and not any(b"PRIVATE KEY" in text for text in texts)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="groups of processes are those of POSIX")
+def test_ctrl_c_of_a_terminal_reaches_no_worker(pool):
+    assert workers() and all(os.getpgid(worker.pid) != os.getpgid(0) for worker in workers())
+
+
+def test_a_film_has_the_same_bits(pool, tmp_path):
+    options = {"duration": 0.5, "fps": 12, "size": (64, 48), "quality": "lossless"}
+    for name, cluster in (("alone.mp4", None), ("together.mp4", pool)):
+        video(plain, tmp_path / name, cluster=cluster, **options)
+    assert (tmp_path / "alone.mp4").read_bytes() == (tmp_path / "together.mp4").read_bytes()
 
 
 def test_a_worker_that_ends_is_replaced(pool):
