@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import signal
 
-EXIT_CODE = 130  # of a process that ctrl-C ends, as shells give it
+INTERRUPTED = 130  # of a process that ctrl-C ends, as shells give it
 
 
 def end_at_once() -> None:
@@ -49,4 +49,4 @@ def interrupt_main() -> None:
 
 
 def _end(*_: object) -> None:
-    os._exit(EXIT_CODE)
+    os._exit(INTERRUPTED)

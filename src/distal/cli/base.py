@@ -22,7 +22,7 @@ from distal.cli.messages import say
 from distal.devices.memory_limit import is_limited, require
 from distal.diagnostics import CompileError, DeviceError, LoadError
 from distal.images.atomic_files import SaveError
-from distal.interrupting import EXIT_CODE, CtrlCRaises
+from distal.interrupting import INTERRUPTED, CtrlCRaises
 from distal.lang.units import UNITS
 from distal.packages import explained
 from distal.runtime import device_names
@@ -110,7 +110,7 @@ def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
             with CtrlCRaises():
                 reported(*args, **kwargs)
         except KeyboardInterrupt:
-            raise typer.Exit(EXIT_CODE) from None
+            raise typer.Exit(INTERRUPTED) from None
 
     def reported(*args: Arguments.args, **kwargs: Arguments.kwargs) -> None:
         try:

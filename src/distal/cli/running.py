@@ -15,7 +15,7 @@ from contextlib import suppress
 from typing import NoReturn
 
 from distal.cli import COMMANDS, SHORT
-from distal.interrupting import EXIT_CODE, interrupt_main
+from distal.interrupting import INTERRUPTED, interrupt_main
 from distal.lang.notices import receive_notices
 
 
@@ -69,7 +69,7 @@ def _leave() -> NoReturn:
     for stream in (sys.stdout, sys.stderr):
         with suppress(OSError, ValueError):
             stream.flush()
-    os._exit(EXIT_CODE)
+    os._exit(INTERRUPTED)
 
 
 def run() -> None:
@@ -89,7 +89,7 @@ def run() -> None:
     except KeyboardInterrupt:  # on the way into a command, or out of it
         _leave()
     except SystemExit as end:
-        if end.code == EXIT_CODE:
+        if end.code == INTERRUPTED:
             _leave()
         raise
     except Exception as error:
