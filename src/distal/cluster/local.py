@@ -167,12 +167,19 @@ class _Workers:
         return str(self._folder)
 
     def start(self, scheduler: str) -> None:
-        """Start the processes for the scheduler of an address."""
+        """Start the processes for the scheduler of an address.
+
+        Raises:
+            ClusterError: The system has no threads for them.
+        """
         self._settings["scheduler"] = scheduler
         for number in range(self._count):
             thread = threading.Thread(target=self._keep, args=(number,), daemon=True)
+            try:
+                thread.start()
+            except RuntimeError as error:
+                raise ClusterError(f"'{LOCAL}:{self._count}' is too much: {error}") from None
             self._threads.append(thread)
-            thread.start()
 
     def wait(self, joined: Sized) -> None:
         """Wait until all have joined the scheduler, or some and time is up.

@@ -26,10 +26,27 @@ distal.cli.main()
 """
 
 
-def run(code):
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+# Ctrl-C in the middle of a call of C code that takes minutes, as LLVM takes seconds.
+IN_LLVM = """
+import hashlib, signal, sys, threading
+signal.signal(signal.SIGINT, signal.default_int_handler)
+from distal.devices import jit
+from distal.interrupting import interrupt_main
+def compiled(*_):
+    threading.Timer(0.2, interrupt_main).start()
+    hashlib.pbkdf2_hmac("sha256", b"", b"", 10**9)
+jit._compiled = compiled
+sys.argv[1:] = ["render", "example:raymarcher", "--device", "cpu", "--size", "8x8", "-o", "a.png"]
+from distal.cli import main
+main()
+"""
+
+
+def run(code, **more):
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "DISTAL_CACHE_DIR": "off"}
     return subprocess.run(
-        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=60
+        [sys.executable, "-c", code],
+        **{"env": environment, "capture_output": True, "text": True, "timeout": 60, **more},
     )
 
 
@@ -39,6 +56,12 @@ def test_while_a_command_is_imported(handler, code):
     done = run(EARLY.format(handler=handler))
     assert (done.returncode, done.stderr) == (code, "")
     assert ("example:" in done.stdout) == (code == 0)
+
+
+def test_while_llvm_compiles(tmp_path):
+    done = run(IN_LLVM, cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (130, "")
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_library_leaves_signals_alone():
