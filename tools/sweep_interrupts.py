@@ -46,6 +46,7 @@ _LEFT_S: Final = 3.0  # from ctrl-C to the end of a process
 _TO_DIE_S: Final = 0.5  # until a process that was ended is gone from the table
 _MARK: Final = "DISTAL_SWEPT"
 _OUTSIDE: Final = "outside of main"
+_IN_MAIN: Final = re.compile(r'cli.__init__\.py", line \d+, in main')
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,7 +226,7 @@ class Bench:
         said = "\n".join(end.errors)
         if end.code == -signal.SIGINT and (not said or self._is_whole(end)):
             return True
-        return "KeyboardInterrupt" in said and ", in main\n" not in said
+        return "KeyboardInterrupt" in said and not _IN_MAIN.search(said)
 
     def _is_whole(self, end: End) -> bool:
         whole = self.whole

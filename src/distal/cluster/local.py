@@ -52,11 +52,11 @@ _COMMAND: Final = (
     "import sys, json; settings = json.loads(sys.stdin.buffer.raw.readline()); "
     "sys.path[:] = settings['path']; from distal.cluster.local_worker import run; run(settings)",
 )
-_OUTSIDE_THIS_GROUP: Final[Mapping[str, Any]] = (
-    {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
-    if sys.platform == "win32"
-    else {"start_new_session": True}
-)
+_OUTSIDE_THIS_GROUP: Mapping[str, Any]
+if sys.platform == "win32":
+    _OUTSIDE_THIS_GROUP = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
+else:
+    _OUTSIDE_THIS_GROUP = {"start_new_session": True}
 
 
 @contextmanager
