@@ -11,6 +11,7 @@ import os
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, wait
 from contextlib import suppress
@@ -180,7 +181,7 @@ def compile_apart(
         ChildProcessError: The process ended without a result.
     """
     path = os.pathsep.join(filter(None, sys.path))
-    words = (level.name, str(llvm_level), str(int(assembly)), str(niceness))
+    words = (level.name, str(llvm_level), str(int(assembly)), str(niceness), str(os.getpid()))
     made = subprocess.run(
         [sys.executable, "-c", _APART, *words],
         input=text.encode(),
@@ -196,13 +197,22 @@ def compile_apart(
 
 def _serve() -> None:
     """Compile the text on stdin; runs in the process that ``compile_apart`` starts."""
-    name, llvm_level, assembly, niceness = sys.argv[1:]
+    name, llvm_level, assembly, niceness, parent = sys.argv[1:]
+    threading.Thread(target=_end_with, args=(int(parent),), daemon=True).start()
     if hasattr(os, "nice"):
         os.nice(int(niceness))
     text = sys.stdin.buffer.read().decode()
     made = _compiled(text, level_named(name), int(llvm_level), assembly == "1")
     sys.stdout.buffer.write(made.encode() if isinstance(made, str) else made)
     sys.stdout.flush()
+
+
+def _end_with(parent: int) -> None:
+    """End this process when nobody waits for it any more; Windows does not tell."""
+    while os.getppid() == parent:
+        time.sleep(_LOOK_S)
+    if sys.platform != "win32":
+        os._exit(1)
 
 
 def _compiled(text: str, level: CpuLevel, llvm_level: int, assembly: bool) -> Any:
