@@ -77,22 +77,35 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def pool(folder):
-    """Two workers."""
+def cluster(folder):
+    """Two workers, and the addresses on which they and their scheduler listen."""
+    before = listening()
     with connected("local:2") as pool:
-        yield pool
+        yield pool, listening() - before
     assert not list(folder.iterdir())
+
+
+@pytest.fixture
+def pool(cluster):
+    """Two workers."""
+    return cluster[0]
+
+
+@pytest.fixture
+def ports(cluster):
+    """The ports of the cluster."""
+    return {port for _, port in cluster[1]}
 
 
 def listening():
     """The addresses on which this process and its children listen."""
     own = psutil.Process()
-    return [
+    return {
         tuple(connection.laddr)
         for process in (own, *own.children(recursive=True))
         for connection in process.net_connections("inet")
         if connection.status == psutil.CONN_LISTEN
-    ]
+    }
 
 
 def workers():
@@ -115,28 +128,28 @@ def stranger(ports, files=(), user=0):
     return json.loads(made.stdout)
 
 
-def test_one_port_each_on_this_machine_alone(pool):
-    addresses = listening()
+def test_one_port_each_on_this_machine_alone(cluster):
+    pool, addresses = cluster
     assert len(addresses) == 3 and {host for host, _ in addresses} == {"127.0.0.1"}
     known = pool.client.scheduler_info(n_workers=-1)["workers"]
     assert all(address.startswith("tls://127.0.0.1:") for address in known)
 
 
-def test_a_stranger_gets_no_answer(pool, tmp_path):
-    ports = {port for _, port in listening()}
+def test_a_stranger_gets_no_answer(ports, tmp_path):
+    before = listening()
     assert stranger(ports)[0] == []
     plain = {"host": "127.0.0.1", "port": 0, "dashboard_address": "127.0.0.1:0"}
     options = {**plain, "local_directory": str(tmp_path)}
     scheduler = {"cls": distributed.Scheduler, "options": options}
     with distributed.SpecCluster({}, scheduler):
         # The same questions to a scheduler without TLS, and to its pages.
-        assert len(stranger({port for _, port in listening()} - ports)[0]) == 2
+        assert len(stranger({port for _, port in listening() - before})[0]) == 2
 
 
 @pytest.mark.parametrize("protocol", ["tcp", "tls"])
-def test_a_client_without_the_credentials_is_refused(pool, protocol):
+def test_a_client_without_the_credentials_is_refused(ports, protocol):
     security = Security.temporary() if protocol == "tls" else None
-    for _, port in listening():
+    for port in ports:
         with pytest.raises(OSError):
             distributed.Client(
                 f"{protocol}://127.0.0.1:{port}",
@@ -147,12 +160,11 @@ def test_a_client_without_the_credentials_is_refused(pool, protocol):
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="needs two users")
-def test_another_user_reaches_nothing(pool, folder):
+def test_another_user_reaches_nothing(ports, folder):
     of_processes = ("environ", "mem", "fd", "fd/0", "maps")
     files = [f"/proc/{worker.pid}/{name}" for worker in workers() for name in of_processes]
     files += map(str, folder.rglob("*"))
     assert len(files) > 12
-    ports = [port for _, port in listening()]
     assert stranger(ports, files, user=65534) == [[], []]
 
 
