@@ -14,6 +14,8 @@
 #                    saves the enclosure from its page at 128 cells
 # make sweep-keeping  random saves, conflicts, reloads and kills of the studio: nothing is lost
 #                    (SEQUENCES=3000 for more)
+# make sweep-interrupts  interrupts every command by ctrl-C at 200 moments (COMMANDS="render video",
+#                    MOMENTS=20)
 # make parity    draws every example in every place and writes docs/parity.md
 # make mutate    changes the source in small ways and reports what no test notices:
 #                MODULES="distal/fields distal/scene" COUNT=200 SEED=7
@@ -39,6 +41,7 @@ SWEEP ?= 5000
 SAMPLES ?= 40
 SEGMENTS ?= 1e7
 PROCESSES ?= 200
+MOMENTS ?= 200
 TOLERANCE ?= 0.01
 SEQUENCES ?= 300
 MODULES ?= distal/fields distal/render distal/passes/fold* distal/scene
@@ -50,7 +53,7 @@ SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers g
 # A worker begins with a part of the files, and so compiles few programs that another compiles too.
 UNITS = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -rfEs
 
-.PHONY: picture test test-all test-for record lint style units system bench site sweep sweep-fields sweep-threads sweep-segments sweep-meshes sweep-keeping parity mutate versions clean
+.PHONY: picture test test-all test-for record lint style units system bench site sweep sweep-fields sweep-threads sweep-segments sweep-meshes sweep-keeping sweep-interrupts parity mutate versions clean
 .NOTPARALLEL:
 
 picture: $(VENV)/.setup-run
@@ -119,6 +122,9 @@ sweep-meshes: $(VENV)/.setup-test
 sweep-keeping: $(VENV)/.setup-test
 	$(BIN)/python -m tests.editor.keeping_sequences $(SEQUENCES) $(or $(SEED),0)
 	$(BIN)/python -m tests.editor.keeping_in_browser $$(($(SEQUENCES) / 15)) $(or $(SEED),0)
+
+sweep-interrupts: $(VENV)/.setup-test
+	$(BIN)/python tools/sweep_interrupts.py $(COMMANDS) --count $(MOMENTS)
 
 site: $(VENV)/.setup-test web/node_modules/.ready
 	$(BIN)/python tools/build_site.py

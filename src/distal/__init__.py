@@ -7,10 +7,14 @@ only the standard library. A name that needs a missing package reports it when i
 from __future__ import annotations
 
 import importlib
-from typing import Any
 
 from distal.public_names import DECLARED_NAMES
 from distal.version import __version__
+
+# As ``typing`` has it, which takes longer to import than all of this.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 # The hand-written public names by module; ``tools/gen_stubs.py`` reads them, too.
 _HAND_WRITTEN = {

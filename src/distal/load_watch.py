@@ -26,7 +26,7 @@ from distal import loading
 from distal.diagnostics import Diagnostic, Span
 from distal.error_codes import ErrorCode
 from distal.forking import new_lock
-from distal.interrupting import interrupt_main
+from distal.interrupting import INTERRUPTED, interrupt_main
 from distal.loading import SceneCode, file_of, load, split_source
 from distal.saved_files import FileWatcher
 
@@ -34,7 +34,6 @@ PATIENCE_S: Final = 3.0
 _PERIOD_S: Final = 0.25  # between two attempts to end the run, and two looks at the file
 _LOOP: Final = re.compile(r"(async\s+for|for|while)\b")
 _LEFT_S: Final = 1.0  # from ctrl-C to the end of the process
-_INTERRUPTED: Final = 130  # the exit status of shells
 
 
 class SavedAgain(BaseException):
@@ -157,7 +156,7 @@ class LoadWatch:
             with contextlib.suppress(Exception):
                 sys.stdout.flush()
                 sys.stderr.flush()
-            os._exit(_INTERRUPTED)
+            os._exit(INTERRUPTED)
 
     def _message(self) -> Diagnostic:
         text = f"{self._file.name} is still running after {PATIENCE_S:g} s"

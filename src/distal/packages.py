@@ -78,6 +78,7 @@ PACKAGES: Final = (
     Package("pygments", "lessons", "pages of lessons"),
     Package("manifold3d", "mesh", "meshes with fewer triangles"),
     Package("distributed", "cluster", "rendering on more than one machine"),
+    Package("cryptography", "cluster", "the keys of --cluster local"),
     Package("websockets", "studio", "the studio in a browser"),
     Package("platformdirs", "studio", "drafts of the studio"),
 )

@@ -23,6 +23,7 @@ from distal.cli.messages import say
 from distal.devices.memory_limit import is_limited, require
 from distal.diagnostics import CompileError, DeviceError, LoadError, readable
 from distal.file_writer import SaveError
+from distal.interrupting import CtrlCRaises
 from distal.lang.units import UNITS
 from distal.packages import explained
 from distal.runtime import device_names
@@ -107,6 +108,13 @@ def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
     @functools.wraps(command)
     def run(*args: Arguments.args, **kwargs: Arguments.kwargs) -> None:
         try:
+            with CtrlCRaises():
+                reported(*args, **kwargs)
+        except KeyboardInterrupt:
+            raise typer.Exit(ExitCode.INTERRUPTED) from None
+
+    def reported(*args: Arguments.args, **kwargs: Arguments.kwargs) -> None:
+        try:
             check_working_folder()
             if command.__name__ not in _WITHOUT_ARRAYS:
                 prepare_for_arrays()
@@ -123,8 +131,6 @@ def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
         except (SaveError, DeviceError) as error:
             say(f"error: {error}")
             raise typer.Exit(ExitCode.FAILED) from None
-        except KeyboardInterrupt:
-            raise typer.Exit(ExitCode.INTERRUPTED) from None
         except Exception as error:
             line = _line_of(error)
             if line is None:

@@ -1,12 +1,14 @@
 """The exit codes of the command, each with what it tells, in one table.
 
-Input: nothing. Output: ``ExitCode``; ``docs/reference/options.md`` lists it. Depends on nothing.
+Input: nothing. Output: ``ExitCode``; ``docs/reference/options.md`` lists it. Depends on nothing but ``interrupting``.
 """
 
 from __future__ import annotations
 
 from enum import IntEnum
 from typing import Self
+
+from distal.interrupting import INTERRUPTED
 
 
 class ExitCode(IntEnum):
@@ -34,5 +36,5 @@ class ExitCode(IntEnum):
         "`check`, `--check` or `doctor` found something",
     )
     USAGE = 2, "the command line is invalid"
-    INTERRUPTED = 130, "it was interrupted, as by ctrl-C"  # as shells name SIGINT
+    INTERRUPTED = INTERRUPTED, "it was interrupted, as by ctrl-C"  # as shells name SIGINT
     PIPE_CLOSED = 141, "what reads its output has ended, as `head` does"  # as they name SIGPIPE

@@ -6,32 +6,34 @@ a block. Nothing listens beyond this machine.
 
 from __future__ import annotations
 
+import ipaddress
 import json
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
-from distal.cluster.errors import ClusterError, words
+from distal.cluster.errors import ClusterError, address, words
+from distal.cluster.local import LOCAL, local_client
 from distal.cluster.pool import TIMEOUT_S, WorkerPool
 from distal.devices.threads import usable_threads
 from distal.packages import imported
 
 _CONNECT_S: Final = 10.0
 _OTHER_SERVER: Final = "what listens there does not answer as a scheduler does"
-_LOCAL: Final = "local"
 _PROTOCOLS: Final = ("tcp", "tls", "ucx", "ws", "wss")
+_PLAIN: Final = ("tcp", "ucx", "ws")
 _FORMS: Final = "local, local:4, tcp://host:8786, tls://host:8786, or the scheduler's file"
-# The scheduler of "local" is in this process, and its logs hold messages: 11 kB for each frame.
-_SHORT_LOGS: Final = {
-    "distributed.admin.log-length": 100,
-    "distributed.admin.low-level-log-length": 50,
-    "distributed.admin.system-monitor.log-length": 100,
-    "distributed.diagnostics.computations.max-history": 10,
-}
 _CERTIFICATE: Final = "Dask's settings distributed.comm.tls.ca-file, client.cert and client.key"
+
+
+_OPEN: Final = (
+    "is not encrypted: whoever reaches it runs code as the user of its workers; "
+    "tls:// admits only those who have a key"
+)
 
 
 @contextmanager
@@ -50,19 +52,34 @@ def connected(
         ClusterError: There is no such cluster.
         PackageError: ``distal[cluster]`` is not installed.
     """
-    if where == _LOCAL or where.startswith(f"{_LOCAL}:"):
-        with _local(_count(where)) as client:
+    _check_proc()
+    if where == LOCAL or where.startswith(f"{LOCAL}:"):
+        with local_client(_count(where)) as client:
             yield WorkerPool(client, timeout=timeout, tell=tell)
         return
     client = _client(where)
+    if tell is not None and _is_open(address(client)):
+        tell(f"warning: {address(client)} {_OPEN}")
     try:
         yield WorkerPool(client, timeout=timeout, tell=tell)
     finally:
         client.close(timeout=2)
 
 
+def _check_proc() -> None:
+    """Check that Dask can read its own process.
+
+    Raises:
+        ClusterError: It cannot: Linux's list of processes is not mounted.
+    """
+    if sys.platform == "linux" and not Path("/proc/self").exists():
+        raise ClusterError(
+            "Dask needs /proc, which is not there; without --cluster it is not needed"
+        )
+
+
 def _count(where: str) -> int:
-    text = where.removeprefix(_LOCAL).removeprefix(":")
+    text = where.removeprefix(LOCAL).removeprefix(":")
     if not text:
         return usable_threads()
     if not text.isdigit() or not 1 <= int(text) <= 1024:
@@ -70,25 +87,15 @@ def _count(where: str) -> int:
     return int(text)
 
 
-@contextmanager
-def _local(count: int) -> Iterator[Any]:
-    distributed = imported("distributed")
-    with imported("dask").config.set(_SHORT_LOGS):
-        cluster = distributed.LocalCluster(
-            n_workers=count,
-            threads_per_worker=1,
-            processes=True,
-            host="127.0.0.1",
-            dashboard_address="127.0.0.1:0",
-            silence_logs=50,
-        )
-        try:
-            with distributed.Client(cluster, set_as_default=False) as client:
-                yield client
-        finally:
-            # On a busy machine processes end late; they are daemons, and end with this one.
-            with suppress(TimeoutError):
-                cluster.close()
+def _is_open(where: str) -> bool:
+    """Return whether others than this machine's users reach a scheduler, and it asks for no key."""
+    protocol, _, rest = where.partition("://")
+    host = rest.rpartition(":")[0].strip("[]")
+    try:
+        is_here = ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        is_here = host == "localhost"
+    return protocol in _PLAIN and not is_here
 
 
 def _check_file(path: Path) -> None:

@@ -1,8 +1,8 @@
 """Detect the processor's feature level, and the vector shape for it.
 
 Input: the operating system's list of features, or the name of a level. Output: a ``CpuLevel``: the
-processor that LLVM compiles for, and the lanes of a kernel. Does not depend on LLVM, so a stored
-kernel is found without loading LLVM.
+processor that LLVM compiles for, and the lanes of a kernel. LLVM is asked only where the system
+gives no list, so a stored kernel is found without loading LLVM.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from functools import cache
 from typing import Final
 
 from distal.backends.llvm.lanes import Lanes
+from distal.packages import imported
 
 FEATURES_VARIABLE: Final = "DISTAL_CPU"
 
@@ -86,10 +87,10 @@ def host_features() -> frozenset[str]:
     if machine() == "aarch64":
         return frozenset({"asimd"})
     if sys.platform.startswith("linux"):
-        return _from_cpuinfo()
+        return _from_cpuinfo() or _from_llvm()  # /proc may not be there
     if sys.platform == "darwin":
         return _from_sysctl()
-    return frozenset()
+    return _from_llvm()
 
 
 def _from_cpuinfo() -> frozenset[str]:
@@ -115,6 +116,16 @@ def _from_sysctl() -> frozenset[str]:
             found.update(word.lower().decode() for word in buffer.value.split())
     renamed = {"sse4.2": "sse4_2", "avx1.0": "avx"}
     return frozenset(renamed.get(word, word) for word in found)
+
+
+def _from_llvm() -> frozenset[str]:
+    """Ask the processor itself, by LLVM, which takes 0.1 s to load."""
+    try:
+        features = imported("llvmlite.binding").get_host_cpu_features()
+    except RuntimeError:
+        return frozenset()
+    renamed = {"sse4.2": "sse4_2", "bmi": "bmi1"}
+    return frozenset(renamed.get(name, name) for name, is_there in features.items() if is_there)
 
 
 @cache

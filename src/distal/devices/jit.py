@@ -11,11 +11,12 @@ import os
 import subprocess
 import sys
 import threading
-from collections.abc import Sequence
-from concurrent.futures import Future
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, wait
 from contextlib import suppress
 from functools import cache
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from distal.devices.features import CpuLevel, level_named
 from distal.devices.features import machine as architecture_here
@@ -26,6 +27,8 @@ from distal.diagnostics import printable
 from distal.forking import kept_free
 from distal.packages import loading
 
+Result = TypeVar("Result")
+_LOOK_S: Final = 0.1  # until the main thread looks for ctrl-C
 _APART: Final = "from distal.devices.jit import _serve; _serve()"
 _LLVM_BYTES: Final = 32 * 2**20  # for LLVM's tables of targets and a loader, with a margin
 
@@ -94,7 +97,7 @@ def compile_object(
             return compile_apart(text, level, chosen, assembly=assembly)
         except ChildProcessError as error:
             raise MemoryError(f"LLVM cannot compile the scene within ulimit{error}") from None
-    return _compiled(text, level, chosen, assembly)
+    return _beside(lambda: _compiled(text, level, chosen, assembly))
 
 
 def compile_objects(texts: Sequence[str], level: CpuLevel, llvm_level: int) -> list[bytes]:
@@ -111,6 +114,10 @@ def compile_objects(texts: Sequence[str], level: CpuLevel, llvm_level: int) -> l
     """
     if len(texts) == 1 or is_limited():
         return [compile_object(text, level, llvm_level) for text in texts]
+    return _beside(lambda: _compiled_together(texts, level, llvm_level))
+
+
+def _compiled_together(texts: Sequence[str], level: CpuLevel, llvm_level: int) -> list[bytes]:
     llvm_binding()
     made: list[Future[bytes]] = [Future() for _ in texts]
 
@@ -128,6 +135,31 @@ def compile_objects(texts: Sequence[str], level: CpuLevel, llvm_level: int) -> l
     for i in range(1 + len(started), len(texts)):
         work(i)
     return [each.result() for each in made]
+
+
+def _beside(work: Callable[[], Result]) -> Result:
+    """Return the result of some work of LLVM, for which the main thread only waits.
+
+    So ctrl-C takes effect at once, and not after the seconds of a large scene. LLVM then goes on,
+    and Python waits for it at its end; a command does not.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        return work()
+    ended: Future[Result] = Future()
+
+    def run() -> None:
+        try:
+            ended.set_result(work())
+        except BaseException as error:
+            ended.set_exception(error)
+
+    try:
+        start_threads([threading.Thread(target=run)], [])
+    except MemoryError:
+        return work()
+    while not wait([ended], _LOOK_S).done:  # limited, so that ctrl-C is handled on every platform
+        pass
+    return ended.result()
 
 
 def compile_apart(
@@ -149,7 +181,7 @@ def compile_apart(
         ChildProcessError: The process ended without a result.
     """
     path = os.pathsep.join(filter(None, sys.path))
-    words = (level.name, str(llvm_level), str(int(assembly)), str(niceness))
+    words = (level.name, str(llvm_level), str(int(assembly)), str(niceness), str(os.getpid()))
     made = subprocess.run(
         [sys.executable, "-c", _APART, *words],
         input=text.encode(),
@@ -165,13 +197,22 @@ def compile_apart(
 
 def _serve() -> None:
     """Compile the text on stdin; runs in the process that ``compile_apart`` starts."""
-    name, llvm_level, assembly, niceness = sys.argv[1:]
+    name, llvm_level, assembly, niceness, parent = sys.argv[1:]
+    threading.Thread(target=_end_with, args=(int(parent),), daemon=True).start()
     if hasattr(os, "nice"):
         os.nice(int(niceness))
     text = sys.stdin.buffer.read().decode()
     made = _compiled(text, level_named(name), int(llvm_level), assembly == "1")
     sys.stdout.buffer.write(made.encode() if isinstance(made, str) else made)
     sys.stdout.flush()
+
+
+def _end_with(parent: int) -> None:
+    """End this process when nobody waits for it any more; Windows does not tell."""
+    while os.getppid() == parent:
+        time.sleep(_LOOK_S)
+    if sys.platform != "win32":
+        os._exit(1)
 
 
 def _compiled(text: str, level: CpuLevel, llvm_level: int, assembly: bool) -> Any:

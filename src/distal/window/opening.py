@@ -9,6 +9,7 @@ import signal
 import time
 from typing import Any, Final
 
+from distal.interrupting import INTERRUPTED
 from distal.lang.render_options import RenderOptions
 from distal.loading import loaded_from
 from distal.scene.viewing.viewable import viewable
@@ -89,7 +90,7 @@ def view(
     ended = application.stop(_PATIENCE_S) and not (
         session.camera.is_preparing or session.ruler.is_preparing
     )
-    return (130 if interrupted else 0), ended
+    return (INTERRUPTED if interrupted else 0), ended
 
 
 def _run(application: Application, canvas: Any, loop: Any) -> bool:

@@ -7,6 +7,7 @@ import pytest
 
 from distal.backends.llvm import TARGET, emit_for
 from distal.compiler.driver import run_passes
+from distal.devices import features
 from distal.devices.executable import Executable
 from distal.devices.features import (
     LEVELS,
@@ -104,3 +105,17 @@ def test_levels_are_chosen_by_name_and_environment(monkeypatch: pytest.MonkeyPat
     with pytest.raises(ValueError, match="cannot run"):
         chosen_level(foreign)
     assert host_features()
+
+
+def test_a_system_without_a_list_of_features(monkeypatch: pytest.MonkeyPatch) -> None:
+    """LLVM asks the processor itself: the same levels."""
+    listed = host_levels()
+    monkeypatch.setattr(features, "_from_cpuinfo", frozenset)
+    monkeypatch.setattr(features.sys, "platform", "linux")
+    try:
+        for function in (host_features, host_levels):
+            function.cache_clear()
+        assert host_levels() == listed
+    finally:
+        for function in (host_features, host_levels):
+            function.cache_clear()
