@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Final, assert_never
 
-from distal.ir.contents import contents
+from distal.ir.contents import calls_in, contents, size_of
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import (
     Apply,
@@ -51,6 +51,7 @@ from distal.ir.walk import blocks, expressions, nodes_in, statements_in
 
 UNKNOWN_ROUNDS: Final = 16  # the assumed number of iterations of a loop with non-constant bounds
 MOST_ROUNDS: Final = 128
+MOST_COST: Final = 1 << 40
 
 
 def _components(type: Type) -> int:
@@ -99,7 +100,11 @@ def _operator_cost(op: BinaryOp, kind: Kind | None) -> int:
 
 
 class Costs:
-    """Costs of whole expressions; each distinct node is counted once."""
+    """Costs of whole expressions; each distinct node is counted once.
+
+    What long parts of an expression share (see ``Contents``) is counted for each of them, up to
+    ``MOST_COST``: then no work is done twice for an expression that is a part of many.
+    """
 
     def __init__(self, calls: Mapping[str, int]) -> None:
         self.calls = calls
@@ -107,10 +112,22 @@ class Costs:
 
     def of(self, e: Expr) -> int:
         """Return the cost of an expression."""
-        found = self._found.get(e)
-        if found is None:
-            found = self._found[e] = expression_cost(e, self.calls)
-        return found
+        waiting = [] if e in self._found else [e]
+        while waiting:
+            parts = [part for part in contents(waiting[-1]).parts if part not in self._found]
+            if parts:
+                waiting += parts
+            else:
+                last = waiting.pop()
+                self._found[last] = self._cost(last)
+        return self._found[e]
+
+    def _cost(self, e: Expr) -> int:
+        known = contents(e)
+        if not known.parts:
+            return expression_cost(e, self.calls)
+        own = sum([node_cost(n, self.calls) for n in known.own])
+        return min(own + sum([self._found[part] for part in known.parts]), MOST_COST)
 
 
 def expression_cost(root: Expr, calls: Mapping[str, int]) -> int:
@@ -118,7 +135,7 @@ def expression_cost(root: Expr, calls: Mapping[str, int]) -> int:
     known = contents(root)
     if known.cost is None:
         known.cost = sum([node_cost(n, {}) for n in nodes_in(root) if not isinstance(n, Call)])
-    return known.cost + sum([_call_cost(name, calls) for name in known.called])
+    return known.cost + sum([_call_cost(name, calls) for name in calls_in(root)])
 
 
 def own_cost(root: Expr) -> int:
@@ -172,5 +189,5 @@ def size(body: tuple[Stmt, ...]) -> int:
 
 def _size(roots: tuple[Expr, ...]) -> int:
     if len(roots) == 1:
-        return contents(roots[0]).size
+        return size_of(roots[0])
     return sum(1 for n in nodes_in(*roots) if not isinstance(n, Const | Read))

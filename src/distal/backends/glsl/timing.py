@@ -150,7 +150,7 @@ def _is_short(stmt: Let | Var) -> bool:
     value = stmt.value
     is_vector_of_truth = kind_of(value.type) is Kind.BOOL and not isinstance(value.type, Scalar)
     is_summed = isinstance(value.type, Scalar | Vector | Matrix) and not is_vector_of_truth
-    return is_summed and not contents(value).called
+    return is_summed and not contents(value).callees
 
 
 def _reads(stmt: Let | Var) -> list[Read]:

@@ -74,7 +74,7 @@ class WorkWriter(InstrumentWriter):
         names = self.instrument.names
         number = self.instrument.number(stmt.span)
         cost = self.instrument.cost(stmt.value) if isinstance(stmt, Let | Var) else 0
-        is_calling = isinstance(stmt, Let | Var) and bool(contents(stmt.value).called)
+        is_calling = isinstance(stmt, Let | Var) and bool(contents(stmt.value).callees)
         if is_calling and number is not None:
             self.line(f"{names['enter']}({number});")
         elif number is not None and cost:

@@ -5,7 +5,7 @@ Input: expressions and blocks. Output: numbers that decide whether a branch arou
 
 from __future__ import annotations
 
-from distal.ir.contents import contents
+from distal.ir.contents import calls_in, contents
 from distal.ir.nodes import (
     Binary,
     BinaryOp,
@@ -64,7 +64,7 @@ class LaneCosts:
         most = 1
         for stmt in block:
             for e in expressions(stmt):
-                most = max([most, *(self._rounds[name] for name in contents(e).called)])
+                most = max([most, *(self._rounds[name] for name in contents(e).callees)])
             inside = max((self.rounds(b) for b in blocks(stmt)), default=1)
             match stmt:
                 case For():
@@ -86,7 +86,7 @@ class LaneCosts:
         if known.lane_cost is None:
             nodes = (e for e in nodes_in(root) if not isinstance(e, Call))
             known.lane_cost = sum(map(self.node, nodes))
-        return known.lane_cost + sum([self._functions[name] for name in known.called])
+        return known.lane_cost + sum([self._functions[name] for name in calls_in(root)])
 
     def block(self, block: tuple[Stmt, ...]) -> int:
         """Return the cost of running every statement of a block once."""

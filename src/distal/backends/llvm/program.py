@@ -24,7 +24,7 @@ from distal.backends.llvm.uniformity import Uniformity
 from distal.backends.llvm.writer import LlvmWriter
 from distal.diagnostics import CompileError
 from distal.error_codes import ErrorCode
-from distal.ir.contents import contents
+from distal.ir.contents import calls_in, contents, size_of
 from distal.ir.nodes import Expr, Function, Module
 from distal.ir.types import Kind
 from distal.ir.walk import roots_in
@@ -77,7 +77,7 @@ class LaneProgram:
         self._array_bytes = 0
         self._functions = {f.name: f for f in module.functions}
         self._sites = Counter(
-            name for f in module.functions for e in roots_in(f.body) for name in contents(e).called
+            name for f in module.functions for e in roots_in(f.body) for name in contents(e).callees
         )
         self._variants: dict[tuple[str, int, tuple[bool, ...], bool], tuple[str, bool]] = {}
         self._definitions: list[LlvmFunction | str] = []
@@ -234,9 +234,8 @@ class LaneProgram:
 
     def code_of(self, value: Expr) -> int:
         """Return the length of the code of a per-frame value, roughly in instructions."""
-        found = contents(value)
-        inside = (self.costs.function(name) for name in found.called)
-        return found.size + leaf_count(value.type) + sum(c for c in inside if c <= INLINE_COST)
+        inside = (self.costs.function(name) for name in calls_in(value))
+        return size_of(value) + leaf_count(value.type) + sum(c for c in inside if c <= INLINE_COST)
 
     def _by_chunk(self, name: str) -> bool:
         """Return whether a function is called for each vector of its arguments separately."""

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import assert_never
 
+from distal.ir.contents import nodes_outside
 from distal.ir.intrinsics import INTRINSICS, derivatives
 from distal.ir.nodes import (
     Apply,
@@ -50,7 +51,7 @@ from distal.ir.nodes import (
     Var,
 )
 from distal.ir.tangents import has_floats
-from distal.ir.walk import nodes_in, root_of, statements_in
+from distal.ir.walk import root_of, statements_in
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,9 +117,8 @@ class Activity:
         Raises:
             AssertionError: The expression contains a node that earlier passes remove.
         """
-        for e in nodes_in(root):
-            if e not in memo:
-                memo[e] = self._node(e, active, memo) if has_floats(e.type) else 0
+        for e in nodes_outside(root, memo):
+            memo[e] = self._node(e, active, memo) if has_floats(e.type) else 0
         return memo[root]
 
     def _node(self, e: Expr, active: Mapping[str, int], memo: Mapping[Expr, int]) -> int:

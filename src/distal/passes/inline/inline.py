@@ -19,7 +19,7 @@ from dataclasses import replace
 from typing import Final
 
 from distal.diagnostics import Span
-from distal.ir.contents import contents
+from distal.ir.contents import calls_in, contents
 from distal.ir.nodes import (
     Assign,
     Call,
@@ -83,7 +83,7 @@ def _call_sites(module: Module) -> Counter[str]:
     sites: Counter[str] = Counter()
     for function in module.functions:
         for root in roots_in(function.body):
-            sites.update(contents(root).called)
+            sites.update(calls_in(root))
     return sites
 
 
@@ -141,7 +141,7 @@ class _Inliner:
     def _expr(
         self, root: Expr, in_loop: bool, eager: bool, before: list[Stmt], done: dict[Expr, Expr]
     ) -> Expr:
-        if not contents(root).called:
+        if not contents(root).callees:
             return done.get(root, root)
         nodes = [e for e in nodes_in(root) if e not in done]
         always = set(always_computed(root)) if eager else set()

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from typing import Final
 
+from distal.ir.contents import nodes_outside
 from distal.ir.nodes import Call, Expr, Function, Let, Read, Return
-from distal.ir.walk import children, nodes_in, rebuild
+from distal.ir.walk import children, rebuild
 from distal.passes.cost import Costs
 from distal.passes.per_frame.forms import Forming
 
@@ -37,10 +38,9 @@ class Expansion:
         return self._value(root, self._memo)
 
     def _value(self, root: Expr, memo: dict[Expr, Expr]) -> Expr:
-        for e in nodes_in(root):
-            if e not in memo:
-                value = rebuild(e, tuple([memo[c] for c in children(e)]))
-                memo[e] = self._call(value) if isinstance(value, Call) else self._simple(value)
+        for e in nodes_outside(root, memo):
+            value = rebuild(e, tuple([memo[c] for c in children(e)]))
+            memo[e] = self._call(value) if isinstance(value, Call) else self._simple(value)
         return memo[root]
 
     def _simple(self, e: Expr) -> Expr:

@@ -78,7 +78,7 @@ def _without_unread_params(
         return Call(e.function, args, e.type, span=e.span)
 
     for function in functions:
-        called = {name for e in roots_in(function.body) for name in contents(e).called}
+        called = {name for e in roots_in(function.body) for name in contents(e).callees}
         if not called.isdisjoint(shortened):
             body = map_expressions(function.body, lambda e: rewrite(e, shorter, memo))
             function = replace(function, body=body)

@@ -14,7 +14,7 @@ from typing import Final, TypeAlias
 
 from distal.ir import build
 from distal.ir.constant_arithmetic import ConstantArithmetic
-from distal.ir.contents import contents
+from distal.ir.contents import contents, nodes_outside
 from distal.ir.exits import never_ends
 from distal.ir.nodes import (
     Assign,
@@ -43,7 +43,6 @@ from distal.ir.types import BOOL, Scalar, Vector
 from distal.ir.walk import (
     children,
     map_indices,
-    nodes_in,
     rebuild,
     root_of,
     roots_in,
@@ -94,11 +93,8 @@ class Forming:
             env: The forms of the locals that have one.
             memo: The forms of the nodes processed so far; extended.
         """
-        if root in memo:
-            return memo[root]
-        for e in nodes_in(root):
-            if e not in memo:
-                memo[e] = self._node(e, env, memo)
+        for e in nodes_outside(root, memo):
+            memo[e] = self._node(e, env, memo)
         return memo[root]
 
     def _node(self, e: Expr, env: Forms, memo: dict[Expr, Expr | None]) -> Expr | None:

@@ -77,7 +77,7 @@ def run(module: Module, context: Context) -> Module:
 
 def _callee_costs(function: Function, costs: Mapping[str, int]) -> tuple[tuple[str, int], ...]:
     """Return the costs of the functions that a function calls."""
-    called = dict.fromkeys(n for root in roots_in(function.body) for n in contents(root).called)
+    called = dict.fromkeys(n for root in roots_in(function.body) for n in contents(root).callees)
     return tuple((name, costs[name]) for name in called if name in costs)
 
 
