@@ -1,6 +1,7 @@
 """The exit codes of the command, each with what it tells, in one table.
 
-Input: nothing. Output: ``ExitCode``; ``docs/reference/options.md`` lists it. Depends on nothing but ``interrupting``.
+Input: nothing. Output: ``ExitCode``, which ``docs/reference/options.md`` lists. Depends on
+``interrupting`` alone.
 """
 
 from __future__ import annotations
