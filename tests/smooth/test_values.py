@@ -285,6 +285,18 @@ def test_dense_members_leave_blocks_undivided(monkeypatch):
     assert whole.cell_count > part.cell_count > np.prod(part.blocks)
 
 
+def test_members_that_are_dense_everywhere_have_larger_blocks(monkeypatch):
+    monkeypatch.setattr(grid, "CELLS_PER_ROOT", 8000)
+    rng = np.random.default_rng(7)
+    heap = [Sphere(0.3).translate(*rng.uniform(0, 1.5, 3)) for _ in range(MANY)]
+    made = []
+    for most in (10**9, 20_000, 1):  # with 1 the first, large cells are the blocks
+        monkeypatch.setattr(grid, "MOST_BLOCK_PAIRS", most)
+        monkeypatch.setattr(grid, "MOST_PAIRS", 1)
+        made.append(np.prod(agree(union(heap, smooth=0.4)).blocks))
+    assert made[0] > made[1] > made[2]
+
+
 def test_few_members_and_flat_ones_stay_as_they_are():
     few = union(balls(np.random.default_rng(1), LEAST_MEMBERS - 1), smooth=0.1)
     assert celled(few.node).node is few.node and celled(few.node).linear == []

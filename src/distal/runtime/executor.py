@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.devices.base import Kernel
+from distal.devices.memory_limit import require
 from distal.diagnostics import DeviceError
 from distal.images.picture import Picture, Provenance
 from distal.ir.collection import paused_collection
@@ -62,6 +63,11 @@ else:
 _ROWS_OF_A_THREAD: Final = 16384
 # Pixels, times samples, that take about as long as LLVM's optimized code generation.
 _PIXELS_OF_A_LONG_RUN: Final = 2**17
+# Bytes for each pixel until a PNG is saved, measured, of direct light and of paths.
+_PICTURE_BYTES: Final = 60
+_FILM_BYTES: Final = 137
+# Pictures of fewer pixels are rendered without a look at the memory.
+_MANY_PIXELS: Final = 2**22
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +83,17 @@ class DrawTarget:
     view: Any
     format: str
     adapter: str | None = None
+
+
+def _require_memory(width: int, height: int, bytes_per_pixel: int) -> None:
+    """Refuse a picture before it is computed if there is no memory for it.
+
+    Raises:
+        MemoryError: There is not enough memory.
+    """
+    if width * height > _MANY_PIXELS:
+        purpose = f"a picture of {width}x{height} pixels"
+        require(width * height * bytes_per_pixel, purpose)
 
 
 class PythonExecutor(TapeExecutor):
@@ -114,6 +131,7 @@ class PythonExecutor(TapeExecutor):
         image, options = self.as_rendered(image, options)
         adaptive = isinstance(image, Composed) and image.adaptive
         refined = isinstance(image, Composed) and image.refined
+        _require_memory(*options.size, _FILM_BYTES if refined else _PICTURE_BYTES)
         passes = self.passes(image, options)
         parts, kernels = passes.parts, passes.kernels
         values, others = passes.values

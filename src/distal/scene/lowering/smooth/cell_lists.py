@@ -17,6 +17,8 @@ Whole = NDArray[np.int64]
 
 # Cells of a block along an axis.
 WIDTH: Final = 4
+# The most entries of lists for which 64-bit numbers are computed at once.
+ENTRIES_AT_ONCE: Final = 1_000_000
 # The eight parts of a cell that is halved along three axes.
 HALVES: Final = np.array(list(product((0, 1), repeat=3)))
 
@@ -39,7 +41,11 @@ class CellLists:
         """Return some of the cells."""
         count = np.diff(self.start)[cells]
         start = np.concatenate([[0], np.cumsum(count)])
-        return CellLists(self.places[cells], start, self.members[self._entries(cells, count)])
+        members = np.empty(start[-1], np.int32)
+        for run in _runs(start):
+            entries = self._entries(cells[run], count[run])
+            members[start[run.start] : start[run.stop]] = self.members[entries]
+        return CellLists(self.places[cells], start, members)
 
     def _entries(self, cells: Whole, count: Whole) -> Whole:
         """Return the places of the lists of some cells, one after the other."""
@@ -83,6 +89,16 @@ class CellLists:
         members = np.concatenate([lists.members for _, lists in made])
         whole = CellLists(places, np.concatenate([[0], np.cumsum(count)]), members)
         return whole.chosen(np.argsort(number))
+
+
+def _runs(start: Whole) -> Iterator[slice]:
+    """Yield runs of cells, each with about ``ENTRIES_AT_ONCE`` entries at most."""
+    begin = 0
+    while begin < len(start) - 1:
+        end = int(np.searchsorted(start, start[begin] + ENTRIES_AT_ONCE, side="right")) - 1
+        end = max(end, begin + 1)
+        yield slice(begin, end)
+        begin = end
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +149,7 @@ def packed_cells(
     at = WIDTH**3 * np.searchsorted(divided, in_block) + within
     inner[at] = place[which[len(of_block) :]]
     every = np.concatenate([[len(rows)], rows])
-    lines = np.insert(rows[listed.members], listed.start[:-1], count)
+    lines = np.insert(rows.astype(np.int32)[listed.members], listed.start[:-1], count)
     whole = np.concatenate([tops, inner, lines, every])
     return PackedCells(whole.astype(np.int32), len(whole) - len(every))
 
@@ -142,8 +158,11 @@ def _distinct(lists: CellLists) -> tuple[CellLists, Whole]:
     """Return lists without repetition, and which of them each cell has."""
     most = int(lists.members.max()) + 1
     marks = np.random.default_rng(0).integers(1, 2**62, most, dtype=np.int64)
-    sums = np.concatenate([[0], np.cumsum(marks[lists.members])])
-    key = sums[lists.start[1:]] - sums[lists.start[:-1]]
+    key = np.zeros(len(lists.places), np.int64)
+    for run in _runs(lists.start):
+        start = lists.start[run.start : run.stop + 1]
+        sums = np.concatenate([[0], np.cumsum(marks[lists.members[start[0] : start[-1]]])])
+        key[run] = np.diff(sums[start - start[0]])
     _, first, which = np.unique(key, return_index=True, return_inverse=True)
     # Equal sums of other lists are as good as impossible; the lists decide.
     alike = lists.chosen(first[which])

@@ -47,6 +47,8 @@ SHORT: Final = 2
 # The most pairs of a cell and a member that are computed for the cells of blocks: where members lie
 # dense within the width of their blends, lists are long, and the longest stay those of blocks.
 MOST_PAIRS: Final = 48_000_000
+# The most pairs of a block and a member: where lists stay long, blocks are larger.
+MOST_BLOCK_PAIRS: Final = 16_000_000
 # Cells of the first level along the longest axis, at most.
 FIRST: Final = 4
 # How much larger a cell counts than it is, for the rounding of 32-bit places.
@@ -209,9 +211,20 @@ class _Building:
         for cells in lists.batches(AT_ONCE):
             made.append((cells, self._pruned(lists.places[cells], *lists.padded(cells), level)))
         lists = CellLists.merged(made)
+        growth = 1.0  # of the pairs by one division, as in the one before
         for below in reversed(range(level)):
-            lists = self._divided(lists, below)
+            if growth * len(lists.members) > MOST_BLOCK_PAIRS:
+                self._enlarge(2 ** (below + 1))
+                break
+            halves = self._divided(lists, below)
+            growth, lists = len(halves.members) / max(len(lists.members), 1), halves
         return lists
+
+    def _enlarge(self, times: int) -> None:
+        """Make blocks and cells larger; the lower corner of the grid stays."""
+        self._blocks = np.ceil(self._blocks / times).astype(int)
+        self._size *= times
+        self._high = self._low + 4 * self._size * self._blocks
 
     def _divided(self, lists: CellLists, level: int) -> CellLists:
         """Return the halves of cells, with their own lists; a level is that of the result."""
