@@ -306,8 +306,9 @@ def _one_line(sentence: str, name: str, error: Callable[[str], Exception]) -> It
     except TooLargeError as caught:
         raise caught if error is LoadError else error(caught.message) from None
     except Exception as caught:
-        if isinstance(error, type) and isinstance(caught, error) and error is not LoadError:
-            raise
+        if isinstance(error, type) and error not in (LoadError, ValueError):
+            if isinstance(caught, error):
+                raise
         reason = reason_of(caught)
         if isinstance(caught, LoadError) and reason.startswith("cannot read"):
             raise

@@ -7,14 +7,16 @@ the frame depends on. A later run keeps files with the right key.
 from __future__ import annotations
 
 import hashlib
+import io
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
+from PIL.PngImagePlugin import PngImageFile
 
+from distal.foreign_files import opened
 from distal.images.atomic_files import SaveError, replacement
 from distal.images.picture import Picture
 from distal.images.png import encode
@@ -44,7 +46,7 @@ class Frames:
     def is_there(self, index: int) -> bool:
         """Return whether the file of a frame exists and has the right key."""
         try:
-            with Image.open(self.files[index]) as picture:
+            with PngImageFile(self.files[index]) as picture:
                 return picture.info.get(KEY) == self._key(index)
         except Exception:  # Pillow raises many kinds of exceptions for broken files
             return False
@@ -61,7 +63,11 @@ class Frames:
 
     def levels(self, index: int) -> NDArray[np.uint8]:
         """Return a frame that is there: 8 bits for red, green, blue and alpha."""
-        with Image.open(self.files[index]) as picture:
+        file = self.files[index]
+        with (
+            opened("frame", file, error=SaveError) as data,
+            PngImageFile(io.BytesIO(data)) as picture,
+        ):
             return np.asarray(picture.convert("RGBA"))
 
     def remove(self, indices: Iterable[int]) -> None:
