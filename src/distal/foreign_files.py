@@ -306,9 +306,9 @@ def _one_line(sentence: str, name: str, error: Callable[[str], Exception]) -> It
     except TooLargeError as caught:
         raise caught if error is LoadError else error(caught.message) from None
     except Exception as caught:
-        if isinstance(error, type) and error not in (LoadError, ValueError):
-            if isinstance(caught, error):
-                raise
+        is_own = isinstance(error, type) and error not in (LoadError, ValueError)
+        if is_own and isinstance(caught, error):  # type: ignore[arg-type]  # it is a class
+            raise
         reason = reason_of(caught)
         if isinstance(caught, LoadError) and reason.startswith("cannot read"):
             raise
@@ -354,10 +354,11 @@ def _content(path: Path, most: int) -> bytes:
             is_folder = stat.S_ISDIR(found.st_mode)
             raise LoadError("Is a directory" if is_folder else "it is no ordinary file")
         with path.open("rb") as file:
-            data = b"" if found.st_size > most else file.read(most + 1)
+            # Not ``most``: as much is allocated before the first byte comes.
+            data = b"" if found.st_size > most else file.read(found.st_size)
     except ValueError as error:  # a null character in the name
         raise LoadError(str(error)) from None
-    if max(found.st_size, len(data)) > most:
+    if found.st_size > most:
         raise LoadError(f"it is larger than {most >> 20} MiB")
     if not data:
         raise LoadError("it is empty")
