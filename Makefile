@@ -12,6 +12,8 @@
 # make sweep-segments  follows 1e7 segments of rays and counts those on the wrong side of a surface
 # make sweep-meshes  meshes every solid, the printable examples and 100 random fields, and names faults;
 #                    saves the enclosure from its page at 128 cells
+# make sweep-readers  damages files of every kind that others write in 500 ways each, and reads them
+#                      with little memory and time (READERS=5000, SEED=7, KINDS="3MF font")
 # make parity    draws every example in every place and writes docs/parity.md
 # make mutate    changes the source in small ways and reports what no test notices:
 #                MODULES="distal/fields distal/scene" COUNT=200 SEED=7
@@ -40,6 +42,7 @@ PROCESSES ?= 200
 TOLERANCE ?= 0.01
 MODULES ?= distal/fields distal/render distal/passes/fold* distal/scene
 COUNT ?= 100
+READERS ?= 500
 SEED ?=
 SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers glslang-tools \
 	chromium xvfb xdotool imagemagick
@@ -47,7 +50,7 @@ SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers g
 # A worker begins with a part of the files, and so compiles few programs that another compiles too.
 UNITS = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -rfEs
 
-.PHONY: picture test test-all test-for record lint style units system bench site sweep sweep-fields sweep-threads sweep-segments sweep-meshes parity mutate versions clean
+.PHONY: picture test test-all test-for record lint style units system bench site sweep sweep-fields sweep-threads sweep-segments sweep-meshes sweep-readers parity mutate versions clean
 .NOTPARALLEL:
 
 picture: $(VENV)/.setup-run
@@ -112,6 +115,9 @@ sweep-segments: $(VENV)/.setup-test
 sweep-meshes: $(VENV)/.setup-test
 	nice $(BIN)/python tools/sweep_meshes.py $(GROUPS) --tolerance $(TOLERANCE)
 	nice $(BIN)/python tools/sweep_page.py
+
+sweep-readers: $(VENV)/.setup-test
+	nice $(BIN)/python tools/sweep_readers.py $(KINDS) --count $(READERS) --seed $(or $(SEED),1)
 
 site: $(VENV)/.setup-test web/node_modules/.ready
 	$(BIN)/python tools/build_site.py

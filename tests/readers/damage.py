@@ -192,7 +192,7 @@ def _sound(format: str, codec: str, layout: str = "s16") -> Callable[[], bytes]:
         import av  # noqa: PLC0415
 
         file = io.BytesIO()
-        with av.open(file, "w", format=format) as out:
+        with av.open(file, "w", format=format, options={"fflags": "+bitexact"}) as out:
             stream = out.add_stream(codec, rate=16000)
             stream.layout = "mono"
             planar = layout.endswith("p")

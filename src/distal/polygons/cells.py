@@ -19,7 +19,7 @@ from distal.polygons.whole_numbers import sorted_keys
 # contains many cells that it does not meet.
 _LARGEST_PIECE: Final = 2.0
 # Bytes that a piece costs at the peak, with the pairs of it and the cells of its box.
-_PIECE_BYTES: Final = 160
+_PIECE_BYTES: Final = 240
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -140,7 +140,6 @@ def _pairs(
 
 def boxes_of_pieces(corners: Corners) -> Boxes:
     """Return the lowest and the highest cell of small pieces of triangles, and whose they are."""
-    _check_pieces(corners)
     found: list[tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.int64]]] = []
     left, owner = corners, np.arange(len(corners[0]))
     while len(owner):
@@ -151,6 +150,12 @@ def boxes_of_pieces(corners: Corners) -> Boxes:
         if not is_large.any():
             found.append((low, high, owner))
             break
+        pieces = sum(len(rows) for _, _, rows in found) + len(owner) + int(is_large.sum())
+        need(
+            pieces * _PIECE_BYTES,
+            f"its {len(corners[0]):,} triangles meet {pieces:,} cells of the grid and more; a "
+            "wider spacing= has fewer",
+        )
         found.append((low[~is_large], high[~is_large], owner[~is_large]))
         left = _halved(tuple(corner[is_large] for corner in left))
         owner = np.tile(owner[is_large], 2)
@@ -158,21 +163,6 @@ def boxes_of_pieces(corners: Corners) -> Boxes:
     # A number on the border of two cells may be rounded into either one; no harm is done, because
     # the triangle touches both.
     return np.floor(low).astype(np.int32) + 1, np.floor(high).astype(np.int32) + 1, owner
-
-
-def _check_pieces(corners: Corners) -> None:
-    """Check how many pieces there are, about: by the length and by the area of each triangle.
-
-    Raises:
-        LoadError: They are more than the file may become.
-    """
-    a, b, c = corners
-    sides = [np.linalg.norm(np.subtract(e, s), axis=1) for s, e in ((a, b), (b, c), (c, a))]
-    longest = np.maximum(np.maximum(sides[0], sides[1]), sides[2]).astype(np.float64)
-    areas = 0.5 * np.linalg.norm(np.cross(b - a, c - a).astype(np.float64), axis=1)
-    pieces = np.maximum(np.maximum(longest, areas / _LARGEST_PIECE) / _LARGEST_PIECE, 1.0).sum()
-    what = f"{len(a):,} triangles meet {pieces:,.0f} cells of the grid"
-    need(float(pieces) * _PIECE_BYTES, f"its {what}; a wider spacing= has fewer")
 
 
 def _halved(corners: tuple[NDArray[np.float32], ...]) -> Corners:

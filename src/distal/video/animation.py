@@ -14,12 +14,12 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
 from PIL.PngImagePlugin import PngImageFile
 
 from distal.foreign_files import opened
 from distal.images.atomic_files import SaveError
 from distal.video.formats import LOSSLESS, VideoFormat, library
+from distal.video.frames import levels_of
 from distal.video.pixels import BT709, FULL, RGB, SRGB
 from distal.video.segments import whole_or_nothing
 from distal.video.texts import with_texts
@@ -217,8 +217,7 @@ def _mode(file: Path) -> str:
 
 def _frame(file: Path, index: int, *, alpha: bool = False) -> Any:
     """Read a frame from a PNG file."""
-    with opened("frame", file, error=SaveError) as data, PngImageFile(io.BytesIO(data)) as picture:
-        levels = np.array(picture.convert("RGBA" if alpha else "RGB"))
+    levels = levels_of(file, "RGBA" if alpha else "RGB")
     frame = library().VideoFrame.from_ndarray(levels, "rgba" if alpha else "rgb24")
     frame.pts, frame.time_base = index, Fraction(1)
     return frame

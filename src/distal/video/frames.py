@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL.PngImagePlugin import PngImageFile
 
-from distal.foreign_files import opened
+from distal.foreign_files import need, opened
 from distal.images.atomic_files import SaveError, replacement
 from distal.images.picture import Picture
 from distal.images.png import encode
@@ -63,12 +63,7 @@ class Frames:
 
     def levels(self, index: int) -> NDArray[np.uint8]:
         """Return a frame that is there: 8 bits for red, green, blue and alpha."""
-        file = self.files[index]
-        with (
-            opened("frame", file, error=SaveError) as data,
-            PngImageFile(io.BytesIO(data)) as picture,
-        ):
-            return np.asarray(picture.convert("RGBA"))
+        return levels_of(self.files[index], "RGBA")
 
     def remove(self, indices: Iterable[int]) -> None:
         """Delete the files of frames, where they exist."""
@@ -78,6 +73,22 @@ class Frames:
     def _key(self, index: int) -> str:
         key = f"{self._common} {index} {self._times[index]!r}"
         return hashlib.sha256(key.encode()).hexdigest()
+
+
+def levels_of(file: Path, mode: str) -> NDArray[np.uint8]:
+    """Return the pixels of a frame's file.
+
+    Args:
+        file: A PNG file.
+        mode: "RGB" or "RGBA".
+
+    Raises:
+        SaveError: It cannot be read.
+    """
+    with opened("frame", file, error=SaveError) as data, PngImageFile(io.BytesIO(data)) as picture:
+        width, height = picture.size
+        need(width * height * 12, f"{width:,} x {height:,} pixels")
+        return np.array(picture.convert(mode))
 
 
 def make_folder(folder: Path) -> None:
