@@ -53,7 +53,7 @@ _UNPACKING: Final = (zlib.error, zipfile.BadZipFile)
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class FileKind:
     """A kind of file that others write.
 
     Attributes:
@@ -73,16 +73,16 @@ class Kind:
 _UNREADABLE: Final = "cannot read '{file}': {reason}"
 
 
-def _data(name: str, largest: int = 2**30) -> Kind:
-    return Kind(f"'{{file}}' is no {name} that can be read: {{reason}}", _UNREADABLE, largest)
+def _data(name: str, largest: int = 2**30) -> FileKind:
+    return FileKind(f"'{{file}}' is no {name} that can be read: {{reason}}", _UNREADABLE, largest)
 
 
-def _picture(name: str, largest: int = 2**30) -> Kind:
-    return Kind(f"{{file}} is broken: it is no whole {name}: {{reason}}", _UNREADABLE, largest)
+def _picture(name: str, largest: int = 2**30) -> FileKind:
+    return FileKind(f"{{file}} is broken: it is no whole {name}: {{reason}}", _UNREADABLE, largest)
 
 
-def _one(sentence: str, largest: int = 2**30, *, is_watched: bool = False) -> Kind:
-    return Kind(sentence, sentence, largest, is_watched)
+def _one(sentence: str, largest: int = 2**30, *, is_watched: bool = False) -> FileKind:
+    return FileKind(sentence, sentence, largest, is_watched)
 
 
 # All kinds. ``tools/sweep_readers.py`` has files of each to damage.
@@ -131,7 +131,7 @@ class Budget:
     __slots__ = ("_begin", "_is_trusted", "_option", "file", "kind", "most", "seconds", "size")
 
     def __init__(
-        self, kind: Kind, file: str, size: int, max_memory: Memory | None, *, option: bool
+        self, kind: FileKind, file: str, size: int, max_memory: Memory | None, *, option: bool
     ) -> None:
         self.kind, self.file, self.size, self._option = kind, file, size, option
         allowed = memory_of(max_memory)
@@ -371,7 +371,7 @@ def _watched(budget: Budget) -> Iterator[None]:
     if not budget.is_watched:
         yield
         return
-    watch = _Watch(budget.seconds)
+    watch = _ReadWatch(budget.seconds)
     try:
         yield
     except _TimeIsUp:
@@ -380,7 +380,7 @@ def _watched(budget: Budget) -> Iterator[None]:
         watch.end()
 
 
-class _Watch:
+class _ReadWatch:
     """A thread that raises ``_TimeIsUp`` in the thread that made it, until it is ended."""
 
     def __init__(self, seconds: float) -> None:

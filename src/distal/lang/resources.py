@@ -97,13 +97,27 @@ class TextureValue:
 
 
 class Texture2D(TextureValue):
-    """A picture, sampled by a vec2: (0, 0) is the lower left corner, (1, 1) the upper right."""
+    """A picture, sampled by a vec2: (0, 0) is the lower left corner, (1, 1) the upper right.
+
+    Args:
+        data: A file, an array, or nested lists of numbers.
+        wrap: How to sample outside: "repeat", or "clamp" to repeat the edge texels.
+        max_memory: The most memory that a file may become, as "4 GB" or in bytes; None: by its
+            size.
+    """
 
     __distal_type__ = TEXTURE_2D
 
 
 class TextureCube(TextureValue):
-    """Six square pictures, sampled by a direction."""
+    """Six square pictures, sampled by a direction.
+
+    Args:
+        data: Six files or arrays: +x, -x, +y, -y, +z, -z.
+        wrap: How to sample outside: "repeat", or "clamp" to repeat the edge texels.
+        max_memory: The most memory that a file may become, as "4 GB" or in bytes; None: by its
+            size.
+    """
 
     __distal_type__ = TEXTURE_CUBE
 

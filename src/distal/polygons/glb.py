@@ -36,7 +36,7 @@ class _File:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Part:
+class _GlbPart:
     """A primitive that has triangles: its points, corners and colors, or None for no colors."""
 
     points: NDArray[np.float64]
@@ -53,11 +53,11 @@ class _Meshes:
 
     def __init__(self, file: _File, *, with_colors: bool) -> None:
         self._file, self._with_colors = file, with_colors
-        self._parts: dict[int, list[_Part]] = {}
+        self._parts: dict[int, list[_GlbPart]] = {}
         self._sizes: dict[int, MeshSize] = {}
         self._all = MeshSize()
 
-    def parts(self, number: Any) -> list[_Part]:
+    def parts(self, number: Any) -> list[_GlbPart]:
         """Return the parts of a mesh that have triangles."""
         entry = _entry(self._file.content, "meshes", number)
         if number not in self._parts:
@@ -73,7 +73,7 @@ class _Meshes:
         self.parts(number)
         return self._sizes[number]
 
-    def _part(self, primitive: Any) -> _Part | None:
+    def _part(self, primitive: Any) -> _GlbPart | None:
         check_time()
         found = _primitive(self._file, primitive, self._all)
         if found is None or not len(found[1]):
@@ -81,7 +81,7 @@ class _Meshes:
         points, corners = found
         count = len(points)
         colors = _colors(self._file, primitive, count) if self._with_colors else None
-        return _Part(points, corners, colors)
+        return _GlbPart(points, corners, colors)
 
 
 def read_glb(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
@@ -109,7 +109,7 @@ def read_glb(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
     return _copied(copies)
 
 
-def _copied(copies: list[tuple[_Part, NDArray[np.float64]]]) -> SourceTriangles:
+def _copied(copies: list[tuple[_GlbPart, NDArray[np.float64]]]) -> SourceTriangles:
     """Return the mesh of all copies, each placed by its matrix."""
     points: list[NDArray[np.float64]] = []
     triangles: list[NDArray[np.int64]] = []
