@@ -16,6 +16,8 @@
 #                    (SEQUENCES=3000 for more)
 # make sweep-interrupts  interrupts every command by ctrl-C at 200 moments (COMMANDS="render video",
 #                    MOMENTS=20)
+# make sweep-readers  damages files of every kind that others write in 500 ways each, and reads them
+#                      with little memory and time (READERS=5000, SEED=7, KINDS="3MF font")
 # make parity    draws every example in every place and writes docs/parity.md
 # make mutate    changes the source in small ways and reports what no test notices:
 #                MODULES="distal/fields distal/scene" COUNT=200 SEED=7
@@ -46,6 +48,7 @@ TOLERANCE ?= 0.01
 SEQUENCES ?= 300
 MODULES ?= distal/fields distal/render distal/passes/fold* distal/scene
 COUNT ?= 100
+READERS ?= 500
 SEED ?=
 SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers glslang-tools \
 	chromium xvfb xdotool imagemagick
@@ -53,7 +56,7 @@ SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers g
 # A worker begins with a part of the files, and so compiles few programs that another compiles too.
 UNITS = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -rfEs
 
-.PHONY: picture test test-all test-for record lint style units system bench site sweep sweep-fields sweep-threads sweep-segments sweep-meshes sweep-keeping sweep-interrupts parity mutate versions clean
+.PHONY: picture test test-all test-for record lint style units system bench site sweep sweep-fields sweep-threads sweep-segments sweep-meshes sweep-keeping sweep-interrupts sweep-readers parity mutate versions clean
 .NOTPARALLEL:
 
 picture: $(VENV)/.setup-run
@@ -125,6 +128,9 @@ sweep-keeping: $(VENV)/.setup-test
 
 sweep-interrupts: $(VENV)/.setup-test
 	$(BIN)/python tools/sweep_interrupts.py $(COMMANDS) --count $(MOMENTS)
+
+sweep-readers: $(VENV)/.setup-test
+	nice $(BIN)/python tools/sweep_readers.py $(KINDS) --count $(READERS) --seed $(or $(SEED),1)
 
 site: $(VENV)/.setup-test web/node_modules/.ready
 	$(BIN)/python tools/build_site.py

@@ -126,7 +126,14 @@ class Buffer(Generic[_T]):
 class _Texture:
     data: Any
     wrap: str
-    def __init__(self, data: Any, wrap: Literal["repeat", "clamp"] = "repeat") -> None: ...
+    max_memory: int | str | None
+    def __init__(
+        self,
+        data: Any,
+        wrap: Literal["repeat", "clamp"] = "repeat",
+        *,
+        max_memory: int | str | None = None,
+    ) -> None: ...
 
 class Texture2D(_Texture): ...
 class ImageInput(Texture2D, _ImageInput): ...

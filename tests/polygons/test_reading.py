@@ -13,6 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from distal.diagnostics import LoadError
+from distal.foreign_files import reading
 from distal.mesh.files.formats import MESH_FORMATS, write
 from distal.polygons.reading import READ_FORMATS, read_mesh
 from distal.polygons.triangles import checked, welded
@@ -395,7 +396,8 @@ def whole(tmp_path_factory) -> list[tuple[str, bytes]]:
 def survives(suffix: str, data: bytes) -> None:
     """Read damaged bytes: a mesh or a LoadError, and nothing else."""
     try:
-        mesh = READ_FORMATS[suffix].read(data)
+        with reading(READ_FORMATS[suffix].name, "a", len(data)):
+            mesh = READ_FORMATS[suffix].read(data)
     except LoadError as error:
         assert error.message and "\n" not in error.message
     else:

@@ -392,16 +392,18 @@ def check_processor() -> None:
 
 
 def check_cache() -> None:
-    """Check the variables of the environment that the cache of kernels and texts reads.
+    """Check the variables of the environment that the cache and readers of files use.
 
     Raises:
         UsageError: One has a value that it must not have.
     """
     from distal.devices.cache import size_limit
     from distal.devices.kernel_key import optimization
+    from distal.foreign_files import memory_of
 
     _checked(size_limit)
     _checked(optimization)
+    _checked(lambda: memory_of(None))
 
 
 def _checked(read: Callable[[], object]) -> None:

@@ -8,15 +8,41 @@ unchanged. Does not depend on devices.
 
 from __future__ import annotations
 
+import io
+import struct
 from pathlib import Path
-from typing import Any, assert_never
+from typing import Any, Final, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.diagnostics import LoadError, printable
+from distal.diagnostics import LoadError
+from distal.foreign_files import Memory, need, opened
 from distal.ir.types import Buffer, Kind, Texture, TextureShape, component_count, kind_of
 from distal.lang.resources import AXES
+
+# Bytes that a pixel costs while its file is read: four floats, the decoder's pixel, and what
+# progressive JPEG keeps.
+PIXEL_BYTES: Final = 24
+_BAND: Final = 256  # rows that are converted at once
+# Formats of pictures that Pillow decodes itself: its others start programs, or read more files.
+PICTURE_FORMATS: Final = (
+    "PNG",
+    "JPEG",
+    "WEBP",
+    "GIF",
+    "BMP",
+    "TIFF",
+    "TGA",
+    "PPM",
+    "AVIF",
+    "JPEG2000",
+    "DDS",
+    "PCX",
+    "PSD",
+    "QOI",
+    "SGI",
+)
 
 _COMPONENT: dict[Kind, Any] = {Kind.FLOAT: np.float32, Kind.INT: np.int32, Kind.UINT: np.uint32}
 
@@ -44,30 +70,39 @@ def load(source: Any, type: Texture | Buffer) -> NDArray[Any]:
         return source.data
     if isinstance(type, Buffer):
         return _buffer(source.data, type)
-    return texels(source.data, type.shape, getattr(source, "axes", AXES))
+    return texels(
+        source.data,
+        type.shape,
+        getattr(source, "axes", AXES),
+        max_memory=getattr(source, "max_memory", None),
+    )
 
 
-def texels(data: Any, shape: TextureShape, axes: str = AXES) -> NDArray[np.float32]:
+def texels(
+    data: Any, shape: TextureShape, axes: str = AXES, *, max_memory: Memory | None = None
+) -> NDArray[np.float32]:
     """Return the texels of a texture; texel (0, 0) of a picture is at its lower left.
 
     Args:
         data: The path of a file, an array, or nested lists.
         shape: The kind of texture.
         axes: What the axes of a volume are, from the outermost to the innermost.
+        max_memory: The most bytes that a file may become; None: by its size.
 
     Raises:
-        LoadError: A file cannot be read, or the data does not have the shape of such a texture.
+        LoadError: A file cannot be read or is too large, or the data does not have the shape of
+            such a texture.
     """
     match shape:
         case TextureShape.FLAT:
-            return np.ascontiguousarray(_picture(data)[::-1])
+            return _picture(data, max_memory, step=-1)
         case TextureShape.VOLUME:
             found = _with_channels(_numbers(data), 3)
             order = [axes.index(axis) for axis in AXES]
             return np.ascontiguousarray(found.transpose(*order, 3))
         case TextureShape.CUBE:
             # A cube's faces are seen from inside, top row first, as in OpenGL.
-            faces = [_picture(face) for face in _parts(data)]
+            faces = [_picture(face, max_memory) for face in _parts(data)]
             if {face.shape for face in faces} != {faces[0].shape} or len(faces) != 6:
                 raise LoadError("a TextureCube takes six pictures of one size")
             if faces[0].shape[0] != faces[0].shape[1]:
@@ -86,18 +121,45 @@ def _parts(data: Any) -> list[Any]:
     return parts
 
 
-def _picture(data: Any) -> NDArray[np.float32]:
-    """Return a picture: (height, width, 4), top row first."""
+def _picture(data: Any, max_memory: Memory | None, step: int = 1) -> NDArray[np.float32]:
+    """Return a picture: (height, width, 4), top row first; the last one with a step of -1."""
     if not isinstance(data, str | Path):
-        return _with_channels(_numbers(data), 2)
+        return _with_channels(_numbers(data)[::step], 2)
+    with (
+        opened("texture", data, max_memory=max_memory, option=True) as content,
+        _decoder(content, str(data)) as picture,
+    ):
+        width, height = picture.size
+        need(width * height * PIXEL_BYTES, f"{width:,} x {height:,} pixels")
+        picture.load()
+        found = np.empty((height, width, 4), np.float32)
+        for top in range(0, height, _BAND):
+            band = picture.crop((0, top, width, min(top + _BAND, height)))
+            found[::step][top : top + _BAND] = np.asarray(band.convert("RGBA"))
+        found /= np.float32(255.0)
+        return found
+
+
+def _decoder(content: bytes, name: str) -> Any:
+    """Return the picture of a file, of which only the header is read.
+
+    ``Image.open`` refuses large pictures, whoever asked for them; the budget does that here.
+    """
     from PIL import Image  # noqa: PLC0415 (only a file's data needs it)
 
-    try:
-        with Image.open(data) as picture:
-            return _with_channels(np.asarray(picture.convert("RGBA")), 2)
-    except Exception as error:  # Pillow raises many kinds of exceptions for broken files
-        reason = getattr(error, "strerror", None) or error
-        raise LoadError(f"the texture '{data}' cannot be read: {printable(reason)}") from error
+    Image.init()
+    for format in PICTURE_FORMATS:
+        make, accept = Image.OPEN.get(format, (None, None))
+        is_likely = accept is None or accept(content[:16])
+        if make is None or isinstance(is_likely, str) or not is_likely:
+            continue
+        try:
+            picture = make(io.BytesIO(content), name)
+        except (SyntaxError, IndexError, TypeError, KeyError, EOFError, struct.error):
+            continue  # as ``Image.open``: it is another format's
+        if picture is not None:
+            return picture
+    raise LoadError("it is no picture of a format that is read")
 
 
 def _numbers(data: Any) -> NDArray[Any]:
@@ -119,8 +181,9 @@ def _with_channels(array: NDArray[Any], axes: int) -> NDArray[np.float32]:
     if array.ndim != axes + 1 or array.shape[-1] not in (3, 4) or array.size == 0:
         names = ("height, width", "depth, height, width")[axes - 2]
         raise LoadError(f"a texture is ({names}), with 3 or 4 channels; not {array.shape}")
-    scale = np.float32(255.0 if array.dtype == np.uint8 else 1.0)
-    values = array.astype(np.float32) / scale
+    values = array.astype(np.float32, order="C")
+    if array.dtype == np.uint8:
+        values /= np.float32(255.0)
     if values.shape[-1] == 3:
         opaque = np.ones((*values.shape[:-1], 1), np.float32)
         values = np.concatenate([values, opaque], axis=-1)

@@ -18,6 +18,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.foreign_files import need, reading
 from distal.images.exr_header import read_header
 from distal.images.metadata import PREFIX, ReadError
 from distal.packages import imported
@@ -100,10 +101,8 @@ def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
     Raises:
         ReadError: The file is broken or incomplete.
     """
-    try:
-        header = read_header(path)
-    except (OSError, ValueError) as error:
-        raise ReadError(f"{path} is broken: it is no whole EXR: {error}") from None
+    with reading("EXR", str(path), 0, error=ReadError), path.open("rb") as file:
+        header = read_header(file)
     texts = {key: text for key, text in header.texts.items() if key.startswith(PREFIX)}
     return header.size, header.bits["R"], texts
 
@@ -116,11 +115,13 @@ def decode(data: bytes) -> dict[str, NDArray[Any]]:
         PackageError: OpenEXR is missing or broken.
     """
     openexr = imported("OpenEXR")
-    try:
+    with reading("EXR", "the picture", len(data), error=ReadError):
+        header = read_header(io.BytesIO(data))
+        width, height = header.size
+        pixel = sum(header.bits.values()) // 8
+        need(2 * width * height * pixel, f"{width:,} x {height:,} pixels of {pixel} bytes")
         with _quiet(), openexr.File(io.BytesIO(data), separate_channels=True) as file:
             return {name: channel.pixels for name, channel in file.channels().items()}
-    except Exception:
-        raise ReadError("it is no whole EXR") from None
 
 
 @contextmanager

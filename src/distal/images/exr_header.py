@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import BinaryIO, Final
 
 from distal.lang.render_options import LARGEST_SIDE_PX
@@ -42,29 +41,28 @@ class ExrHeader:
     texts: dict[str, str] = field(default_factory=dict)
 
 
-def read_header(path: Path) -> ExrHeader:
+def read_header(file: BinaryIO) -> ExrHeader:
     """Read the header, and check that every row is in the file.
 
     Raises:
         OSError: The file cannot be read.
         ValueError: Its header is not one that distal writes, or the file is incomplete.
     """
-    with path.open("rb") as file:
-        magic, version = struct.unpack("<4sI", _exactly(file, 8))
-        if magic != _MAGIC or version & 0xFF != _VERSION:
-            raise ValueError("it is of another version")
-        if version & ~0xFF & ~_LONG_NAMES:
-            raise ValueError("it has tiles, depths or several parts")
-        values = _attributes(file)
-        header = ExrHeader(size=_size(values), bits=_channels(values))
-        if "R" not in header.bits:
-            raise ValueError("it has no channel R")
-        header.texts = {
-            name: data.decode("utf-8", "replace")
-            for name, (kind, data) in values.items()
-            if kind == "string"
-        }
-        _check_rows(file, header.size[1], _rows_in_chunk(values))
+    magic, version = struct.unpack("<4sI", _exactly(file, 8))
+    if magic != _MAGIC or version & 0xFF != _VERSION:
+        raise ValueError("it is of another version")
+    if version & ~0xFF & ~_LONG_NAMES:
+        raise ValueError("it has tiles, depths or several parts")
+    values = _attributes(file)
+    header = ExrHeader(size=_size(values), bits=_channels(values))
+    if "R" not in header.bits:
+        raise ValueError("it has no channel R")
+    header.texts = {
+        name: data.decode("utf-8", "replace")
+        for name, (kind, data) in values.items()
+        if kind == "string"
+    }
+    _check_rows(file, header.size[1], _rows_in_chunk(values))
     return header
 
 

@@ -16,14 +16,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.file_writer import SaveError
+from distal.foreign_files import need, opened, reading
 from distal.images.metadata import ReadError
 from distal.images.png import quantise
 from distal.lang.lazy_module import LazyModule
 
 if TYPE_CHECKING:
     from PIL import Image as PillowImage
+    from PIL import JpegImagePlugin
 else:
-    PillowImage = LazyModule("PIL.Image")  # slow to import, and only files need it
+    # Slow to import, and only files need them.
+    PillowImage, JpegImagePlugin = LazyModule("PIL.Image"), LazyModule("PIL.JpegImagePlugin")
 
 SIGNATURE: Final = b"\xff\xd8\xff"
 BITS: Final = (8,)
@@ -61,12 +64,12 @@ def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
     Raises:
         ReadError: It cannot be read.
     """
-    try:
-        with PillowImage.open(path, formats=("JPEG",)) as picture:
-            size, comment = picture.size, picture.info.get("comment", b"")
+    with (
+        opened("JPEG", path, error=ReadError) as data,
+        JpegImagePlugin.JpegImageFile(io.BytesIO(data)) as picture,
+    ):
+        size, comment = picture.size, picture.info.get("comment", b"")
         found = json.loads(comment or b"{}")
-    except (OSError, ValueError, RecursionError, PillowImage.DecompressionBombError):
-        raise ReadError(f"{path} is broken, or its metadata is another program's") from None
     texts = found.items() if isinstance(found, dict) else ()
     return size, 8, {key: text for key, text in texts if isinstance(text, str)}
 
@@ -77,8 +80,10 @@ def decode(data: bytes) -> NDArray[np.uint8]:
     Raises:
         ReadError: It cannot be read.
     """
-    try:
-        with PillowImage.open(io.BytesIO(data), formats=("JPEG",)) as picture:
-            return np.asarray(picture.convert("RGB"))
-    except (OSError, ValueError, PillowImage.DecompressionBombError):
-        raise ReadError("it is no whole JPEG") from None
+    with (
+        reading("JPEG", "the picture", len(data), error=ReadError),
+        JpegImagePlugin.JpegImageFile(io.BytesIO(data)) as picture,
+    ):
+        width, height = picture.size
+        need(width * height * 16, f"{width:,} x {height:,} pixels")
+        return np.asarray(picture.convert("RGB"))

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.devices.levels import levels as fast_levels
+from distal.foreign_files import need, opened, reading
 from distal.images.metadata import PREFIX, ReadError
 from distal.lang.lazy_module import LazyModule
 from distal.lang.render_options import LARGEST_SIDE_PX
@@ -137,20 +138,17 @@ def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
     Raises:
         ReadError: The file is broken.
     """
-    try:
+    with opened("PNG", path, error=ReadError) as data:
         # Not Image.open, which refuses large pictures as a possible attack.
-        with PngImagePlugin.PngImageFile(path) as image:
+        with PngImagePlugin.PngImageFile(io.BytesIO(data)) as image:
             if max(image.size) > LARGEST_SIDE_PX:
                 raise ValueError(f"it claims {image.width}x{image.height} pixels")
+            need(image.width * image.height * 4, f"{image.width:,} x {image.height:,} pixels")
             image.load()  # detects missing data, and reads texts after the pixels
             texts = {str(key): str(value) for key, value in image.info.items()}
             size = image.size
-        with path.open("rb") as file:
-            bits = file.read(25)[24]
-            _check_end(file)
-    except Exception as error:  # Pillow raises many kinds of exceptions for broken files
-        raise ReadError(f"{path} is broken: it is no whole PNG: {error}") from None
-    return size, bits, {key: text for key, text in texts.items() if key.startswith(PREFIX)}
+        _check_end(io.BytesIO(data))
+    return size, data[24], {key: text for key, text in texts.items() if key.startswith(PREFIX)}
 
 
 def _check_end(file: BinaryIO) -> None:
@@ -177,15 +175,12 @@ def decode(data: bytes) -> NDArray[Any]:
     Raises:
         ReadError: The file is broken, or has 16 bits and was written by another program.
     """
-    try:
-        if data[24] != 16:
-            with PngImagePlugin.PngImageFile(io.BytesIO(data)) as image:
-                return np.asarray(image.convert("RGBA"))
-        return _read_deep(data)
-    except ReadError:
-        raise
-    except Exception as error:  # Pillow raises many kinds of exceptions for broken files
-        raise ReadError(f"it is no whole PNG: {error}") from None
+    with reading("PNG", "the picture", len(data), error=ReadError):
+        if data[24] == 16:
+            return _read_deep(data)
+        with PngImagePlugin.PngImageFile(io.BytesIO(data)) as image:
+            need(image.width * image.height * 12, f"{image.width:,} x {image.height:,} pixels")
+            return np.asarray(image.convert("RGBA"))
 
 
 def _read_deep(data: bytes) -> NDArray[np.uint16]:
@@ -194,6 +189,7 @@ def _read_deep(data: bytes) -> NDArray[np.uint16]:
     if kind not in _CHANNELS or interlaced:
         raise ReadError("it was written by another program, and cannot be compared")
     channels = _CHANNELS[kind]
+    need(width * height * channels * 12, f"{width:,} x {height:,} pixels")
     packed = b"".join(content for name, content in chunks if name == b"IDAT")
     length = height * (1 + 2 * channels * width)  # a limit, however much the file would unpack to
     unpacked = zlib.decompressobj().decompress(packed, length)

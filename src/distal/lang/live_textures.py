@@ -253,6 +253,12 @@ class ImageInput(Texture2D):
     """A picture that whoever sees a page replaces by one of their own, by dropping a file on it.
 
     Elsewhere it is the ``Texture2D`` of its data.
+
+    Args:
+        data: A file, an array, or nested lists of numbers.
+        wrap: How to sample outside: "repeat", or "clamp" to repeat the edge texels.
+        max_memory: The most memory that a file may become, as "4 GB" or in bytes; None: by its
+            size.
     """
 
 

@@ -80,29 +80,48 @@ class TextureValue:
             looked up in the folder of the file that declares the texture, then in the working
             folder.
         wrap: How to sample outside of the texture: "repeat", or "clamp" to repeat the edge texels.
+        max_memory: The most memory that a file may become, as "4 GB" or in bytes; None: by its
+            size.
     """
 
     __distal_type__: ClassVar[Type]
 
-    def __init__(self, data: Any, wrap: str = "repeat") -> None:
+    def __init__(
+        self, data: Any, wrap: str = "repeat", *, max_memory: int | str | None = None
+    ) -> None:
         if wrap not in WRAPS:
             raise ValueError(f"wrap is 'repeat' or 'clamp', not {wrap!r}")
         declared_in = sys._getframe(1).f_globals.get("__file__")
         self.data = beside(declared_in, data) if isinstance(declared_in, str) else data
         self.wrap = wrap
+        self.max_memory = max_memory
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {_shown(self.data)}, wrap='{self.wrap}'>"
 
 
 class Texture2D(TextureValue):
-    """A picture, sampled by a vec2: (0, 0) is the lower left corner, (1, 1) the upper right."""
+    """A picture, sampled by a vec2: (0, 0) is the lower left corner, (1, 1) the upper right.
+
+    Args:
+        data: A file, an array, or nested lists of numbers.
+        wrap: How to sample outside: "repeat", or "clamp" to repeat the edge texels.
+        max_memory: The most memory that a file may become, as "4 GB" or in bytes; None: by its
+            size.
+    """
 
     __distal_type__ = TEXTURE_2D
 
 
 class TextureCube(TextureValue):
-    """Six square pictures, sampled by a direction."""
+    """Six square pictures, sampled by a direction.
+
+    Args:
+        data: Six files or arrays: +x, -x, +y, -y, +z, -z.
+        wrap: How to sample outside: "repeat", or "clamp" to repeat the edge texels.
+        max_memory: The most memory that a file may become, as "4 GB" or in bytes; None: by its
+            size.
+    """
 
     __distal_type__ = TEXTURE_CUBE
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from distal.diagnostics import CompileError, LoadError
+from distal.foreign_files import opened
 from distal.lessons.document import (
     GOAL_WITHIN,
     LAYERS,
@@ -47,13 +48,12 @@ def read(path: str | Path) -> Lesson:
         CompileError: The file is not a valid lesson.
     """
     file = Path(path)
-    try:
-        text = file.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        raise LoadError(f"{file} is not text in UTF-8") from None
-    except OSError as error:
-        raise LoadError(f"cannot read {file}: {error.strerror}") from None
-    return parse(text, file)
+    with opened("lesson", file) as data:
+        try:
+            text = data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+        except UnicodeDecodeError:
+            raise LoadError("it is not text in UTF-8") from None
+        return parse(text, file)
 
 
 def parse(text: str, file: Path) -> Lesson:

@@ -12,11 +12,14 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.foreign_files import need
 from distal.polygons.whole_numbers import sorted_keys
 
 # A triangle larger than this, in cells, is halved first: the box of a large slanted triangle
 # contains many cells that it does not meet.
 _LARGEST_PIECE: Final = 2.0
+# Bytes that a piece costs at the peak, with the pairs of it and the cells of its box.
+_PIECE_BYTES: Final = 240
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -147,6 +150,12 @@ def boxes_of_pieces(corners: Corners) -> Boxes:
         if not is_large.any():
             found.append((low, high, owner))
             break
+        pieces = sum(len(rows) for _, _, rows in found) + len(owner) + int(is_large.sum())
+        need(
+            pieces * _PIECE_BYTES,
+            f"its {len(corners[0]):,} triangles meet {pieces:,} cells of the grid and more; a "
+            "wider spacing= has fewer",
+        )
         found.append((low[~is_large], high[~is_large], owner[~is_large]))
         left = _halved(tuple(corner[is_large] for corner in left))
         owner = np.tile(owner[is_large], 2)

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
+from distal.foreign_files import need
 from distal.polygons import point_arithmetic
 from distal.polygons.bricks import MOST_DENSE
 from distal.polygons.distances import CELLS_ALONG, MARGIN, nearest_triangles, widened
@@ -44,6 +45,7 @@ _LEAST_WEIGHT: Final = 0.02
 # of them is no cloud of oriented points.
 _MOST_WRONG: Final = 0.25
 _MOST_OPEN: Final = 0.8
+_NODE_BYTES: Final = 200  # that a node costs at the peak
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,6 +113,8 @@ def cloud_distances(
         enough = 1.05 * step * (math.prod(counts) / MOST_DENSE) ** (1.0 / 3.0)
         message = f"a spacing of {step:g} needs {math.prod(counts):,} samples, more than "
         raise LoadError(f"{message}{MOST_DENSE:,}: a spacing of {enough:.3g} is enough")
+    count = math.prod(counts)
+    need(count * _NODE_BYTES, f"a spacing of {step:g} needs {count:,} samples")
     origin = 0.5 * (low + high) - 0.5 * step * (np.array(counts) - 1)
     grid = _Grid((points - origin) / step, normals, areas / step**2, counts, within / step)
     values, is_closed = grid.distances(apart / step)

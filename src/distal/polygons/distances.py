@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
+from distal.foreign_files import need
 from distal.polygons import arithmetic
 from distal.polygons.bricks import MOST_DENSE
 from distal.polygons.cells import sorted_into_cells
@@ -34,6 +35,9 @@ SIGNS: Final = (AUTO, NORMALS, WINDING, UNSIGNED)
 # Empty cells around the mesh: the surface never touches the border of the grid.
 MARGIN: Final = 2
 CELLS_ALONG: Final = 64
+# Bytes that a node costs at the peak.
+NODE_BYTES: Final = 100
+_ROWS: Final = 2**18  # nodes that are compared at once
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -86,6 +90,7 @@ def distances(mesh: SourceTriangles, spacing: float | None = None, sign: str = A
         enough = step * (x * y * z / MOST_DENSE) ** (1.0 / 3.0)
         message = f"a spacing of {step:g} needs {x * y * z:,} samples, more than "
         raise LoadError(f"{message}{MOST_DENSE:,}: a spacing of {enough * 1.05:.3g} is enough")
+    need(x * y * z * NODE_BYTES, f"a spacing of {step:g} needs {x * y * z:,} samples")
     origin = first_node(low, high, step)
     found = joined_on_grid(mesh, origin, step)
     joints = topology(found)
@@ -245,19 +250,24 @@ def _spread(
 
     def compared(is_asked: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Compare nodes with their neighbors, and return which have a nearer triangle now."""
-        rows = np.flatnonzero(is_asked)
-        z, y, x = np.unravel_index(rows, nearest.shape)
-        squared, which = run(
-            arithmetic.nearest_of_neighbors,
-            np.stack([x, y, z], axis=1) - 1,
-            rows.astype(np.int32),
-            {**buffers, "NEAREST": nearest.reshape(-1), "NODE_STEPS": steps},
-        )
-        found = np.sqrt(squared)
-        better = found < values.reshape(-1)[rows]
+        asked = np.flatnonzero(is_asked)
+        parts: list[tuple[NDArray[Any], NDArray[Any], NDArray[Any]]] = []
+        for start in range(0, len(asked), _ROWS):
+            rows = asked[start : start + _ROWS]
+            z, y, x = np.unravel_index(rows, nearest.shape)
+            squared, which = run(
+                arithmetic.nearest_of_neighbors,
+                np.stack([x, y, z], axis=1) - 1,
+                rows.astype(np.int32),
+                {**buffers, "NEAREST": nearest.reshape(-1), "NODE_STEPS": steps},
+            )
+            found = np.sqrt(squared)
+            better = found < values.reshape(-1)[rows]
+            parts.append((rows[better], found[better], np.asarray(which)[better]))
         changed = np.zeros(nearest.shape, bool)
-        changed.reshape(-1)[rows[better]] = True
-        values[changed], nearest[changed] = found[better], which[better]
+        for rows, found, which in parts:  # after all were compared, as if at once
+            changed.reshape(-1)[rows] = True
+            values.reshape(-1)[rows], nearest.reshape(-1)[rows] = found, which
         return changed
 
     while True:  # outwards, a layer each time

@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
-from distal.polygons.triangles import MOST_TRIANGLES, SourceTriangles, checked, colored
+from distal.foreign_files import check_time
+from distal.polygons.triangles import MeshSize, SourceTriangles, checked, colored
 
 _COMPONENTS: Final = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS: Final = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
@@ -34,6 +35,55 @@ class _File:
     data: bytes
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _GlbPart:
+    """A primitive that has triangles: its points, corners and colors, or None for no colors."""
+
+    points: NDArray[np.float64]
+    corners: NDArray[np.int64]
+    colors: NDArray[np.float32] | None
+
+
+class _Meshes:
+    """The meshes of a file, each parsed once.
+
+    Primitives may share what an accessor holds, and nodes may share meshes, so all are counted
+    before they are copied.
+    """
+
+    def __init__(self, file: _File, *, with_colors: bool) -> None:
+        self._file, self._with_colors = file, with_colors
+        self._parts: dict[int, list[_GlbPart]] = {}
+        self._sizes: dict[int, MeshSize] = {}
+        self._all = MeshSize()
+
+    def parts(self, number: Any) -> list[_GlbPart]:
+        """Return the parts of a mesh that have triangles."""
+        entry = _entry(self._file.content, "meshes", number)
+        if number not in self._parts:
+            found = (self._part(each) for each in _list(entry, "primitives"))
+            parts = self._parts[number] = [part for part in found if part is not None]
+            size = self._sizes[number] = MeshSize(parts=0)
+            for part in parts:
+                size.add(MeshSize(len(part.points), len(part.corners)))
+        return self._parts[number]
+
+    def size(self, number: Any) -> MeshSize:
+        """Return the size of a mesh."""
+        self.parts(number)
+        return self._sizes[number]
+
+    def _part(self, primitive: Any) -> _GlbPart | None:
+        check_time()
+        found = _primitive(self._file, primitive, self._all)
+        if found is None or not len(found[1]):
+            return None
+        points, corners = found
+        count = len(points)
+        colors = _colors(self._file, primitive, count) if self._with_colors else None
+        return _GlbPart(points, corners, colors)
+
+
 def read_glb(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
     """Return the triangles of a GLB file, with colors if they are wanted and there.
 
@@ -44,35 +94,40 @@ def read_glb(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
     for name in _list(file.content, "extensionsRequired"):
         if name in _COMPRESSED:
             raise LoadError(f"it is compressed by {name}: save it without compression")
+    meshes = _Meshes(file, with_colors=with_colors)
+    placed = list(_placed(file))
+    total = MeshSize()
+    for number, _ in placed:
+        total.add(meshes.size(number))
+    numbers = {number for number, _ in placed}
+    first = meshes.size(placed[0][0]) if placed else total
+    is_copied = len(numbers) == 1 < len(placed)
+    total.check(f"{len(placed):,} copies of {first.triangles:,} triangles" if is_copied else None)
+    copies = [(part, matrix) for number, matrix in placed for part in meshes.parts(number)]
+    if not copies:
+        raise LoadError("there is no triangle")
+    return _copied(copies)
+
+
+def _copied(copies: list[tuple[_GlbPart, NDArray[np.float64]]]) -> SourceTriangles:
+    """Return the mesh of all copies, each placed by its matrix."""
     points: list[NDArray[np.float64]] = []
     triangles: list[NDArray[np.int64]] = []
-    colors: list[NDArray[np.float32] | None] = []
-    start = total = 0
-    for number, matrix in _placed(file):
-        for primitive in _list(_entry(file.content, "meshes", number), "primitives"):
-            found = _primitive(file, primitive)
-            if found is None:
-                continue
-            places, corners = found
-            total += len(corners)
-            if total > MOST_TRIANGLES:
-                raise LoadError(f"it has more than {MOST_TRIANGLES} triangles")
-            with np.errstate(all="ignore"):  # ``checked`` finds what is not finite
-                points.append(places @ matrix[:3, :3].T + matrix[:3, 3])
-            # A node that mirrors its mesh turns the triangles around.
-            mirrored = float(np.linalg.det(matrix[:3, :3])) < 0.0
-            triangles.append(start + (corners[:, ::-1] if mirrored else corners))
-            start += len(places)
-            colors.append(_colors(file, primitive, len(places)) if with_colors else None)
-    if not triangles:
-        raise LoadError("there is no triangle")
+    start = 0
+    for part, matrix in copies:
+        with np.errstate(all="ignore"):  # ``checked`` finds what is not finite
+            points.append(part.points @ matrix[:3, :3].T + matrix[:3, 3])
+        # A node that mirrors its mesh turns the triangles around.
+        mirrored = float(np.linalg.det(matrix[:3, :3])) < 0.0
+        triangles.append(start + (part.corners[:, ::-1] if mirrored else part.corners))
+        start += len(part.points)
     mesh = checked(np.concatenate(points), np.concatenate(triangles), 1.0)
-    if all(each is None for each in colors):
+    if all(part.colors is None for part, _ in copies):
         return mesh
     # A part without a color is white, as glTF has it.
     shades = [
-        np.ones((len(places), 3), np.float32) if each is None else each
-        for each, places in zip(colors, points, strict=True)
+        np.ones((len(part.points), 3), np.float32) if part.colors is None else part.colors
+        for part, _ in copies
     ]
     return colored(mesh, np.concatenate(shades), is_light=True)
 
@@ -168,18 +223,28 @@ def _matrix(node: dict[str, Any]) -> NDArray[np.float64]:
     return matrix
 
 
-def _primitive(file: _File, primitive: Any) -> tuple[NDArray[np.float64], NDArray[np.int64]] | None:
-    """Return the points and triangles of a primitive; None for lines and points."""
+def _primitive(
+    file: _File, primitive: Any, size: MeshSize
+) -> tuple[NDArray[np.float64], NDArray[np.int64]] | None:
+    """Return the points and triangles of a primitive; None for lines and points.
+
+    Args:
+        file: The file.
+        primitive: Its entry.
+        size: That of all primitives; this one is added to it.
+    """
     if not isinstance(primitive, dict) or not isinstance(primitive.get("attributes"), dict):
         raise LoadError("a primitive has no attributes")
     mode = primitive.get("mode", _TRIANGLES)
     if mode not in (_TRIANGLES, _STRIP, _FAN):
         return None
-    points = _accessor(file, primitive["attributes"].get("POSITION"), "VEC3").astype(np.float64)
-    if "indices" in primitive:
-        order = _accessor(file, primitive["indices"], "SCALAR").reshape(-1).astype(np.int64)
-    else:
-        order = np.arange(len(points))
+    rows = _accessor(file, primitive["attributes"].get("POSITION"), "VEC3")
+    numbers = _accessor(file, primitive["indices"], "SCALAR") if "indices" in primitive else None
+    count = len(rows if numbers is None else numbers)
+    size.add(MeshSize(len(rows), count // 3 if mode == _TRIANGLES else max(count - 2, 0)))
+    size.check()
+    points = rows.astype(np.float64)
+    order = np.arange(count) if numbers is None else numbers.reshape(-1).astype(np.int64)
     if len(order) and order.max() >= len(points):
         raise LoadError(f"a triangle names point {order.max()} of {len(points)}")
     if mode == _TRIANGLES:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
+from distal.foreign_files import Memory, bounded
 from distal.lang.units import MILLIMETER, meters_of
 from distal.polygons.bricks import CELLS, BrickSamples, from_grid
 from distal.polygons.colors import ColorGrid, color_grid
@@ -55,6 +56,7 @@ class ImportRequest:
         unit: The length of one scene unit, a key of ``UNITS``; None keeps the numbers.
         up: "y" or "z"; None is the axis that is usual for the format, y for arrays.
         colors: Whether the colors of the mesh are wanted.
+        max_memory: The most bytes that a file may become; None: by its size.
     """
 
     spacing: float | None
@@ -62,6 +64,7 @@ class ImportRequest:
     unit: str | None
     up: str | None
     colors: bool = False
+    max_memory: Memory | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,9 +156,11 @@ def imported_file(path: Path, wanted: ImportRequest) -> Imported:
 
 @lru_cache(maxsize=4)
 def _of_file(path: Path, version: tuple[int, int], wanted: ImportRequest) -> Imported:
-    mesh = read_mesh(path, with_colors=wanted.colors)
-    up = wanted.up or ("z" if format_of(path).z_up else "y")
-    return _imported(mesh, path.name, replace(wanted, up=up))
+    mesh = read_mesh(path, with_colors=wanted.colors, max_memory=wanted.max_memory)
+    format = format_of(path)
+    up = wanted.up or ("z" if format.z_up else "y")
+    with bounded(format.name, path, version[1], max_memory=wanted.max_memory):
+        return _imported(mesh, path.name, replace(wanted, up=up))
 
 
 def imported_arrays(

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
+from distal.foreign_files import Memory, bounded
 from distal.lang.units import MILLIMETER, meters_of
 from distal.polygons.bricks import BrickSamples, from_grid
 from distal.polygons.clouds import cloud_distances
@@ -33,12 +34,14 @@ class PointsRequest:
         radius: Within which points count, in scene units; None for the default.
         unit: The length of one scene unit, a key of ``UNITS``; None keeps the numbers.
         up: "y" or "z"; None is y.
+        max_memory: The most bytes that a file may become; None: by its size.
     """
 
     spacing: float | None
     radius: float | None
     unit: str | None
     up: str | None
+    max_memory: Memory | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +126,9 @@ def imported_points_file(path: Path, wanted: PointsRequest) -> ImportedPoints:
 
 @lru_cache(maxsize=4)
 def _of_file(path: Path, version: tuple[int, int], wanted: PointsRequest) -> ImportedPoints:
-    return _imported(read_points(path), path.name, wanted)
+    points = read_points(path, wanted.max_memory)
+    with bounded("points", path, version[1], max_memory=wanted.max_memory):
+        return _imported(points, path.name, wanted)
 
 
 def imported_points_arrays(points: Any, normals: Any, wanted: PointsRequest) -> ImportedPoints:

@@ -130,6 +130,6 @@ def reduced(shares: Floats, most: int) -> tuple[Floats, int]:
     if side == 1:
         return shares, 1
     missing = [(-n) % side for n in shares.shape]
-    padded = np.pad(shares, [(n // 2, n - n // 2) for n in missing])
+    padded = np.pad(shares, [(n // 2, n - n // 2) for n in missing]) if any(missing) else shares
     rows, columns = (n // side for n in padded.shape)
     return padded.reshape(rows, side, columns, side).mean(axis=(1, 3)), side

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError, printable
+from distal.foreign_files import Memory, opened
 from distal.polygons.obj import read_obj_points
 from distal.polygons.ply import read_ply_points
-from distal.polygons.reading import LARGEST_FILE, bytes_of
 from distal.polygons.triangles import checked_places
 
 MOST_POINTS: Final = 10_000_000
@@ -36,8 +36,12 @@ class SourcePoints:
     normals: NDArray[np.float64]
 
 
-def read_points(path: Path) -> SourcePoints:
+def read_points(path: Path, max_memory: Memory | None = None) -> SourcePoints:
     """Return the points of a file, in its own unit and axes.
+
+    Args:
+        path: The file.
+        max_memory: The most bytes that it may become; None: by its size.
 
     Raises:
         LoadError: The file cannot be read, is not what its suffix says, or has no normals.
@@ -47,12 +51,8 @@ def read_points(path: Path) -> SourcePoints:
         known = ", ".join(POINT_FORMATS)
         message = f"cannot read '{printable(path)}': points with normals are in one of {known}"
         raise LoadError(message)
-    data = bytes_of(path, LARGEST_FILE)
-    try:
+    with opened("points", path, max_memory=max_memory, option=True) as data:
         return checked_points(*read(data))
-    except LoadError as error:
-        reason = f"'{printable(path)}' is no file of points that can be read: {error.message}"
-        raise LoadError(reason) from None
 
 
 def checked_points(points: Any, normals: Any) -> SourcePoints:

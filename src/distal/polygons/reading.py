@@ -1,8 +1,7 @@
 """The formats of meshes that are read, and the function that reads a file.
 
 Input: a path. Output: points and triangles, or a ``LoadError`` that names the file and what is
-wrong with it. A file is read once and never run; nothing in it makes this module allocate more than
-a small multiple of its size.
+wrong with it. A file is read once and never run; ``foreign_files`` bounds what it may take.
 """
 
 from __future__ import annotations
@@ -14,6 +13,7 @@ from pathlib import Path
 from typing import Final
 
 from distal.diagnostics import LoadError, printable
+from distal.foreign_files import Memory, opened
 from distal.polygons.glb import read_glb
 from distal.polygons.obj import read_obj
 from distal.polygons.ply import read_ply
@@ -21,15 +21,13 @@ from distal.polygons.stl import read_stl
 from distal.polygons.three_mf import read_three_mf
 from distal.polygons.triangles import SourceTriangles
 
-LARGEST_FILE: Final = 2**30  # bytes
-
 
 @dataclass(frozen=True, slots=True)
 class ReadFormat:
     """A format of meshes.
 
     Attributes:
-        name: Its name.
+        name: Its name, a key of ``foreign_files.KINDS``.
         z_up: Whether z is up in it; else y is.
         read: Reads the bytes of a file.
         colored: Reads them with colors, if they are there; None for a format without colors.
@@ -63,41 +61,20 @@ def format_of(path: Path) -> ReadFormat:
     return chosen
 
 
-def read_mesh(path: Path, *, with_colors: bool = False) -> SourceTriangles:
+def read_mesh(
+    path: Path, *, with_colors: bool = False, max_memory: Memory | None = None
+) -> SourceTriangles:
     """Return the triangles of a file, in its own unit and axes.
 
     Args:
         path: The file.
         with_colors: Whether to read its colors, if it has some.
+        max_memory: The most bytes that it may become; None: by its size.
 
     Raises:
-        LoadError: The file cannot be read, or is not what its suffix says.
+        LoadError: The file cannot be read, is not what its suffix says, or is too large.
     """
     chosen = format_of(path)
-    try:
-        read = chosen.colored if with_colors and chosen.colored is not None else chosen.read
-        return read(bytes_of(path, LARGEST_FILE))
-    except LoadError as error:
-        if error.message.startswith("cannot read"):
-            raise
-        reason = f"'{printable(path)}' is no {chosen.name} that can be read: {error.message}"
-        raise LoadError(reason) from None
-
-
-def bytes_of(path: Path, most: int) -> bytes:
-    """Return the content of a file.
-
-    Raises:
-        LoadError: The file system reports an error, the file is empty, or it is too large.
-    """
-    try:
-        if path.is_file() and path.stat().st_size > most:
-            raise LoadError(f"cannot read '{printable(path)}': it is larger than {most >> 20} MiB")
-        with path.open("rb") as file:
-            data = file.read(most + 1)
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise LoadError(f"cannot read '{printable(path)}': {reason}") from None
-    if not data:
-        raise LoadError(f"cannot read '{printable(path)}': it is empty")
-    return data
+    read = chosen.colored if with_colors and chosen.colored is not None else chosen.read
+    with opened(chosen.name, path, max_memory=max_memory, option=True) as data:
+        return read(data)

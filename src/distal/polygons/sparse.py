@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
+from distal.foreign_files import need
 from distal.polygons import arithmetic
 from distal.polygons.bricks import (
     ABOUT,
@@ -60,7 +61,10 @@ _OWN: Final = (slice(None), *(slice(1, -1),) * 3)
 # Of a brick a step away: its samples, and where they are among those of this one.
 _COPIED: Final = {-1: (slice(0, 2), slice(8, 10)), 1: (slice(9, 11), slice(1, 3))}
 _SAME: Final = (slice(1, -1), slice(1, -1))
-_ROWS: Final = 2**20  # compared at once
+_ROWS: Final = 2**18  # compared at once
+# Bytes that a brick costs at the peak, if it has samples, and if not.
+_STORED_BYTES: Final = 60_000
+_BRICK_BYTES: Final = 100
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -160,6 +164,10 @@ def _check_count(stored: int, bricks: tuple[int, int, int], step: float, likely:
             f"a spacing of {step:g} needs {needed:,} numbers near the surface, more than "
             f"{MOST_NUMBERS:,}: a spacing of {enough:.3g} is enough"
         )
+    need(
+        stored * _STORED_BYTES + math.prod(bricks) * _BRICK_BYTES,
+        f"a spacing of {step:g} needs {numbers_of(bricks, stored):,} numbers near the surface",
+    )
 
 
 def _near_bricks(boxes: Boxes, shape: tuple[int, int, int]) -> NDArray[np.bool_]:

@@ -16,7 +16,10 @@ from distal.polygons.triangles import SourceTriangles, checked, welded
 
 _HEADER: Final = 84
 _RECORD: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("extra", "<u2")])
-_VERTEX: Final = re.compile(rb"^\s*vertex\s+(\S+)\s+(\S+)\s+(\S+)\s*$", re.MULTILINE | re.I)
+# Blanks, but not the end of a line: many empty lines would each be tried with all that follow.
+_VERTEX: Final = re.compile(
+    rb"^[^\S\n]*vertex[^\S\n]+(\S+)[^\S\n]+(\S+)[^\S\n]+(\S+)[^\S\n]*$", re.MULTILINE | re.I
+)
 
 
 def read_stl(data: bytes) -> SourceTriangles:

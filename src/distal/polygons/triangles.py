@@ -12,9 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
+from distal.foreign_files import need
 
 # The most triangles of a mesh: 240 MB of indices, and minutes of work.
 MOST_TRIANGLES: Final = 10_000_000
+# Bytes that each costs at the peak of an import: its arrays while it is read, joined, and looked up
+# in a grid; and what a part costs beside them.
+POINT_BYTES: Final = 160
+TRIANGLE_BYTES: Final = 440
+PART_BYTES: Final = 4096
 _LARGEST: Final = 1e15  # the squares of lengths stay far from the largest single float
 _HASH: Final = np.array((0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9), np.uint64)
 
@@ -39,6 +45,41 @@ class SourceTriangles:
     is_light: bool = False
 
 
+@dataclass(slots=True)
+class MeshSize:
+    """Counts of a mesh that is put together of parts, checked before the parts are copied."""
+
+    points: int = 0
+    triangles: int = 0
+    parts: int = 1
+
+    def add(self, other: MeshSize) -> None:
+        """Add the counts of a part."""
+        self.points += other.points
+        self.triangles += other.triangles
+        self.parts += other.parts
+
+    def check(self, what: str | None = None) -> None:
+        """Check the counts.
+
+        Args:
+            what: What they are of, in words.
+
+        Raises:
+            LoadError: They are more than the file may become, or than a mesh has.
+        """
+        counts = f"{self.triangles:,} triangles and {self.points:,} points"
+        if self.parts > 1:
+            counts = f"{counts} in {self.parts:,} parts"
+        if self.triangles > MOST_TRIANGLES:
+            raise LoadError(
+                f"it has {what or counts}, and a mesh has at most {MOST_TRIANGLES:,} triangles: "
+                "leave some out"
+            )
+        size = self.points * POINT_BYTES + self.triangles * TRIANGLE_BYTES
+        need(size + self.parts * PART_BYTES, what or counts)
+
+
 def checked(points: Any, triangles: Any, meters: float | None = None) -> SourceTriangles:
     """Return a mesh from arrays.
 
@@ -54,8 +95,7 @@ def checked(points: Any, triangles: Any, meters: float | None = None) -> SourceT
     corners = _array(triangles, "triangles", "iu")
     if not len(corners):
         raise LoadError("there is no triangle")
-    if len(corners) > MOST_TRIANGLES:
-        raise LoadError(f"{len(corners)} triangles are more than {MOST_TRIANGLES}")
+    MeshSize(len(places), len(corners)).check()
     low, high = int(corners.min()), int(corners.max())
     if low < 0 or high >= len(places):
         wrong = low if low < 0 else high
@@ -97,6 +137,8 @@ def colored(
         LoadError: There are not as many, or one is no color.
     """
     count = len(mesh.points) if of == "points" else len(mesh.triangles)
+    if of != "points":
+        MeshSize(3 * count, count).check()
     try:
         found = np.asarray(colors, np.float32)
     except (TypeError, ValueError):
@@ -144,6 +186,7 @@ def fans(counts: NDArray[np.int64], indices: NDArray[np.int64]) -> NDArray[np.in
     """
     starts = np.cumsum(counts) - counts
     pieces = np.maximum(counts - 2, 0)
+    MeshSize(0, int(pieces.sum())).check()
     which = np.repeat(np.arange(len(counts)), pieces)
     step = np.arange(len(which)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
     first = starts[which]

@@ -10,25 +10,35 @@ from __future__ import annotations
 
 import gzip
 import io
+import itertools
 import math
 import struct
 import zlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError, printable
+from distal.foreign_files import Memory, need, opened
 from distal.lang.resources import AXES
-from distal.polygons.reading import bytes_of
 
-LARGEST_FILE: Final = 2**31  # bytes
 # Those near the surface are kept: ``bricks.MOST_NUMBERS``.
 MOST_SAMPLES: Final = 2**26
-_LARGEST_SAMPLES: Final = MOST_SAMPLES * 8
+# Bytes that a sample costs at the peak of an import.
+SAMPLE_BYTES: Final = 24
+_NIFTI_HEAD: Final = 352
+_FARTHEST: Final = (
+    2**26
+)  # where the samples of NIfTI begin: before them are texts of other programs
+_NPY_HEADERS: Final[dict[tuple[int, int], Callable[..., Any]]] = {
+    (1, 0): np.lib.format.read_array_header_1_0,
+    (2, 0): np.lib.format.read_array_header_2_0,
+}
+Buffer: TypeAlias = bytes | memoryview
 _NRRD_TYPES: Final = {
     **dict.fromkeys(("signed char", "int8", "int8_t"), "i1"),
     **dict.fromkeys(("uchar", "unsigned char", "uint8", "uint8_t"), "u1"),
@@ -64,8 +74,12 @@ class VolumeSamples:
     spacing: tuple[float, float, float] | None
 
 
-def read_volume(path: Path) -> VolumeSamples:
+def read_volume(path: Path, max_memory: Memory | None = None) -> VolumeSamples:
     """Return the samples of a file.
+
+    Args:
+        path: The file.
+        max_memory: The most bytes that it may become; None: by its size.
 
     Raises:
         LoadError: The file cannot be read, or is not what its suffix says.
@@ -76,11 +90,8 @@ def read_volume(path: Path) -> VolumeSamples:
     if read is None:
         known = ", ".join(VOLUME_FORMATS)
         raise LoadError(f"cannot read '{printable(path)}': a volume's suffix is one of {known}")
-    data = bytes_of(path, LARGEST_FILE)
-    try:
+    with opened("volume", path, max_memory=max_memory, option=True) as data:
         return read(data)
-    except LoadError as error:
-        raise LoadError(f"'{printable(path)}' is no volume that can be read: {error}") from None
 
 
 def checked_samples(values: Any) -> NDArray[np.float32]:
@@ -97,13 +108,25 @@ def checked_samples(values: Any) -> NDArray[np.float32]:
         raise LoadError(
             f"samples are numbers (z, y, x), 2 or more along each, not {array.dtype} {array.shape}"
         )
-    if array.size > MOST_SAMPLES:
-        raise LoadError(f"{array.size:,} samples are more than {MOST_SAMPLES:,}: leave some out")
+    _check_count(array.shape)
     with np.errstate(over="ignore"):
         samples = array.astype(np.float32)
     if not np.isfinite(samples).all():
         raise LoadError("a sample is not finite")
     return np.ascontiguousarray(samples)
+
+
+def _check_count(sizes: Sequence[int]) -> int:
+    """Return the number of samples.
+
+    Raises:
+        LoadError: A volume has fewer, or the file may not become as many.
+    """
+    count = math.prod(sizes)
+    if count > MOST_SAMPLES:
+        raise LoadError(f"{count:,} samples are more than {MOST_SAMPLES:,}: leave some out")
+    need(count * SAMPLE_BYTES, f"{' x '.join(f'{size:,}' for size in sizes)} samples")
+    return count
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -147,11 +170,9 @@ def field_of(
         low, high = float(samples.min()), float(samples.max())
         fix = "give level=" if level is None else "give another level"
         raise LoadError(f"nothing is inside: the samples are {low:g} to {high:g}; {fix}")
-    rises = [
-        float(np.abs(np.diff(values, axis=axis)).max()) / step
-        for axis, step in enumerate(reversed(spacing))
-    ]
-    steepest = max(rises)
+    steepest = max(
+        _largest_step(values, axis) / step for axis, step in enumerate(reversed(spacing))
+    )
     if steepest == 0.0:
         raise LoadError("all samples are equal: there is no surface")
     # Distances that were rounded to 32 bits are left as they are.
@@ -159,6 +180,14 @@ def field_of(
     z, y, x = values.shape
     size = x * spacing[0], y * spacing[1], z * spacing[2]
     return FieldSamples(np.ascontiguousarray(values), size, 1.0 if is_fair else 1.0 / steepest)
+
+
+def _largest_step(values: NDArray[np.float32], axis: int) -> float:
+    """Return the largest difference of neighbors along an axis, a slice at a time."""
+    if axis == 0:
+        pairs = itertools.pairwise(values)
+        return max(float(np.abs(after - before).max()) for before, after in pairs)
+    return max(float(np.abs(np.diff(each, axis=axis - 1)).max()) for each in values)
 
 
 def notice_of(name: str, field: FieldSamples, spacing: tuple[float, float, float]) -> str:
@@ -182,13 +211,22 @@ def notice_of(name: str, field: FieldSamples, spacing: tuple[float, float, float
 
 def read_npy(data: bytes) -> VolumeSamples:
     """Return the samples of a NumPy file, (z, y, x)."""
+    if data.startswith(b"PK"):
+        raise LoadError("it is an archive of arrays: save one array with numpy.save")
+    file = io.BytesIO(data)
     try:
-        values = np.load(io.BytesIO(data), allow_pickle=False)
+        version = np.lib.format.read_magic(file)
+        read = _NPY_HEADERS[version]
+        sizes, is_fortran, dtype = read(file)
+    except KeyError:
+        raise LoadError("it is of a later version of NumPy's format") from None
     except Exception as error:  # NumPy evaluates the header: many kinds of exceptions
         raise LoadError(f"NumPy says: {printable(error):.100}") from None
-    if not isinstance(values, np.ndarray):
-        raise LoadError("it is an archive of arrays: save one array with numpy.save")
-    return VolumeSamples(checked_samples(values), None)
+    if dtype.hasobject or dtype.kind not in "fiu" or len(sizes) != 3:
+        raise LoadError(f"samples are numbers (z, y, x), 2 or more along each, not {dtype} {sizes}")
+    sizes = tuple(reversed(sizes)) if is_fortran else sizes
+    values = _samples(memoryview(data)[file.tell() :], dtype, sizes)
+    return VolumeSamples(checked_samples(values.T if is_fortran else values), None)
 
 
 def read_nrrd(data: bytes) -> VolumeSamples:
@@ -208,15 +246,19 @@ def read_nrrd(data: bytes) -> VolumeSamples:
     sizes = _numbers(fields.get("sizes", ""))
     if type is None or len(sizes) != 3 or not all(s.is_integer() and s >= 1 for s in sizes):
         raise LoadError("it is no volume of numbers with one component")
+    order = ">" if fields.get("endian", "little") == "big" else "<"
+    dtype, along = np.dtype(order + type), [int(s) for s in reversed(sizes)]
+    length = _check_count(along) * dtype.itemsize
+    raw: Buffer
     match fields.get("encoding", ""):
         case "raw":
             raw = body
         case "gzip" | "gz":
-            raw = _unpacked(body)
+            with gzip.open(io.BytesIO(body)) as file:
+                raw = _unpacked(file, length + 1)  # one more, so that the checksum is compared
         case other:
             raise LoadError(f"its encoding '{other:.20}' is not read: save it as raw or gzip")
-    order = ">" if fields.get("endian", "little") == "big" else "<"
-    values = _samples(raw, order + type, [int(s) for s in sizes])
+    values = _samples(raw, dtype, along)
     return VolumeSamples(checked_samples(values), _nrrd_spacing(fields))
 
 
@@ -232,43 +274,54 @@ def _nrrd_spacing(fields: dict[str, str]) -> tuple[float, float, float] | None:
 
 def read_nifti(data: bytes) -> VolumeSamples:
     """Return the samples of a NIfTI-1 file, whose first axis is x."""
+    whole = io.BytesIO(data)
     if data[:2] == b"\x1f\x8b":
-        data = _unpacked(data)
-    if len(data) < 352 or data[344:348] not in (b"n+1\0",):
+        with gzip.open(whole) as file:
+            return _read_nifti(file)
+    return _read_nifti(whole)
+
+
+def _read_nifti(file: Any) -> VolumeSamples:
+    head = _unpacked(file, _NIFTI_HEAD)
+    if len(head) < _NIFTI_HEAD or head[344:348] != b"n+1\0":
         raise LoadError("it does not begin with the header of NIfTI-1 in one file")
-    order = "<" if struct.unpack_from("<i", data)[0] == 348 else ">"
-    dims = struct.unpack_from(f"{order}8h", data, 40)
+    order = "<" if struct.unpack_from("<i", head)[0] == 348 else ">"
+    dims = struct.unpack_from(f"{order}8h", head, 40)
     if not 3 <= dims[0] <= 7 or min(dims[1:4]) < 1 or any(d > 1 for d in dims[4 : dims[0] + 1]):
         raise LoadError("it is no volume with one sample at each place")
-    type = _NIFTI_TYPES.get(struct.unpack_from(f"{order}h", data, 70)[0])
+    type = _NIFTI_TYPES.get(struct.unpack_from(f"{order}h", head, 70)[0])
     if type is None:
         raise LoadError("its samples are no real numbers")
-    spacing = struct.unpack_from(f"{order}8f", data, 76)[1:4]
-    begin, slope, shift = struct.unpack_from(f"{order}3f", data, 108)
-    if not 0.0 <= begin <= len(data):
+    spacing = struct.unpack_from(f"{order}8f", head, 76)[1:4]
+    begin, slope, shift = struct.unpack_from(f"{order}3f", head, 108)
+    if not 0.0 <= begin < _FARTHEST:
         raise LoadError("it is truncated")
-    values = _samples(data[int(begin) :], order + type, dims[1:4]).astype(np.float64)
+    dtype, sizes = np.dtype(order + type), dims[3:0:-1]
+    length = int(begin) + _check_count(sizes) * dtype.itemsize
+    whole = head + _unpacked(file, max(length - _NIFTI_HEAD, 0) + 1)
+    values = _samples(memoryview(whole)[int(begin) :], dtype, sizes)
     if math.isfinite(slope) and slope != 0.0 and math.isfinite(shift):
+        scaled = np.empty(values.shape, np.float32)
         with np.errstate(all="ignore"):
-            values = values * slope + shift
+            for row, each in zip(scaled, values, strict=True):
+                row[...] = each.astype(np.float64) * slope + shift
+        values = scaled
     return VolumeSamples(checked_samples(values), _positive(spacing))
 
 
-def _samples(raw: bytes, type: str, sizes: Sequence[int]) -> NDArray[Any]:
-    """Return the samples (z, y, x) of bytes whose first axis is x."""
-    dtype, count = np.dtype(type), math.prod(sizes)
-    if count > MOST_SAMPLES:
-        raise LoadError(f"{count:,} samples are more than {MOST_SAMPLES:,}: leave some out")
+def _samples(raw: Buffer, dtype: np.dtype[Any], sizes: Sequence[int]) -> NDArray[Any]:
+    """Return the samples of bytes, whose last axis changes first."""
+    count = _check_count(sizes)
     if len(raw) < count * dtype.itemsize:
         there = len(raw) // dtype.itemsize
         raise LoadError(f"it announces {count:,} samples and contains {there:,}: it is truncated")
-    return np.frombuffer(raw, dtype, count).reshape(tuple(reversed(sizes)))
+    return np.frombuffer(raw, dtype, count).reshape(tuple(sizes))
 
 
-def _unpacked(data: bytes) -> bytes:
+def _unpacked(file: Any, most: int) -> bytes:
+    """Return the next bytes of a packed file, at most so many."""
     try:
-        with gzip.open(io.BytesIO(data)) as file:
-            found = file.read(_LARGEST_SAMPLES + 65536)
+        found: bytes = file.read(most)
     except (OSError, EOFError, zlib.error):
         raise LoadError("its compressed part is damaged") from None
     return found

@@ -31,12 +31,14 @@ def brightness_table(texels: Any) -> tuple[int, int, list[tuple[float, float, fl
     """
     height, width = int(texels.shape[0]), int(texels.shape[1])
     rows, columns = min(height, MOST_ROWS), min(width, MOST_COLUMNS)
-    brightness = between_texels(texels[..., :3].max(axis=-1))
     areas, lights = [], []
     for row in range(rows - 1, -1, -1):
         top, bottom = math.cos(math.pi * row / rows), math.cos(math.pi * (row + 1) / rows)
         area = 2.0 * math.pi / columns * (top - bottom)
-        band = brightness[row * height // rows : (row + 1) * height // rows].mean(axis=0)
+        first, last = row * height // rows, (row + 1) * height // rows
+        begin = max(first - 1, 0)  # with the rows beside, which it is interpolated with
+        near = between_texels(texels[begin : last + 1, :, :3].max(axis=-1))
+        band = near[first - begin : last - begin].mean(axis=0)
         for column in range(columns):
             part = band[column * width // columns : (column + 1) * width // columns]
             areas.append(area)

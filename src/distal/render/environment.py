@@ -16,6 +16,7 @@ from distal.render.camera import equirectangular
 # The factor of each band of harmonics for a diffuse surface (Ramamoorthi and Hanrahan 2001),
 # divided by pi, because a white surface shows 1/pi of the incident light.
 _BANDS: Final = (1.0, 2.0 / 3.0, 1.0 / 4.0)
+_BAND: Final = 64  # rows at once: they are multiplied as doubles
 # Squares of the harmonics' factors: one for projecting the light, one for evaluating it.
 _FACTORS: Final = tuple(
     factor / (4.0 * math.pi)
@@ -68,7 +69,11 @@ def harmonics(texels: Any) -> list[tuple[float, float, float]]:
         [math.cos(2.0 * angle) for angle in around],
     ]
     # The sum of each row's light times each wave around the upright axis: (height, wave, color).
-    rows = (texels[..., :3].swapaxes(1, 2) @ _columns(waves)).swapaxes(1, 2).tolist()
+    columns = _columns(waves)
+    rows: list[Any] = []
+    for top in range(0, height, _BAND):
+        band = texels[top : top + _BAND, :, :3]
+        rows += (band.swapaxes(1, 2) @ columns).swapaxes(1, 2).tolist()
     sums = [[0.0, 0.0, 0.0] for _ in range(9)]
     for row, moments in enumerate(rows):
         polar = math.pi * (row + 0.5) / height

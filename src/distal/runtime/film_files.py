@@ -10,11 +10,14 @@ from __future__ import annotations
 import time
 import zipfile
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
+from distal.diagnostics import LoadError
 from distal.file_writer import SaveError, check_destination, replacement
+from distal.foreign_files import reading
 from distal.runtime.accumulation import Film
 
 # Seconds between two writes; a slow disk is written to less often.
@@ -22,6 +25,10 @@ _INTERVAL_S: Final = 10.0
 _INTERVAL_WRITES: Final = 20.0
 # The attributes of a film that are kept.
 _ARRAYS: Final = ("sums", "spread", "samples", "passes", "steps")
+_KEY: Final = "key"
+_LONGEST_KEY: Final = 4096  # bytes
+
+Header: TypeAlias = tuple[np.dtype[Any], tuple[int, ...]]
 
 
 class FilmFile:
@@ -55,16 +62,34 @@ class FilmFile:
         if not self._path.exists():
             return Film.empty(width, height, signed=signed)
         try:
-            with np.load(self._path, allow_pickle=False) as found:
-                key = str(found["key"])
-                arrays = {name: found[name] for name in _ARRAYS}
-        except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-            raise ValueError(f"{self._path} is not a film: delete it or name another") from None
-        if key != self._key or arrays["sums"].shape != (height, width, 4):
+            size = self._path.stat().st_size
+        except OSError:
+            size = 0  # reading it says why
+        with reading("film", str(self._path), size, error=ValueError):
+            arrays = self._arrays(width, height)
+        if arrays is None:
             raise ValueError(
                 f"{self._path} keeps the samples of another picture: delete it or name another"
             )
         return Film(**arrays, signed=signed)
+
+    def _arrays(self, width: int, height: int) -> dict[str, NDArray[Any]] | None:
+        """Return the arrays of the file; None if they are those of another picture.
+
+        What an array says of itself is compared before it is read.
+        """
+        expected = _expected(width, height)
+        with zipfile.ZipFile(self._path) as archive:
+            dtype, shape = _header(archive, _KEY)
+            if dtype.kind != "U" or shape or dtype.itemsize > _LONGEST_KEY:
+                raise LoadError("it has no key")
+            if str(_read(archive, _KEY)) != self._key:
+                return None
+            headers = {name: _header(archive, name) for name in _ARRAYS}
+            for name, (dtype, shape) in headers.items():
+                if (dtype, shape) != expected[name]:
+                    raise LoadError(f"its '{name}' is {dtype} {shape}")
+            return {name: _read(archive, name) for name in _ARRAYS}
 
     def keep(self, film: Film) -> None:
         """Write the film, if the last time was long ago."""
@@ -86,3 +111,25 @@ class FilmFile:
             raise SaveError(f"cannot write {self._path}: {error.strerror or error}") from None
         self._written = time.monotonic()
         self._interval = max(_INTERVAL_S, _INTERVAL_WRITES * (self._written - begin))
+
+
+def _expected(width: int, height: int) -> dict[str, Header]:
+    """Return the type and the shape of each array of a film."""
+    one = Film.empty(1, 1)
+    plane = height, width
+    shapes = {"sums": (*plane, 4), "steps": (3, *plane)}
+    return {name: (getattr(one, name).dtype, shapes.get(name, plane)) for name in _ARRAYS}
+
+
+def _header(archive: zipfile.ZipFile, name: str) -> Header:
+    with archive.open(f"{name}.npy") as file:
+        if np.lib.format.read_magic(file) != (1, 0):
+            raise LoadError(f"its '{name}' is of a later version of NumPy's format")
+        shape, _, dtype = np.lib.format.read_array_header_1_0(file)
+    return dtype, shape
+
+
+def _read(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
+    with archive.open(f"{name}.npy") as file:
+        found: NDArray[Any] = np.lib.format.read_array(file, allow_pickle=False)
+    return found

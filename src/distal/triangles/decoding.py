@@ -8,12 +8,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.foreign_files import reading
 from distal.lang.runtime_access import executor
 from distal.triangles import arithmetic
 from distal.triangles.fitting import weights_of
 from distal.triangles.lattice import leaves_of
+from distal.triangles.range_coder import CoderError
 from distal.triangles.shapes import CUTS
-from distal.triangles.stream import read
+from distal.triangles.stream import Description, read
 
 
 def decode(data: bytes) -> NDArray[np.uint8]:
@@ -22,7 +24,11 @@ def decode(data: bytes) -> NDArray[np.uint8]:
     Raises:
         CoderError: The bytes are no such picture.
     """
-    found = read(data)
+    with reading("triangles", "this", len(data), error=CoderError):
+        return _decoded(read(data))
+
+
+def _decoded(found: Description) -> NDArray[np.uint8]:
     lattice = found.lattice
     leaves = leaves_of(lattice, found.used)
     numbers = {cut: number for number, cut in enumerate(CUTS)}

@@ -24,6 +24,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.foreign_files import check_time, need
 from distal.triangles.arithmetic import PLACES
 from distal.triangles.lattice import (
     HALVES,
@@ -52,6 +53,8 @@ Cut = tuple[int, int, int]  # corner, places on the sides from it
 # Signature and version, width, height, step of the codes in quarters.
 HEAD: Final = struct.Struct("<4sHHB")
 SIGNATURE: Final = b"dtr1"
+_PIXEL_BYTES: Final = 120  # of a pixel while a file is read
+_LOOK: Final = 2**16  # points between two looks at the time
 # Numbers of the contexts.
 _USED: Final = 0
 _CUT: Final = _USED + 32 * 4
@@ -118,6 +121,7 @@ def read(data: bytes) -> Description:
     _, width, height, step = HEAD.unpack_from(data)
     if not (0 < width <= MOST_SIDE and 0 < height <= MOST_SIDE and step):
         raise CoderError(f"a picture as triangles is not {width}x{height} with step {step}")
+    need(width * height * _PIXEL_BYTES, f"{width:,} x {height:,} pixels")
     lattice = lattice_of(width, height)
     used = np.zeros(lattice.shape, bool)
     codes = np.zeros((used.size, 3))
@@ -148,7 +152,10 @@ def _code_points(coder: Coder, description: Description) -> list[MiddlePoints]:
     columns = used.shape[1]
     for step in candidates(description.lattice, used):
         base, side = _USED + 4 * step.level, step.side
-        for y, x in zip(step.places[0].tolist(), step.places[1].tolist(), strict=True):
+        places = zip(step.places[0].tolist(), step.places[1].tolist(), strict=True)
+        for number, (y, x) in enumerate(places):
+            if not number % _LOOK:
+                check_time()
             near = int(x >= side and used[y, x - side])
             if y >= side:
                 near += int(used[y - side, x])

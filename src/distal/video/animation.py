@@ -6,6 +6,7 @@ a time. Does not depend on scenes.
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,11 +14,12 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
-from PIL import Image
+from PIL.PngImagePlugin import PngImageFile
 
 from distal.file_writer import SaveError
+from distal.foreign_files import opened
 from distal.video.formats import LOSSLESS, VideoFormat, library
+from distal.video.frames import levels_of
 from distal.video.pixels import BT709, FULL, RGB, SRGB
 from distal.video.segments import whole_or_nothing
 from distal.video.texts import with_texts
@@ -209,17 +211,13 @@ def _frames(made: Animation) -> Iterator[Any]:
 
 
 def _mode(file: Path) -> str:
-    with Image.open(file) as picture:
-        return picture.mode
+    with opened("frame", file, error=SaveError) as data, PngImageFile(io.BytesIO(data)) as picture:
+        return str(picture.mode)
 
 
 def _frame(file: Path, index: int, *, alpha: bool = False) -> Any:
     """Read a frame from a PNG file."""
-    try:
-        with Image.open(file) as picture:
-            levels = np.array(picture.convert("RGBA" if alpha else "RGB"))
-    except (OSError, SyntaxError) as error:
-        raise SaveError(f"cannot read the frame {file}: {error}") from None
+    levels = levels_of(file, "RGBA" if alpha else "RGB")
     frame = library().VideoFrame.from_ndarray(levels, "rgba" if alpha else "rgb24")
     frame.pts, frame.time_base = index, Fraction(1)
     return frame

@@ -7,15 +7,17 @@ the frame depends on. A later run keeps files with the right key.
 from __future__ import annotations
 
 import hashlib
+import io
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
+from PIL.PngImagePlugin import PngImageFile
 
 from distal.file_writer import SaveError, replacement
+from distal.foreign_files import need, opened
 from distal.images.picture import Picture
 from distal.images.png import encode
 from distal.video.moving_picture import MovingPicture
@@ -44,7 +46,7 @@ class Frames:
     def is_there(self, index: int) -> bool:
         """Return whether the file of a frame exists and has the right key."""
         try:
-            with Image.open(self.files[index]) as picture:
+            with PngImageFile(self.files[index]) as picture:
                 return picture.info.get(KEY) == self._key(index)
         except Exception:  # Pillow raises many kinds of exceptions for broken files
             return False
@@ -61,8 +63,7 @@ class Frames:
 
     def levels(self, index: int) -> NDArray[np.uint8]:
         """Return a frame that is there: 8 bits for red, green, blue and alpha."""
-        with Image.open(self.files[index]) as picture:
-            return np.asarray(picture.convert("RGBA"))
+        return levels_of(self.files[index], "RGBA")
 
     def remove(self, indices: Iterable[int]) -> None:
         """Delete the files of frames, where they exist."""
@@ -72,6 +73,22 @@ class Frames:
     def _key(self, index: int) -> str:
         key = f"{self._common} {index} {self._times[index]!r}"
         return hashlib.sha256(key.encode()).hexdigest()
+
+
+def levels_of(file: Path, mode: str) -> NDArray[np.uint8]:
+    """Return the pixels of a frame's file.
+
+    Args:
+        file: A PNG file.
+        mode: "RGB" or "RGBA".
+
+    Raises:
+        SaveError: It cannot be read.
+    """
+    with opened("frame", file, error=SaveError) as data, PngImageFile(io.BytesIO(data)) as picture:
+        width, height = picture.size
+        need(width * height * 12, f"{width:,} x {height:,} pixels")
+        return np.array(picture.convert(mode))
 
 
 def make_folder(folder: Path) -> None:

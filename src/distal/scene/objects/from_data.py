@@ -36,6 +36,7 @@ class FromData(Placed):
         unit: str | None = None,
         up: str | None = None,
         colors: bool | Columns = False,
+        max_memory: int | str | None = None,
     ) -> Shape:
         """Make a solid from a mesh of triangles: STL, OBJ, PLY, GLB, 3MF, or two arrays.
 
@@ -60,18 +61,28 @@ class FromData(Placed):
             colors: True paints the shape with the colors of a file: those of points in PLY, OBJ and
                 GLB, of triangles in PLY and 3MF, of materials in GLB and 3MF. With arrays, linear
                 colors of points, an array (n, 3). They are sampled on a grid, too.
+            max_memory: The most memory that a file may become, as "4 GB" or in bytes. None: by its
+                size, 0.8 GB for a small one; this lifts the limit of time, too.
 
         Raises:
-            SceneValueError: The file cannot be read, is no mesh or encloses nothing, or the spacing
-                needs too many samples: of them, those near the surface are stored, 32 million
-                numbers at most; a mesh with holes needs all, 16 million at most.
+            SceneValueError: The file cannot be read, is no mesh, is too large or encloses nothing,
+                or the spacing needs too many samples: of them, those near the surface are stored,
+                32 million numbers at most; a mesh with holes needs all, 16 million at most.
             SceneTypeError: ``source`` is neither a path nor an array.
 
         Source: the signs are those of Baerentzen and Aanaes 2005, and of Barill et al. 2018.
         """
         place = author_place()
         node, center = mesh_node(
-            source, triangles, place, spacing=spacing, sign=sign, unit=unit, up=up, colors=colors
+            source,
+            triangles,
+            place,
+            spacing=spacing,
+            sign=sign,
+            unit=unit,
+            up=up,
+            colors=colors,
+            max_memory=max_memory,
         )
         made: Shape = cls._of(node)
         return made.translate(center)
@@ -86,6 +97,7 @@ class FromData(Placed):
         radius: float | None = None,
         unit: str | None = None,
         up: str | None = None,
+        max_memory: int | str | None = None,
     ) -> Shape:
         """Make a solid from points on its surface with outward normals: PLY, OBJ, XYZ, or arrays.
 
@@ -104,17 +116,26 @@ class FromData(Placed):
             unit: The length of one scene unit: "um", "mm", "cm", "m", "inch" or "ft"; files are in
                 millimeters. None keeps the numbers.
             up: The axis that points up in the file, "y" or "z"; z becomes y. None: "y".
+            max_memory: The most memory that a file may become, as "4 GB" or in bytes. None: by its
+                size, 0.8 GB for a small one; this lifts the limit of time, too.
 
         Raises:
-            SceneValueError: The file cannot be read or has no normals, there are fewer than 10
-                points, a number is invalid, or the points enclose nothing.
+            SceneValueError: The file cannot be read, is too large or has no normals, there are
+                fewer than 10 points, a number is invalid, or the points enclose nothing.
             SceneTypeError: ``source`` is neither a path nor an array with normals.
 
         Source: moving least squares of Kolluri 2005; winding numbers of Barill et al. 2018.
         """
         place = author_place()
         node, center = points_node(
-            source, normals, place, spacing=spacing, radius=radius, unit=unit, up=up
+            source,
+            normals,
+            place,
+            spacing=spacing,
+            radius=radius,
+            unit=unit,
+            up=up,
+            max_memory=max_memory,
         )
         made: Shape = cls._of(node)
         return made.translate(center)
@@ -127,6 +148,7 @@ class FromData(Placed):
         spacing: float | Sequence[float] | None = None,
         axes: AxisOrder = "zyx",
         level: float | None = None,
+        max_memory: int | str | None = None,
     ) -> Shape:
         """Make a solid from a volume of samples: .npy, .nrrd, .nii, .nii.gz, or an array.
 
@@ -145,12 +167,18 @@ class FromData(Placed):
             level: The value at the surface; more is inside. The field is then about the distance
                 only near the surface and where samples change fastest. None: samples are distances,
                 negative inside.
+            max_memory: The most memory that a file may become, as "4 GB" or in bytes. None: by its
+                size, 0.8 GB for a small one; this lifts the limit of time, too.
 
         Raises:
-            SceneValueError: The file cannot be read, is no volume, or nothing is inside.
+            SceneValueError: The file cannot be read, is too large or is no volume, or nothing is
+                inside.
         """
         place = author_place()
-        made: Shape = cls._of(volume_node(source, place, spacing=spacing, axes=axes, level=level))
+        node = volume_node(
+            source, place, spacing=spacing, axes=axes, level=level, max_memory=max_memory
+        )
+        made: Shape = cls._of(node)
         return made
 
     @property

@@ -8,7 +8,8 @@ file that cannot be read is an error at the author's line.
 from __future__ import annotations
 
 import os
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,8 @@ from distal.ir.types import TextureShape
 from distal.lang.resources import Texture2D, TextureCube
 from distal.scene.tree.conversion import beside
 from distal.scene.tree.errors import refuse, refuse_kind
+
+_BAND: Final = 256  # rows that are converted at once
 
 
 def light_texture(image: Any, what: str, place: Span | None) -> Texture2D:
@@ -77,7 +80,7 @@ def texture_light(texture: Texture2D, what: str, place: Span | None) -> NDArray[
         place: The author's line.
     """
     try:
-        return texels(texture.data, TextureShape.FLAT)[::-1]
+        return texels(texture.data, TextureShape.FLAT, max_memory=texture.max_memory)[::-1]
     except LoadError as error:
         message = str(error)
         refuse(f"{what}: {message}", place=place)
@@ -105,9 +108,16 @@ def light_of(image: Any, what: str, place: Span | None) -> NDArray[np.float32]:
     held = Texture2D(os.fspath(image) if encoded else image)
     pixels = texture_light(held, what, place)
     if encoded or getattr(image, "dtype", None) == np.uint8:
-        pixels = Picture(pixels).linear
+        for band in _bands(pixels):
+            band[...] = Picture(band).linear
     check_light(pixels[..., :3], what, place)
     return pixels
+
+
+def _bands(pixels: NDArray[np.float32]) -> Iterator[NDArray[np.float32]]:
+    """Yield parts of a picture, so that what is computed of it is never there as a whole."""
+    for top in range(0, len(pixels), _BAND):
+        yield pixels[top : top + _BAND]
 
 
 def check_light(light: NDArray[np.float32], what: str, place: Span | None) -> None:
@@ -121,9 +131,9 @@ def check_light(light: NDArray[np.float32], what: str, place: Span | None) -> No
     Raises:
         SceneValueError: A texel is not light.
     """
-    wrong = ~(np.isfinite(light) & (light >= 0.0))
-    if not wrong.any():
+    if all((np.isfinite(band) & (band >= 0.0)).all() for band in _bands(light)):
         return
+    wrong = ~(np.isfinite(light) & (light >= 0.0))
     row, column, part = (int(i) for i in np.argwhere(wrong)[0])
     value = float(light[row, column, part])
     named = f"{value:g} in row {row}, column {column}"

@@ -17,13 +17,21 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any, Final
 
-from distal.diagnostics import Span
+from distal.diagnostics import LoadError, Span
+from distal.foreign_files import need, opened, reading
 from distal.frontend.problems import did_you_mean
 from distal.lang.source_places import author_place
 from distal.packages import imported
-from distal.scene.objects.outlines import DrawnOutline, Edge, font_tools, made_of, outline_pen
+from distal.scene.objects.outlines import (
+    EDGE_BYTES,
+    DrawnOutline,
+    Edge,
+    font_tools,
+    made_of,
+    outline_pen,
+)
 from distal.scene.tree.conversion import beside
-from distal.scene.tree.errors import SceneValueError, refuse, refuse_kind
+from distal.scene.tree.errors import refuse, refuse_kind
 
 ALIGNMENTS: Final = {"left": 0.0, "center": 0.5, "right": 1.0}
 SUFFIXES: Final = (".ttf", ".otf", ".ttc", ".otc")
@@ -86,9 +94,15 @@ class Face:
     Attributes:
         units: Number of font units per em.
         capitals: Height of capital letters, in font units.
+
+    Args:
+        font: The font, of fontTools.
+        name: The name of its file.
+        size: The size of its file in bytes.
     """
 
-    def __init__(self, font: Any) -> None:
+    def __init__(self, font: Any, name: str = "", size: int = 0) -> None:
+        self._name, self._size = name, size
         self._glyphs = font.getGlyphSet()
         self._names: dict[int, str] = font.getBestCmap() or {}
         self._kerning = _Kerning(font)
@@ -101,7 +115,17 @@ class Face:
         return sorted(c for c in letters if ord(c) not in self._names)
 
     def laid_out(self, line: str, place: Span | None) -> tuple[list[Edge], float]:
-        """Return the edges of a line of text, from x = 0 on the baseline, and its width."""
+        """Return the edges of a line of text, from x = 0 on the baseline, and its width.
+
+        Glyphs are decoded when they are drawn, so a font that is damaged may fail here.
+        """
+        try:
+            with reading("font", self._name, self._size):
+                return self._laid_out(line, place)
+        except LoadError as error:
+            refuse(error.message, None, place)
+
+    def _laid_out(self, line: str, place: Span | None) -> tuple[list[Edge], float]:
         at = 0.0
         edges: list[Edge] = []
         before = None
@@ -110,6 +134,7 @@ class Face:
             at += self._kerning.between(before, name) if before else 0.0
             pen = outline_pen(self._glyphs, place)
             self._glyphs[name].draw(pen)
+            need((len(edges) + len(pen.edges)) * EDGE_BYTES, f"{len(edges):,} edges and more")
             edges += [tuple(at + p for p in edge) for edge in pen.finished()]
             at += self._glyphs[name].width
             before = name
@@ -206,16 +231,18 @@ def _plain(name: str) -> str:
 def _opened(file: str, place: Span | None) -> Face:
     try:
         return _open_file(file, os.stat(file).st_mtime_ns)
-    except SceneValueError:
-        raise
-    except Exception as error:  # fontTools raises any kind of error for broken files
-        refuse(f"the font '{os.path.basename(file)}' cannot be read: {error}", None, place)
+    except LoadError as error:
+        refuse(error.message, None, place)
+    except OSError as error:
+        name = os.path.basename(file)
+        refuse(f"the font '{name}' cannot be read: {error.strerror or error}", None, place)
 
 
 @lru_cache(maxsize=8)
 def _open_file(file: str, changed: int) -> Face:
-    data = BytesIO(Path(file).read_bytes())
-    return Face(font_tools("ttLib", None).TTFont(data, fontNumber=0))
+    name = os.path.basename(file)
+    with opened("font", file, name=name) as data:
+        return Face(font_tools("ttLib", None).TTFont(BytesIO(data), fontNumber=0), name, len(data))
 
 
 @lru_cache(maxsize=1)
@@ -225,7 +252,7 @@ def _pillows_face() -> Face | None:
     data = getattr(images.load_default(10), "font_bytes", None)
     if not data:
         return None
-    return Face(font_tools("ttLib", None).TTFont(BytesIO(data)))
+    return Face(font_tools("ttLib", None).TTFont(BytesIO(data)), "of Pillow", len(data))
 
 
 @lru_cache(maxsize=1)

@@ -65,6 +65,7 @@ def mesh_node(
     unit: Any,
     up: Any,
     colors: Any = False,
+    max_memory: Any = None,
 ) -> tuple[Node, tuple[float, float, float]]:
     """Return the node of a mesh about its center, and the center; see ``Shape.from_mesh``.
 
@@ -77,6 +78,7 @@ def mesh_node(
         unit: The length of a scene unit, or None.
         up: The axis that points up in the mesh, or None.
         colors: Whether to use the colors of a file, or the colors of points.
+        max_memory: The most bytes that a file may become, or None.
 
     Raises:
         SceneValueError: The file cannot be read, or is no mesh with an inside.
@@ -98,7 +100,7 @@ def mesh_node(
             meters_of(unit, LoadError)
         shades = None if isinstance(colors, bool) or colors is None else colors
         is_colored = colors is True or shades is not None
-        wanted = importing.ImportRequest(step, sign, unit, up, is_colored)
+        wanted = importing.ImportRequest(step, sign, unit, up, is_colored, max_memory)
         found = _imported(source, triangles, wanted, shades, place)
     except LoadError as error:
         refuse(error.message, None, place)

@@ -34,6 +34,7 @@ class Outlined(Placed):
         inside: str = "auto",
         level: float = 0.5,
         samples: int = 512,
+        max_memory: int | str | None = None,
     ) -> Shape2D:
         """Make a flat shape of what a picture shows: a logo, a drawing, a map.
 
@@ -51,15 +52,23 @@ class Outlined(Placed):
             level: How much of a pixel must be so at the edge, between 0 and 1.
             samples: The most distances along the longest side, up to 4096; of a larger picture,
                 means of pixels are taken.
+            max_memory: The most memory that a file may become, as "4 GB" or in bytes. None: by its
+                size, 0.8 GB for a small one; this lifts the limit of time, too.
 
         Raises:
-            SceneValueError: The picture cannot be read, a number is beyond its limit, or nothing is
-                inside.
+            SceneValueError: The picture cannot be read or is too large, a number is beyond its
+                limit, or nothing is inside.
             SceneTypeError: ``source`` is no picture.
         """
         made: Shape2D = cls._of(
             picture_shapes.picture_node(
-                source, author_place(), width=width, inside=inside, level=level, samples=samples
+                source,
+                author_place(),
+                width=width,
+                inside=inside,
+                level=level,
+                samples=samples,
+                max_memory=max_memory,
             )
         )
         return made

@@ -15,7 +15,8 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
-from distal.diagnostics import Span
+from distal.diagnostics import LoadError, Span
+from distal.foreign_files import need, reading
 from distal.lang.resources import Buffer
 from distal.lang.source_places import author_place
 from distal.packages import PackageError, imported
@@ -28,6 +29,8 @@ Edge: TypeAlias = tuple[complex, ...]
 # side of the outline's box.
 TOLERANCE: Final = 1.0 / 4000.0
 # A curve that deviates from a line by less than this fraction of its length becomes a line.
+EDGE_BYTES: Final = 400  # of an edge and its points
+_LOOK: Final = 1024  # edges between two looks at their number
 STRAIGHT: Final = 1e-6
 _NOT_IN_A_PATH: Final = re.compile(r"[^MmZzLlHhVvCcSsQqTtAa0-9eE+\-.,\s]")
 
@@ -72,13 +75,14 @@ def svg_path(path: str, *, size: float | None = None, place: Span | None = None)
         hint = "give the attribute d of a <path>: M 0 0 L 1 0 …"
         refuse(f"this is no SVG path: it {what}", hint, place)
     pen = outline_pen(None, place)
+    parser = font_tools("svgLib.path", place)
+    hint = "M, L, Q and A take 2, 2, 4 and 7 numbers"
     try:
-        font_tools("svgLib.path", place).parse_path(path, pen)
-        edges = pen.finished()
-    except (ValueError, IndexError, TypeError, AttributeError, AssertionError) as error:
-        hint = "M, L, Q and A take 2, 2, 4 and 7 numbers"
-        refuse(f"this SVG path cannot be read: {error or 'numbers are missing'}", hint, place)
-    upright = [tuple(p.conjugate() for p in edge) for edge in edges]
+        with reading("drawing", "this SVG path", len(path)):
+            parser.parse_path(path, pen)
+            upright = [tuple(p.conjugate() for p in edge) for edge in pen.finished()]
+    except LoadError as error:
+        refuse(error.message, hint, place)
     low, high = _corners(upright, "this SVG path", place)
     extent = max(high.real - low.real, high.imag - low.imag)
     if size is not None and not 0.0 < size < math.inf:
@@ -115,6 +119,8 @@ def outline_pen(glyphs: Any, place: Span | None) -> Any:
         def _add(self, *points: tuple[float, float]) -> None:
             ahead = tuple(complex(*p) for p in points)
             self.edges.append((self.at, *ahead))
+            if len(self.edges) % _LOOK == 0:
+                need(len(self.edges) * EDGE_BYTES, f"{len(self.edges):,} edges")
             self.at = ahead[-1]
 
         def _moveTo(self, point: tuple[float, float]) -> None:  # noqa: N802

@@ -39,7 +39,14 @@ _FEWEST, _MOST = 2, 4096
 
 
 def picture_node(
-    source: Any, place: Span | None, *, width: Any, inside: Any, level: Any, samples: Any
+    source: Any,
+    place: Span | None,
+    *,
+    width: Any,
+    inside: Any,
+    level: Any,
+    samples: Any,
+    max_memory: Any = None,
 ) -> Node:
     """Return the node of a picture; see ``Shape2D.from_image``.
 
@@ -50,6 +57,7 @@ def picture_node(
         inside: What is inside, one of ``_INSIDE``.
         level: The share at the edge.
         samples: The most distances along the longest side.
+        max_memory: The most bytes that a file may become, or None.
 
     Raises:
         SceneValueError: The picture cannot be read, a number is beyond its limit, or nothing is
@@ -65,10 +73,10 @@ def picture_node(
         refuse(f"'samples of {WHAT}' must be {_FEWEST} to {_MOST}, not {most}", None, place)
     if inside not in _INSIDE:
         refuse(f"inside is one of {', '.join(_INSIDE)}, not {inside!r:.40}", None, place)
-    pixels = _pixels(source, place)
-    kind = inside if inside != "auto" else "opaque" if (pixels[..., 3] < 1.0).any() else "dark"
-    shares, side = pictures.reduced(_shares(pixels, kind), most)
-    pixel = side * wide / pixels.shape[1]
+    kind, shares = _shares(_pixels(source, place, max_memory), inside)
+    across = shares.shape[1]
+    shares, side = pictures.reduced(shares, most)
+    pixel = side * wide / across
     try:
         found = pictures.signed_distances(np.pad(shares, 1), at)
     except ValueError:
@@ -91,14 +99,14 @@ def _plain(value: Any, asked: Asked) -> float:
     return found
 
 
-def _pixels(source: Any, place: Span | None) -> Floats:
+def _pixels(source: Any, place: Span | None, max_memory: Any) -> NDArray[np.float32]:
     """Return a picture's values, (rows, columns, 4), top row first: for display, or light."""
     if isinstance(source, Picture):
         held = Texture2D(source.linear)  # its soft edges are mixed as light
     elif isinstance(source, Texture2D):
         held = source
     elif isinstance(source, str | PathLike):
-        held = Texture2D(beside(source, place))
+        held = Texture2D(beside(source, place), max_memory=max_memory)
     elif hasattr(source, "dtype") and getattr(source, "ndim", 0) in (2, 3):
         held = Texture2D(source)
     else:
@@ -107,16 +115,31 @@ def _pixels(source: Any, place: Span | None) -> Floats:
             "a picture's file, an array (height, width) or (height, width, 3 or 4), or a Picture",
             place,
         )
-    pixels = texture_light(held, WHAT, place).astype(np.float64)
-    if not np.isfinite(pixels).all():
+    pixels = texture_light(held, WHAT, place)
+    if not all(np.isfinite(row).all() for row in pixels):
         refuse(f"a pixel of {_named(source)} is no finite number", None, place)
     return pixels
 
 
-def _shares(pixels: Floats, kind: str) -> Floats:
-    """Return how much of each pixel is inside, from 0 to 1."""
-    opaque: Floats = np.clip(pixels[..., 3], 0.0, 1.0)
-    bright: Floats = np.clip(pixels[..., :3] @ _LUMA, 0.0, 1.0)
+def _shares(pixels: NDArray[np.float32], inside: str) -> tuple[str, Floats]:
+    """Return what is inside, and how much of each pixel is so, from 0 to 1.
+
+    Args:
+        pixels: The picture.
+        inside: One of ``_INSIDE``.
+    """
+    kind = inside
+    if inside == "auto":
+        kind = "opaque" if any((row[:, 3] < 1.0).any() for row in pixels) else "dark"
+    shares = np.empty(pixels.shape[:2])
+    for share, row in zip(shares, pixels, strict=True):
+        share[...] = _shares_of_row(row.astype(np.float64), kind)
+    return kind, shares
+
+
+def _shares_of_row(row: Floats, kind: str) -> Floats:
+    opaque: Floats = np.clip(row[:, 3], 0.0, 1.0)
+    bright: Floats = np.clip(row[:, :3] @ _LUMA, 0.0, 1.0)
     match kind:
         case "opaque":
             return opaque

@@ -35,6 +35,7 @@ def points_node(
     radius: Any,
     unit: Any,
     up: Any,
+    max_memory: Any = None,
 ) -> tuple[Node, tuple[float, float, float]]:
     """Return the node of points about their center, and the center; see ``Shape.from_points``.
 
@@ -46,6 +47,7 @@ def points_node(
         radius: Within which points count, or None.
         unit: The length of a scene unit, or None.
         up: The axis that points up, or None.
+        max_memory: The most bytes that a file may become, or None.
 
     Raises:
         SceneValueError: The file cannot be read, or its points have no inside.
@@ -57,7 +59,7 @@ def points_node(
     try:
         if unit is not None:
             meters_of(unit, LoadError)
-        wanted = importing_points.PointsRequest(lengths[0], lengths[1], unit, up)
+        wanted = importing_points.PointsRequest(lengths[0], lengths[1], unit, up, max_memory)
         if normals is not None:
             found = importing_points.imported_points_arrays(source, normals, wanted)
         elif isinstance(source, str | PathLike):

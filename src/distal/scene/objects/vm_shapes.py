@@ -9,15 +9,15 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, Final
 
-from distal.diagnostics import Span, printable
+from distal.diagnostics import LoadError, Span
 from distal.fields.guarantees import Primitive
+from distal.foreign_files import opened
 from distal.scene.objects.binding import own_node
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
 from distal.tape.vm_file import VmProgram, read_vm
 from distal.tape.vm_function import point_function, program_of
 
-_LARGEST_FILE: Final = 8 * 2**20  # bytes
 _HINT: Final = 'give the path of a file, or its text: "_0 var-x\\n_1 const 1\\n_2 sub _0 _1"'
 
 
@@ -53,12 +53,10 @@ def program_of_node(node: Node) -> VmProgram | None:
 
 def _text_of(path: Path, place: Span | None) -> str:
     try:
-        with path.open("rb") as file:
-            data = file.read(_LARGEST_FILE + 1)
-        text = data.decode("utf-8")
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is no text"
-        refuse(f"cannot read '{printable(path)}': {reason}", _HINT, place)
-    if len(data) > _LARGEST_FILE:
-        refuse(f"'{printable(path)}' is larger than {_LARGEST_FILE >> 20} MiB", None, place)
-    return text
+        with opened(".vm", path) as data:
+            try:
+                return data.decode("utf-8")
+            except UnicodeDecodeError:
+                raise LoadError("it is no text") from None
+    except LoadError as error:
+        refuse(error.message, _HINT, place)

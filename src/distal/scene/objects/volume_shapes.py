@@ -32,7 +32,9 @@ else:
     volumes = LazyModule("distal.polygons.volumes")
 
 
-def volume_node(source: Any, place: Span | None, *, spacing: Any, axes: Any, level: Any) -> Node:
+def volume_node(
+    source: Any, place: Span | None, *, spacing: Any, axes: Any, level: Any, max_memory: Any = None
+) -> Node:
     """Return the node of a volume; see ``Shape.from_volume``.
 
     Args:
@@ -41,6 +43,7 @@ def volume_node(source: Any, place: Span | None, *, spacing: Any, axes: Any, lev
         spacing: The distance of two samples, one number or three, or None.
         axes: The order of the axes of an array.
         level: The value at the surface, or None for distances.
+        max_memory: The most bytes that a file may become, or None.
 
     Raises:
         SceneValueError: The file cannot be read, or is no volume with an inside.
@@ -54,7 +57,7 @@ def volume_node(source: Any, place: Span | None, *, spacing: Any, axes: Any, lev
         at = None if level is None else as_float("level", level)
         if isinstance(source, str | PathLike):
             path = beside_author(source, place)
-            found = volumes.read_volume(path)
+            found = volumes.read_volume(path, max_memory)
             is_ordered = path.suffix.lower() != ".npy"
         else:
             found = volumes.VolumeSamples(volumes.checked_samples(source), None)
