@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from PIL import Image
 
 import distal

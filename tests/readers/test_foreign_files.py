@@ -428,7 +428,6 @@ OWN = {
     "editor/messages/": "messages of the app",
     "editor/worker.py": "/dev/null",
     "export/": "what distal wrote, and files that were read before",
-    "images/atomic_files.py": "writes",
     "images/picture_files.py": "eight bytes; the readers of the formats do the rest",
     "images/metadata.py": "texts of pictures, within the readers of the formats",
     "ir/encoding.py": "programs from distal's own cluster",
