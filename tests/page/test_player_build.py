@@ -27,7 +27,8 @@ MESH_SCRIPT = ROOT / "src" / "distal" / "notebook" / "mesh_viewer.js"
 LESSON_SCRIPT = ROOT / "src" / "distal" / "lessons" / "lesson.js"
 LESSON_STYLE = LESSON_SCRIPT.with_suffix(".css")
 APP = ROOT / "src" / "distal" / "editor" / "app"
-APP_FILES = [APP / name for name in ("studio.js", "studio.css", "studio.html", "cell.html")]
+_NAMES = ("studio.js", "lesson_page.js", "studio.css", "studio.html", "cell.html")
+APP_FILES = [APP / name for name in _NAMES]
 # Packed it has 31 kB, so that the page of the raymarcher stays below its 60 kB.
 LARGEST_BYTES = 60_000
 # What the other player has besides.

@@ -5,6 +5,7 @@
  * camera, values and time of a link.
  */
 
+import { REASONS } from "./access";
 import type { Studio } from "./studio";
 import type { Opened } from "./settings";
 import { sharedOf, type Shared } from "./links";
@@ -50,6 +51,7 @@ export class Opening {
   /** An example takes the place of the text; undo brings the old one back. */
   async open(name: string): Promise<void> {
     const { channel, files, looking, page, picture, settings, tabs, texts } = this.studio;
+    if (channel.isOpen === false) return page.tell(REASONS.away, ["Close", () => {}]);
     const found = await this.#example(name);
     if (!found) return page.tell(`There is no example ${name}.`, ["Close", () => {}]);
     void channel.start?.();

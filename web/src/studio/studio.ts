@@ -1,7 +1,7 @@
 /**
  * The studio: code, picture and parameters side by side.
  *
- * Input: the settings in the page, a channel to the worker. Output: the running app. Here its parts are
+ * Input: the settings, a channel to the worker. Output: the running app. Here its parts are
  * made and connected: what a person does goes to the part that answers it.
  */
 
@@ -9,7 +9,7 @@ import type { LiteralValue } from "../generated/messages";
 import { recallScheme } from "./appearance";
 import { Asking } from "./asking";
 import { CellChannel } from "./cell_channel";
-import { SocketChannel, type Channel } from "./channel";
+import type { Channel } from "./channel";
 import { Client } from "./client";
 import { Conflicts } from "./conflicts";
 import { CostBar } from "./cost_bar";
@@ -48,16 +48,18 @@ export class Studio {
   readonly sharing = new Sharing(this);
   readonly costs: CostBar;
   readonly commands: Commands;
-  readonly channel: Channel;
   readonly client: Client;
   readonly jobs: Jobs;
   readonly editor: Editor;
   readonly picture: Picture;
   readonly emitted: Emitted;
 
-  constructor(readonly settings: Settings) {
+  constructor(
+    readonly settings: Settings,
+    readonly channel: Channel,
+  ) {
     recallScheme();
-    const { folder, main, python } = settings;
+    const { folder, main } = settings;
     // In another page it is small, and a draft of the whole playground is none of its text.
     const isFramed = new URLSearchParams(location.search).has("embed");
     if (isFramed) this.page.beFramed(() => this.sharing.whole());
@@ -70,7 +72,7 @@ export class Studio {
     this.editor = this.#editor();
     this.emitted = this.#emitted();
     this.#fillButtons();
-    this.channel = python ? this.#cell(python) : new SocketChannel(`ws://${location.host}/socket`);
+    if (channel instanceof CellChannel) this.#watch(channel);
     this.client = new Client(this.channel, {
       ready: (message) => this.looking.started(message),
       changed: (message) => this.files.changed(message),
@@ -162,8 +164,7 @@ export class Studio {
     return emitted;
   }
 
-  #cell(folder: string): CellChannel {
-    const cell = new CellChannel(folder);
+  #watch(cell: CellChannel): void {
     cell.onProgress = (part) => {
       this.page.work.textContent = part < 1 ? `Loading Python: ${Math.round(100 * part)} %` : "Starting Python …";
     };
@@ -171,7 +172,6 @@ export class Studio {
     for (const kind of ["pointerdown", "focusin"]) {
       this.page.left.addEventListener(kind, () => void cell.start(), { once: true });
     }
-    return cell;
   }
 
   #fillButtons(): void {

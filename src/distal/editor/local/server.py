@@ -6,19 +6,20 @@ tab has a worker in a process of its own. Uses ``websockets``.
 
 from __future__ import annotations
 
-import contextlib
 import json
 import secrets
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 from urllib.parse import unquote
 
+from distal.editor.local.connection import TabConnection
 from distal.editor.local.drafts import Drafts
 from distal.editor.local.early import EarlyWorker
 from distal.editor.local.files import SceneFiles
 from distal.editor.local.renders import CODE_S as RENDER_CODE_S
 from distal.editor.local.renders import RenderLimits, RenderQueue
-from distal.editor.local.serving import NOT_FOUND, HttpReply, LocalServer
+from distal.editor.local.serving import NOT_FOUND, RESULT_S, HttpReply, LocalServer
 from distal.editor.local.tab import CODE_S, StudioTab
 from distal.editor.messages import Changed, Restarted, encoded
 from distal.example_files import all_examples, posters
@@ -81,11 +82,8 @@ class StudioServer(LocalServer):
 
     # Sockets
 
-    def _talk(self, connection: Any) -> None:
-        def send(text: str) -> None:
-            with contextlib.suppress(self._closed):  # the tab is gone: the loop below ends
-                connection.send(text)
-
+    def _talk(self, connection: TabConnection) -> None:
+        send = connection.send
         send(encoded(self._files.all()))
         early, self._early = self._early, None
         try:
@@ -132,24 +130,22 @@ class StudioServer(LocalServer):
             return HttpReply(200, (APP / name).read_bytes(), _TYPES[Path(name).suffix])
         return HttpReply(404, b"There is no such page.\n")
 
-    def _page(self) -> HttpReply:
-        nonce = secrets.token_urlsafe(16)
-        settings = {
+    def _settings(self) -> Mapping[str, object]:
+        return {
             "main": self._files.main,
             "folder": str(self._files.folder),
             "isNew": self._files.is_new,
             "gallery": examples(),
-            "nonce": nonce,
             "version": __version__,
         }
+
+    def _page(self) -> HttpReply:
+        nonce = secrets.token_urlsafe(16)
         text = (APP / "studio.html").read_text(encoding="utf-8")
-        # Inside of a script, only "<" could end it.
-        filled = json.dumps(settings).replace("<", "\\u003c")
-        body = text.replace("{nonce}", nonce).replace("{settings}", filled).encode()
-        sources = f"'self' ws://{self._guard.authority}"
+        body = text.replace("{nonce}", nonce).encode()
         policy = (
-            f"default-src 'none'; script-src 'self' 'nonce-{nonce}'; style-src 'self' "
-            f"'nonce-{nonce}'; img-src 'self' data: blob:; connect-src {sources}; "
+            f"default-src 'none'; script-src 'self'; style-src 'self' 'nonce-{nonce}'; "
+            f"img-src 'self' data: blob:; connect-src 'self' ws://{self._guard.authority}; "
             "frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
         )
         return HttpReply(200, body, "text/html", (("Content-Security-Policy", policy),))
@@ -159,7 +155,7 @@ class StudioServer(LocalServer):
         data = self._renders.result(folder, token)
         if data is None:
             return HttpReply(NOT_FOUND, b"This picture is not there any more: render it again.\n")
-        return HttpReply(200, data, "application/octet-stream")
+        return HttpReply(200, data, "application/octet-stream", limit=RESULT_S)
 
 
 def _of_gallery(file: str) -> HttpReply:
