@@ -59,17 +59,19 @@ export class Files {
   }
 
   replace(name: string, text: string): void {
-    const { editor, looking, texts } = this.studio;
+    const { editor, keeping, looking, scenes, texts } = this.studio;
     texts.set(name, text);
     editor.replace(name, text);
-    texts.keepDraft(name);
+    keeping.changed();
+    if (!scenes) texts.keepDraft(name);
     looking.look();
   }
 
   typed(name: string, text: string): void {
-    const { costs, looking, picture, tabs, texts } = this.studio;
+    const { costs, keeping, looking, picture, tabs, texts } = this.studio;
     if (!name || texts.files[name] === text) return;
     texts.set(name, text);
+    keeping.changed();
     costs.changed();
     picture.outline.show(null, null);
     tabs.fill();
@@ -77,12 +79,8 @@ export class Files {
   }
 
   async save(): Promise<void> {
-    const { client, page, settings, tabs, texts } = this.studio;
-    if (settings.python) {
-      for (const name of texts.names) texts.keepDraft(name);
-      page.announcer.textContent = "Kept in this browser";
-      return;
-    }
+    const { client, page, scenes, tabs, texts } = this.studio;
+    if (scenes) return scenes.save();
     for (const name of texts.names.filter((one) => texts.isChanged(one))) {
       const text = texts.files[name]!;
       const { revision } = texts;

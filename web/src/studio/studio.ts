@@ -17,10 +17,12 @@ import { Editor } from "./editor";
 import { Emitted } from "./emitted";
 import { Files } from "./files";
 import { Jobs } from "./jobs";
+import type { Keeping } from "./keeping";
 import { Looking } from "./looking";
 import { Opening } from "./opening";
 import { Page } from "./page";
 import { Picture } from "./picture";
+import { Scenes } from "./scenes/scenes";
 import type { Settings } from "./settings";
 import { Sharing } from "./sharing";
 import { Tabs } from "./tabs";
@@ -37,6 +39,9 @@ export class Studio {
   readonly tabs = new Tabs(this);
   readonly opening = new Opening(this);
   readonly sharing = new Sharing(this);
+  /** The playground's scenes; the local studio has files. */
+  readonly scenes: Scenes | null;
+  readonly keeping: Keeping;
   readonly costs: CostBar;
   readonly commands: Commands;
   readonly channel: Channel;
@@ -49,10 +54,10 @@ export class Studio {
   constructor(readonly settings: Settings) {
     recallScheme();
     const { folder, main, python } = settings;
-    // In another page it is small, and a draft of the whole playground is none of its text.
-    const isFramed = new URLSearchParams(location.search).has("embed");
-    if (isFramed) this.page.beFramed(() => this.sharing.whole());
-    this.texts = new Texts(isFramed ? location.href : folder);
+    this.texts = new Texts(folder);
+    this.scenes = settings.python ? new Scenes(this) : null;
+    this.keeping = this.scenes ?? this.#drafts();
+    if (this.scenes?.isFrame) this.page.beFramed(() => this.sharing.whole());
     this.picture = this.#picture();
     this.costs = this.#costs();
     this.commands = new Commands(this);
@@ -72,11 +77,16 @@ export class Studio {
     this.page.work.after(this.jobs.chip);
     document.title = `${main} · distal`;
     if (settings.start) void this.opening.begin(settings.start);
-    addEventListener("beforeunload", () => this.texts.names.forEach((name) => this.texts.keepDraft(name)));
+    if (!this.scenes) addEventListener("beforeunload", () => this.keeping.keep());
   }
 
   save(): Promise<void> {
     return this.files.save();
+  }
+
+  #drafts(): Keeping {
+    const { texts } = this;
+    return { changed() {}, keep: () => texts.names.forEach((name) => texts.keepDraft(name)) };
   }
 
   #picture(): Picture {

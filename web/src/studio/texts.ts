@@ -51,6 +51,13 @@ export class Texts {
     return null;
   }
 
+  /** Other texts take the place of all. */
+  begin(files: Record<string, string>): void {
+    this.#now = { ...files };
+    this.#saved = { ...files };
+    this.revision += 1;
+  }
+
   set(name: string, text: string): void {
     if (this.#now[name] === text) return;
     this.#now = { ...this.#now, [name]: text };
