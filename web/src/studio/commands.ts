@@ -94,6 +94,7 @@ function ofApp(studio: Studio): Command[] {
       id: "gallery",
       text: "Open the gallery",
       button: "Gallery",
+      icon: "M3 4h14v12H3zM3 13l4-4 4 4 2.5-2.5L17 14M13 7.5h.2",
       hint: isLocal ? "Open a copy of an example" : "Open an example as a scene of its own",
       words: "examples pictures",
       act: () => openGallery(settings.gallery, (name) => void studio.opening.open(name)),

@@ -7,7 +7,7 @@
 
 import type { Payload } from "../payload";
 import { sharedOf } from "./links";
-import { digestOf, poseOf, type Origin, type Pose, type SceneRecord, type Texts } from "./scenes/records";
+import { digestOf, poseOf, type Origin, type Pose, type SceneRecord } from "./scenes/records";
 import type { Opened } from "./settings";
 import type { Studio } from "./studio";
 
@@ -55,8 +55,13 @@ export class Opening {
     const scenes = this.studio.scenes!;
     const turn = ++this.#turn;
     const { hash } = location;
+    // Without any name, one goes on where one was.
     const id = /^#scene=([\w-]+)$/.exec(hash)?.[1] ?? (hash ? "" : (await scenes.last())?.id);
-    if (id && (await scenes.open(id))) return;
+    if (turn !== this.#turn) return;
+    if (id && (await scenes.open(id))) {
+      if (!hash && scenes.id === id) history.replaceState(null, "", `#scene=${id}`);
+      return;
+    }
     if (turn !== this.#turn) return;
     const named = await this.#named(hash);
     if (turn !== this.#turn) return;
@@ -71,7 +76,8 @@ export class Opening {
   /** What a fragment means; null where that is nothing. */
   async #named(hash: string): Promise<Named | null> {
     if (hash === "" || hash === "#start") return this.#started();
-    if (hash === "#new") return { origin: { kind: "new", ref: "" }, ...EMPTY };
+    const { starter } = this.studio.settings;
+    if (hash === "#new" && starter) return { origin: { kind: "new", ref: "" }, ...starter };
     const name = /^#example=(\w+)$/.exec(hash)?.[1];
     const opened = name && (await this.#example(name));
     if (opened) return { origin: { kind: "example", ref: name }, ...opened };
@@ -113,6 +119,11 @@ export class Opening {
     looking.look();
   }
 
+  /** Whether the picture is that of the texts, or of earlier ones of the same scene. */
+  get isShown(): boolean {
+    return !this.#waiting;
+  }
+
   /** How the picture stands, or will once it is there. */
   get pose(): Pose {
     if (this.#waiting) return this.#waiting.pose;
@@ -147,19 +158,6 @@ export class Opening {
     }
   }
 }
-
-const EMPTY: { main: string; files: Texts } = {
-  main: "scene.py",
-  files: {
-    "scene.py": [
-      "from distal import *",
-      "",
-      "shape = Sphere(0.6) + Box((2, 0.1, 2)).at(0, -0.7, 0)",
-      "scene = Scene(shape)",
-      "",
-    ].join("\n"),
-  },
-};
 
 function reasonOf(hash: string): string {
   if (hash.startsWith("#scene=")) return "This scene is not in this browser, or it was deleted. Here is the first example.";

@@ -14,9 +14,10 @@ export interface Settings {
   gallery: Example[];
   nonce: string;
   version: string;
-  /** Of the playground: the folder of Python's files, and what it begins with. */
+  /** Of the playground: the folder of Python's files, what it begins with, and what a new scene has. */
   python?: string;
   start?: Opened;
+  starter?: Opened;
 }
 
 /** A scene that is opened; its picture needs no Python where there is a payload. */

@@ -34,6 +34,7 @@ export class Heading {
     this.#button.title = isReader ? name : `Rename ${quoted(name)}`;
     this.#state.textContent = isKept ? "" : "not changed yet";
     this.#reader.hidden = !isReader;
+    this.element.classList.toggle("reader", isReader);
   }
 }
 

@@ -7,12 +7,12 @@
 
 /** How long a tab that has the lock is waited for: one that is frozen never answers. */
 const YIELD_MS = 1500;
+/** A page that is loaded again has the lock until its end, which may come after the new page's beginning. */
+const TAKE_MS = 400;
 
 export type News =
   /** Please keep your text and let the scene go. */
   | { kind: "yield"; id: string }
-  /** Nobody edits the scene any more. */
-  | { kind: "free"; id: string }
   /** A record was written. */
   | { kind: "written"; id: string };
 
@@ -34,7 +34,14 @@ export class Locks {
 
   /** Takes a scene for this tab; null where another tab has it. `stolen` is called if a tab takes it by force. */
   take(id: string, stolen: () => void): Promise<Release | null> {
-    return this.#request(id, { ifAvailable: true }, stolen);
+    return this.#request(id, { signal: AbortSignal.timeout(TAKE_MS) }, stolen);
+  }
+
+  /** Takes a scene as soon as no tab has it. Returns what ends the waiting. */
+  wait(id: string, stolen: () => void, granted: (release: Release) => void): () => void {
+    const ending = new AbortController();
+    void this.#request(id, { signal: ending.signal }, stolen).then((release) => release && granted(release));
+    return () => ending.abort();
   }
 
   /** Takes a scene from the tab that has it: it keeps its text first, if it still answers. */
@@ -54,8 +61,7 @@ export class Locks {
     if (!navigator.locks) return Promise.resolve(() => {});
     return new Promise((resolve) => {
       let isHeld = false;
-      const holding = navigator.locks.request(PREFIX + id, options, (lock) => {
-        if (!lock) return resolve(null);
+      const holding = navigator.locks.request(PREFIX + id, options, () => {
         isHeld = true;
         return new Promise<void>((release) => resolve(release));
       });

@@ -158,7 +158,7 @@ export function uniqueName(name: string, others: Iterable<string>): string {
 
 /** The name of a scene's file, without an ending. */
 export function fileNameOf(name: string): string {
-  return fileName(name.replaceAll(" ", "_"));
+  return fileName(name);
 }
 
 export async function digestOf(main: string, files: Texts): Promise<string> {

@@ -29,6 +29,8 @@ const THUMB_MS = 1500;
 const TIDY_MS = 5000;
 /** Another tab's texts are shown so often at most. */
 const FOLLOW_MS = 500;
+/** After another tab has asked for the scene, so long until this one waits for it again. */
+const POLITE_MS = 3000;
 
 interface Current {
   record: r.SceneRecord;
@@ -57,6 +59,8 @@ export class Scenes implements Keeping {
   #resting = 0;
   #picturing = 0;
   #following = 0;
+  /** Ends the waiting for a scene that another tab edits. */
+  #waiting: (() => void) | null = null;
   /** Another scene takes the place: the address is its own already. */
   #isLeaving = false;
 
@@ -104,7 +108,10 @@ export class Scenes implements Keeping {
       setTimeout(() => void this.store.tidy(), TIDY_MS);
     }
     addEventListener("pagehide", () => this.#leave());
-    document.addEventListener("visibilitychange", () => document.hidden && this.#leave());
+    document.addEventListener("visibilitychange", () => {
+      if (document.hidden) this.#leave();
+      this.#await();
+    });
     // A page that the browser has held back lost its locks and connections.
     addEventListener("pageshow", ({ persisted }) => persisted && location.reload());
     addEventListener("beforeunload", (event) => this.store.isMissing && event.preventDefault());
@@ -263,7 +270,7 @@ export class Scenes implements Keeping {
     for (const timer of [this.#keeping, this.#resting, this.#picturing, this.#following]) clearTimeout(timer);
     this.#keeping = 0;
     if (old && isOther) {
-      this.#free(old);
+      old.release?.();
       this.#states.set(old.record.id, editor.exchange(this.#states.get(record.id)));
     }
     this.#now = next;
@@ -272,14 +279,10 @@ export class Scenes implements Keeping {
     editor.isReadOnly = false;
     const shown = opening.show(record, isOther, payload);
     editor.isReadOnly = !release;
+    this.#await();
     if (isOther || release) for (const bar of ["reader", "earlier"]) this.bars.hide(bar);
     this.#showName();
     await shown;
-  }
-
-  #free({ record, release }: Current): void {
-    release?.();
-    if (release) this.locks.tell({ kind: "free", id: record.id });
   }
 
   /** The same example or link became a scene earlier. */
@@ -391,7 +394,7 @@ export class Scenes implements Keeping {
   async #picture(): Promise<void> {
     const now = this.#now;
     const { player } = this.studio.picture;
-    if (!now?.isKept || !now.release || !player || document.hidden) return;
+    if (!now?.isKept || !now.release || !player || document.hidden || !this.studio.opening.isShown) return;
     const thumb = await thumbOf(player);
     if (!thumb || this.#now !== now || thumb === now.record.thumb) return;
     now.record.thumb = thumb;
@@ -406,6 +409,7 @@ export class Scenes implements Keeping {
       const now = this.#now;
       if (!now || now.release) return;
       const { id } = now.record;
+      this.#endWaiting();
       await this.#own(await this.locks.takeOver(id, () => this.#stolen(id)));
     });
   }
@@ -422,10 +426,10 @@ export class Scenes implements Keeping {
     const now = this.#now;
     if (id !== this.id || !now) return;
     if (kind === "yield" && now.release) return this.#yield(now);
-    if (kind === "free" && !now.release) {
-      return this.#afterwards(async () => this.#own(await this.locks.take(id, () => this.#stolen(id))));
+    if (kind === "yield") {
+      this.#endWaiting();
+      return void setTimeout(() => this.#await(), POLITE_MS);
     }
-    if (kind !== "written") return;
     if (!now.release) {
       this.#following ||= window.setTimeout(() => void this.#afterwards(() => this.#follow()), FOLLOW_MS);
       return;
@@ -440,10 +444,24 @@ export class Scenes implements Keeping {
     this.studio.editor.isReadOnly = true;
     return this.#afterwards(async () => {
       await this.#write("typed");
-      this.#free(now);
+      now.release?.();
       now.release = null;
       this.#tellReader(true);
+      setTimeout(() => this.#await(), POLITE_MS);
     });
+  }
+
+  /** A scene that is read here, in a tab that is seen, is edited here once the other tab ends. */
+  #await(): void {
+    const now = this.#now;
+    this.#endWaiting();
+    if (this.isFrame || !now || now.release || document.hidden) return;
+    const { id } = now.record;
+    this.#waiting = this.locks.wait(
+      id,
+      () => this.#stolen(id),
+      (release) => void this.#afterwards(async () => (this.#now === now && !now.release ? this.#own(release) : release())),
+    );
   }
 
   /** Another tab has the scene by force: a text that it does not have becomes a version. */
@@ -454,6 +472,7 @@ export class Scenes implements Keeping {
     now.release = null;
     this.studio.editor.isReadOnly = true;
     this.#tellReader(true);
+    setTimeout(() => this.#await(), POLITE_MS);
     void this.store.write(id, (old) => {
       if (!old) return { scene: mine };
       const isKnown = r.sameTexts(old.files, mine.files);
@@ -469,6 +488,11 @@ export class Scenes implements Keeping {
     const record = await this.store.scene(now.record.id);
     if (!record || r.sameTexts(record.files, this.studio.texts.files)) return;
     await this.#swap({ record, isKept: true, release: null, written: record.files });
+  }
+
+  #endWaiting(): void {
+    this.#waiting?.();
+    this.#waiting = null;
   }
 
   #tellReader(wasTaken = false): void {

@@ -23,7 +23,7 @@ export async function openVersions(studio: Studio, { id, name, files }: SceneRec
   let chosen: Version = versions[0]!;
   const choices = versions.map((version) => {
     const now = sameTexts(version.files, files) ? " · as it is now" : "";
-    const button = make("button", { type: "button" }, `${momentOf(version.at)}`, make("span", {}, `${REASONS[version.why]}${now}`));
+    const button = make("button", { type: "button" }, momentOf(version.at, true), make("span", {}, `${REASONS[version.why]}${now}`));
     button.onclick = () => show(version, button);
     return make("li", {}, button);
   });

@@ -15,16 +15,26 @@ export function quoted(name: string): string {
 }
 
 /** A moment as a person says it: the time today, else the day. */
-export function momentOf(at: number, now = new Date()): string {
+export function momentOf(at: number, hasSeconds = false, now = new Date()): string {
   const moment = new Date(at);
-  const time = moment.toLocaleTimeString("en", { hour: "2-digit", minute: "2-digit", hour12: false });
-  if (moment.toDateString() === now.toDateString()) return `today, ${time}`;
-  const year = moment.getFullYear() === now.getFullYear() ? {} : ({ year: "numeric" } as const);
-  return `${moment.toLocaleDateString("en", { day: "numeric", month: "long", ...year })}, ${time}`;
+  const seconds = hasSeconds ? ({ second: "2-digit" } as const) : {};
+  const time = moment.toLocaleTimeString("en-GB", { hour: "2-digit", minute: "2-digit", ...seconds });
+  return isToday(moment, now) ? `today, ${time}` : `${dayOf(moment, now)}, ${time}`;
 }
 
-export function earlierText({ changed, name }: SceneRecord): string {
-  return `You changed this earlier (${momentOf(changed)}): it is your scene ${quoted(name)}.`;
+export function earlierText({ changed, name }: SceneRecord, now = new Date()): string {
+  const moment = new Date(changed);
+  const when = isToday(moment, now) ? "today" : `on ${dayOf(moment, now)}`;
+  return `You changed this ${when}: it is your scene ${quoted(name)}.`;
+}
+
+function isToday(moment: Date, now: Date): boolean {
+  return moment.toDateString() === now.toDateString();
+}
+
+function dayOf(moment: Date, now: Date): string {
+  const year = moment.getFullYear() === now.getFullYear() ? {} : ({ year: "numeric" } as const);
+  return moment.toLocaleDateString("en-GB", { day: "numeric", month: "long", ...year });
 }
 
 /** What a refusal of the store means for the text. */
