@@ -99,9 +99,9 @@ export class Opening {
   // The picture
 
   /** Shows texts that have begun, and their picture; `isOther`: not those of the scene that was open. */
-  async show({ main, ...record }: SceneRecord, isOther: boolean, payload?: Payload): Promise<void> {
+  async show(record: SceneRecord, isOther: boolean, payload?: Payload): Promise<void> {
     const { channel, costs, editor, looking, page, picture, tabs, texts } = this.studio;
-    const here = !isOther && editor.name in texts.files ? editor.name : main;
+    const here = !isOther && editor.name in texts.files ? editor.name : record.main;
     tabs.show(here);
     tabs.fill();
     if (isOther) {
@@ -115,7 +115,11 @@ export class Opening {
     if (payload) {
       await picture.show(payload);
       this.takePose(texts.revision);
-    } else void channel.start?.();
+    } else {
+      if (record.thumb) picture.preview(record.thumb);
+      picture.isOld = isOther;
+      void channel.start?.();
+    }
     looking.look();
   }
 

@@ -173,7 +173,8 @@ export class Scenes implements Keeping {
     const scene = await this.store.write(record.id, (old, last) => {
       const { name, thumb, changed } = old ?? mine;
       const at = Math.max(Date.now(), changed + 1);
-      const next = { ...mine, name, thumb, changed: at, deleted: null };
+      // A version of a text that is written already changes nothing.
+      const next = { ...mine, name, thumb, changed: isKept && isSame && old ? changed : at, deleted: null };
       const versions: r.Version[] = [];
       if (!isKept && !r.sameTexts(written, mine.files)) versions.push(r.versionOf(record, "opened", record.created));
       // Somebody else wrote meanwhile, where tabs have no locks.
@@ -334,9 +335,9 @@ export class Scenes implements Keeping {
 
   /** Adds texts that a person opened; false where a scene has them already. */
   async add(record: Partial<r.SceneRecord> & Pick<r.SceneRecord, "main" | "files">): Promise<boolean> {
-    const { main, files } = record;
-    const all = await this.store.all();
-    if (all.some((one) => one.deleted === null && r.sameTexts(one.files, files))) return false;
+    const { main, files, name } = record;
+    const isSame = (one: r.SceneRecord) => r.sameTexts(one.files, files) && (name ?? one.name) === one.name;
+    if ((await this.all()).some((one) => one.deleted === null && isSame(one))) return false;
     const from = { kind: "file", ref: main, digest: await r.digestOf(main, files) } as const;
     await this.#add({ ...this.#fresh(from, main, files), ...record });
     return true;
