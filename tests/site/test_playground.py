@@ -1,4 +1,4 @@
-"""The playground in a browser: Python in its cell, links, loops, drafts, offline, sealed."""
+"""The playground in a browser: Python in its cell, links, loops, offline, sealed."""
 
 from __future__ import annotations
 
@@ -246,11 +246,10 @@ def test_a_broken_link_shows_the_start(address, visited, fragment):
     visited.wait_for_function(_PLAYER, timeout=SLOW_MS)
     text = visited.evaluate("() => studio.editor.view.state.doc.toString()")
     assert "A planet cut open" in text
-    kept = "() => Object.keys(localStorage).filter((key) => localStorage[key].includes('planet'))"
-    assert visited.evaluate(kept) == []  # no draft, which the next page would show
+    assert visited.evaluate("() => studio.scenes.all()") == []  # which the next page would show
 
 
-def test_a_draft_outlives_a_reload_and_it_works_offline(address):
+def test_a_scene_outlives_a_reload_and_it_works_offline(address):
     with context(address) as made:
         page = shown(made, address)
         page.evaluate("() => navigator.serviceWorker.ready.then(() => 1)")
