@@ -39,7 +39,7 @@ export class Heading {
 }
 
 /** A field in place of a button, until Enter, Escape or the focus elsewhere ends it. */
-export function editName(button: HTMLElement, name: string, renamed: (name: string) => void): void {
+export function editName(button: HTMLElement, name: string, renamed: (name: string) => void, ended = () => {}): void {
   const field = make("input", { type: "text", value: name, maxLength: 120, "aria-label": "Name of the scene" });
   let isDone = false;
   const end = (isTaken: boolean) => {
@@ -47,6 +47,7 @@ export function editName(button: HTMLElement, name: string, renamed: (name: stri
     isDone = true;
     field.replaceWith(button);
     if (isTaken && field.value.trim() && field.value.trim() !== name) renamed(field.value);
+    ended();
   };
   field.onblur = () => end(true);
   field.onkeydown = (event) => {

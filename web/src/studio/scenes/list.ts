@@ -31,6 +31,8 @@ class SceneList {
   #list = make("ul", { className: "posters scenes" });
   #deleted = make("details", { className: "deleted", hidden: true });
   #dialog: HTMLDialogElement;
+  /** The records that the list shows. */
+  #shown = "";
 
   constructor(
     readonly studio: Studio,
@@ -58,8 +60,11 @@ class SceneList {
   /** Shows the scenes as they are now; the focus stays at the scene that had it. */
   async fill(): Promise<void> {
     const [all, taken] = await Promise.all([this.scenes.all(), this.scenes.locks.taken()]);
-    // A name that is typed now is not taken away.
-    if (this.#list.querySelector("input")) return;
+    // A name that is typed now is not taken away, nor a menu that is open.
+    if (this.#list.querySelector("input, .menu[open]")) return;
+    const shown = JSON.stringify(all.map(({ files: _, ...one }) => [one, taken.has(one.id)]));
+    if (shown === this.#shown) return;
+    this.#shown = shown;
     const focused = (document.activeElement as HTMLElement | null)?.closest<HTMLElement>("[data-scene]")?.dataset["scene"];
     const here = all.filter(({ deleted }) => deleted === null);
     this.#list.replaceChildren(...here.map((scene) => this.#card(scene, taken.has(scene.id))));
@@ -115,7 +120,7 @@ class SceneList {
       make(
         "div",
         {},
-        item("Rename", () => editName(title, name, renamed)),
+        item("Rename", () => editName(title, name, renamed, () => void this.fill())),
         item("Duplicate", () => void this.scenes.duplicate(id)),
         item("Versions", () => void openVersions(this.studio, scene)),
         item("Save as a file", () => saveScene(scene)),
@@ -128,6 +133,7 @@ class SceneList {
       menu.open = false;
       summary.focus();
     };
+    menu.addEventListener("toggle", () => !menu.open && void this.fill());
     menu.addEventListener("focusout", ({ relatedTarget }) => {
       if (!menu.contains(relatedTarget as Node | null)) menu.open = false;
     });

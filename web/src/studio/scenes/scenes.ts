@@ -171,10 +171,11 @@ export class Scenes implements Keeping {
     if (isKept && isSame && !why && !this.store.isMissing) return;
     if (!isKept) mine.name = r.uniqueName(record.name, await this.#names());
     const scene = await this.store.write(record.id, (old, last) => {
-      const { name, thumb, changed } = old ?? mine;
+      const { name, thumb, changed, deleted } = old ?? mine;
       const at = Math.max(Date.now(), changed + 1);
-      // A version of a text that is written already changes nothing.
-      const next = { ...mine, name, thumb, changed: isKept && isSame && old ? changed : at, deleted: null };
+      // Whoever goes on with a scene that another tab deleted wants it; a version alone changes nothing.
+      const state = isKept && isSame && old ? { changed, deleted } : { changed: at, deleted: null };
+      const next = { ...mine, name, thumb, ...state };
       const versions: r.Version[] = [];
       if (!isKept && !r.sameTexts(written, mine.files)) versions.push(r.versionOf(record, "opened", record.created));
       // Somebody else wrote meanwhile, where tabs have no locks.
