@@ -85,6 +85,14 @@ export class Looking {
     void this.#lookOn();
   }
 
+  /** The texts are others: nothing that is known of a program holds. */
+  begin(): void {
+    this.object = null;
+    this.key = null;
+    this.isStopped = false;
+    this.keepsCamera = false;
+  }
+
   /** Shows another picture of the file. */
   choose(object: string): void {
     this.object = object;
@@ -177,7 +185,7 @@ export class Looking {
   async take(answer: Response, revision: number): Promise<void> {
     const { editor, page, picture, tabs, texts } = this.studio;
     if (answer.kind === "scene") {
-      await this.showScene(answer);
+      await this.showScene(answer, revision);
     } else if (answer.kind === "numbers") {
       this.key = answer.key;
       picture.setNumbers(answer);
@@ -191,13 +199,14 @@ export class Looking {
     tabs.showMistakes(mistakes);
     if (answer.literals) editor.setLiterals(answer.literals);
     tabs.emitAgain();
+    if (!mistakes.length) this.studio.scenes?.pictured();
     if (!mistakes.length && this.keepsCamera) {
       this.keepsCamera = false;
       picture.player?.resetCamera();
     }
   }
 
-  async showScene(answer: SceneFound): Promise<void> {
+  async showScene(answer: SceneFound, revision = this.studio.texts.revision): Promise<void> {
     this.key = answer.key;
     if (answer.shapes) this.makers = new Set(answer.shapes.map(({ file, line }) => `${file}:${line}`));
     const { objects } = this.studio.page;
@@ -206,7 +215,7 @@ export class Looking {
     if (this.object) objects.value = this.object;
     await this.studio.picture.show(answer.payload);
     this.studio.commands.refresh();
-    this.studio.opening.takeShared();
+    this.studio.opening.takePose(revision);
   }
 
   // The code is written
