@@ -118,6 +118,7 @@ sweep-meshes: $(VENV)/.setup-test
 
 sweep-keeping: $(VENV)/.setup-test
 	$(BIN)/python -m tests.editor.keeping_sequences $(SEQUENCES) $(or $(SEED),0)
+	$(BIN)/python -m tests.editor.keeping_in_browser $$(($(SEQUENCES) / 15)) $(or $(SEED),0)
 
 site: $(VENV)/.setup-test web/node_modules/.ready
 	$(BIN)/python tools/build_site.py

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
-import sys
 
 import pytest
 
+from tests.accessibility import needs_axe, violations
 from tests.browser import kept_page
+from tests.editor.keeping_in_browser import end, start
 from tests.editor.studio_page import DESK, IDLE, SCENE, SLOW_MS, studio
 
 pytest.importorskip("websockets")
@@ -18,21 +18,13 @@ BAR = "() => document.querySelector('.state-bar')"
 NO_BAR = "() => !document.querySelector('.state-bar')"
 STARTED = "() => window.studio?.editor.name"
 KEPT = "() => !sessionStorage.getItem('distal:unsent')"
-SERVER = """
-import sys
-from pathlib import Path
-from distal.editor.local.files import SceneFiles
-from distal.editor.local.server import StudioServer
-server = StudioServer(SceneFiles(Path(sys.argv[1])), limit=60.0)
-print(server.address, flush=True)
-server.serve()
-"""
 
 
 def press(app, name):
     app.page.get_by_role("button", name=name, exact=True).click()
 
 
+@needs_axe
 def test_a_conflict_stays_until_a_person_has_chosen(tmp_path):
     with studio(tmp_path) as app:
         app.page.evaluate("() => studio.editor.goTo(1)")
@@ -51,6 +43,7 @@ def test_a_conflict_stays_until_a_person_has_chosen(tmp_path):
             dialog = app.page.locator("dialog.conflict")
             dialog.wait_for()
             assert "# theirs" in dialog.inner_text()
+            assert violations(app.page) == []
             assert "# mine" in dialog.inner_text()
             app.page.keyboard.press("Escape") if key == "Escape" else press(app, key)
             assert app.file.read_text() == theirs
@@ -86,6 +79,7 @@ def test_a_conflict_stays_until_a_person_has_chosen(tmp_path):
         assert kinds[:3] == ["saved here", "saved by another program", "saved by another program"]
         entries.nth(1).click()
         app.page.locator(".version", has_text="# newer").wait_for()
+        assert violations(app.page) == []
         press(app, "Put it into the page")
         assert app.text == newer
         app.page.evaluate("() => studio.editor.view.focus()")
@@ -184,18 +178,13 @@ def started(tmp_path):
     """Starts servers as processes of their own; gives the process and its address."""
     running = []
 
-    def start():
-        command = [sys.executable, "-c", SERVER, str(tmp_path / "scene.py")]
-        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-        server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment)
-        running.append(server)
-        return server, server.stdout.readline().strip()
+    def begin():
+        running.append(start(tmp_path / "scene.py"))
+        return running[-1]
 
-    yield start
-    for server in running:
-        server.kill()
-        server.wait()
-        server.stdout.close()
+    yield begin
+    for server, _ in running:
+        end(server)
 
 
 def test_unsaved_text_is_there_after_the_server_was_killed(tmp_path, started):

@@ -15,7 +15,7 @@ from distal.editor.local.drafts import Drafts
 from distal.editor.local.files import SceneFiles
 from distal.editor.local.keeping import TabKeeping
 from distal.editor.local.tab import StudioTab
-from distal.editor.local.versions import MOST, RECENT, Version, Versions, sweep, to_remove
+from distal.editor.local.versions import MOST, RECENT, FileVersion, FileVersions, sweep, to_remove
 from distal.editor.messages import DraftRequest, HelloRequest, VersionRequest, VersionsRequest
 from distal.file_writer import digest_of
 from tests.editor import keeping_sequences
@@ -358,8 +358,8 @@ def test_a_save_is_told_to_the_other_tabs_with_its_order(folder):
 # Versions
 
 
-def version(at: datetime, why: str = "saved", size: int = 10) -> Version:
-    return Version(Path("x"), at.timestamp(), why, "d", size)
+def version(at: datetime, why: str = "saved", size: int = 10) -> FileVersion:
+    return FileVersion(Path("x"), at.timestamp(), why, "d", size)
 
 
 def kept(ages, why="saved"):
@@ -403,7 +403,7 @@ def test_bytes_are_bounded_and_the_newest_stays():
 
 def test_a_text_is_one_version_and_becomes_the_newest(tmp_path):
     clock = Clock()
-    versions = Versions(tmp_path, clock)
+    versions = FileVersions(tmp_path, clock)
     for text in (b"a\n", b"b\n", b"a\n", b"a\n", b"  \n"):
         versions.keep("scene.py", text, "other")
         clock.now += 1
@@ -413,7 +413,9 @@ def test_a_text_is_one_version_and_becomes_the_newest(tmp_path):
 def test_all_folders_together_are_bounded(tmp_path):
     clock = Clock()
     for number in range(6):
-        Versions(tmp_path / str(number % 2), clock).keep("scene.py", b"#" * (100 + number), "saved")
+        FileVersions(tmp_path / str(number % 2), clock).keep(
+            "scene.py", b"#" * (100 + number), "saved"
+        )
         clock.now += 1
     sweep(tmp_path, 320)
     left = sorted(path.stat().st_size for path in tmp_path.glob("*/*/versions/*.py"))

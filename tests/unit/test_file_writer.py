@@ -1,6 +1,7 @@
 """One way to write a file: whole or untouched, whoever interrupts, and nobody's text is lost."""
 
 import errno
+import fcntl
 import os
 import resource
 import signal
@@ -211,8 +212,9 @@ def until(step):
     count = 0
     def traced(frame, event, _):
         nonlocal count
-        if not frame.f_code.co_filename.startswith(package):
-            return None
+        file = frame.f_code.co_filename
+        if not file.startswith(package) or file.endswith("destinations.py"):
+            return None  # what changes nothing
         count += event == "line"
         if count == step:
             os.kill(os.getpid(), signal.SIGKILL)
@@ -253,7 +255,7 @@ def test_process_killed_at_any_line_leaves_a_whole_file_and_the_next_cleans(tmp_
     command = [sys.executable, "-c", KILLS, str(tmp_path), sort]
     result = subprocess.run(command, capture_output=True, text=True)
     assert result.returncode == 0, result.stdout + result.stderr
-    assert int(result.stdout) > 100  # lines
+    assert int(result.stdout) > 80  # lines
 
 
 # The mode and the owner
@@ -531,7 +533,7 @@ def test_working_folder_that_is_gone_is_one_line(tmp_path, monkeypatch):
     (tmp_path / "gone").mkdir()
     monkeypatch.chdir(tmp_path / "gone")
     (tmp_path / "gone").rmdir()
-    with pytest.raises(SaveError, match=r"^cannot write a: No such file or directory$"):
+    with pytest.raises(SaveError, match=r"^cannot write a: the working folder is gone$"):
         write(Path("a"))
 
 
@@ -589,14 +591,28 @@ def slowly(path):
 
     def go_on():
         for part in (b"t", b"hei", b"rs"):
-            time.sleep(0.02)
+            time.sleep(0.1 if hasattr(fcntl, "F_SETLEASE") else 0.01)
             file.write(part)
         file.close()
 
     threading.Thread(target=go_on).start()
 
 
-@pytest.mark.parametrize("how", [renaming, writing_in_place, slowly])
+def later(path):
+    """Open the file to change it, and go on later."""
+    if not hasattr(fcntl, "F_SETLEASE"):
+        pytest.skip("nothing tells that a file is open")
+    file = path.open("r+b", buffering=0)
+
+    def go_on():
+        time.sleep(0.1)
+        file.write(b"theirs")
+        file.close()
+
+    threading.Thread(target=go_on).start()
+
+
+@pytest.mark.parametrize("how", [renaming, writing_in_place, slowly, later])
 @pytest.mark.parametrize("moment", ["exchange", "link", "replace"])
 def test_save_of_another_program_in_our_last_moment_is_returned(tmp_path, monkeypatch, how, moment):
     path = tmp_path / "a"
@@ -672,6 +688,62 @@ def test_what_cannot_be_read_is_put_back(tmp_path, monkeypatch, make):
         save(path, b"new", expected=digest_of(b"old"))
     assert os.lstat(path).st_ino == calls[0]
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_interrupted_look_at_what_was_replaced_puts_it_back(tmp_path, monkeypatch, system):
+    def interrupted(_):
+        raise KeyboardInterrupt
+
+    path = tmp_path / "a"
+    path.write_bytes(b"old")
+    monkeypatch.setattr(writing, "is_being_written", interrupted)
+    if system == "neither":
+        return  # nothing is kept that could be looked at
+    with pytest.raises(KeyboardInterrupt):
+        save(path, b"new", expected=digest_of(b"old"))
+    assert path.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_failed_rename_leaves_no_second_name(tmp_path, monkeypatch):
+    def refused(*_):
+        raise OSError(errno.EPERM, "Operation not permitted")
+
+    path = tmp_path / "a"
+    path.write_bytes(b"old")
+    monkeypatch.setattr(writing, "exchange", lambda *_: False)
+    monkeypatch.setattr(os, "replace", refused)
+    with pytest.raises(SaveError, match=r"a: Operation not permitted$"):
+        save(path, b"new", expected=digest_of(b"old"))
+    assert list(tmp_path.iterdir()) == [path]
+    assert path.stat().st_nlink == 1
+
+
+def test_second_name_of_a_save_is_no_hard_link_for_another(tmp_path, monkeypatch):
+    path = tmp_path / "a"
+    path.write_bytes(b"old")
+    errors = []
+
+    def other():
+        try:
+            save(path, b"other", expected=digest_of(b"old"))
+        except SaveError as error:
+            errors.append(type(error))
+
+    threads = [threading.Thread(target=other)]
+
+    def linked(*arguments):
+        link(*arguments)
+        threads[0].start()
+        time.sleep(0.05)
+
+    link = os.link
+    monkeypatch.setattr(writing, "exchange", lambda *_: False)
+    monkeypatch.setattr(os, "link", linked)
+    save(path, b"new", expected=digest_of(b"old"))
+    threads[0].join()
+    assert errors == [ChangedError]
+    assert path.read_bytes() == b"new"
 
 
 def test_new_file_takes_no_name_that_is_taken(tmp_path, system):

@@ -162,8 +162,12 @@ def _followed(path: Path) -> Path:
     if os.name == "nt":
         return Path(os.path.realpath(path))
     here, links = "/", 0
-    parts = f"{os.getcwd()}/{path}".split("/") if not path.is_absolute() else str(path).split("/")
-    rest = parts[::-1]
+    rest = str(path).split("/")[::-1]
+    if not path.is_absolute():
+        try:
+            rest += os.getcwd().split("/")[::-1]
+        except FileNotFoundError:
+            raise SaveError(f"cannot write {path}: the working folder is gone") from None
     while rest:
         part = rest.pop()
         if part in ("", "."):

@@ -11,7 +11,6 @@ import hashlib
 import os
 import shutil
 import stat
-import time
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -20,6 +19,7 @@ from enum import Enum
 from pathlib import Path
 from typing import BinaryIO, Final, Literal
 
+from distal.file_writer.at_rest import is_being_written, wait_until_at_rest
 from distal.file_writer.destinations import (
     ChangedError,
     LinkedError,
@@ -37,9 +37,6 @@ from distal.file_writer.temporary import create, remove_leftovers, temporary_pat
 _CANNOT_FLUSH: Final = (errno.EINVAL, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS)
 _KEPT_ATTRIBUTES: Final = ("user.", "system.posix_acl_access")
 _LARGEST_COMPARED: Final = 2**28  # bytes; a file that a person edits is far smaller
-# Another program that writes in place may not be done when its file is replaced.
-_AT_REST_S: Final = 0.05
-_LONGEST_REST_S: Final = 2.0
 
 
 class Unchecked(Enum):
@@ -103,8 +100,6 @@ def save(
                 _checked(path, target, expected)
                 _write_into(target, data)
             return SavedBytes(digest)
-        if expected is not ANY and expected:
-            _check_names(path, target)
         with _temporary(target) as (temporary, file):
             file.write(data)
             _finish(file, target)
@@ -299,6 +294,7 @@ def _put(
 
     Raises:
         ChangedError: The target is not what is expected.
+        LinkedError: It has several names, and ``expected`` is a digest.
         OSError: The file system reports an error.
     """
     if expected is ANY:
@@ -318,11 +314,16 @@ def _put(
             _checked(path, target, expected)
             raise
         return None
-    replaced: Path | None = temporary
-    if not exchange(temporary, target):
-        replaced = _kept_link(target)
+    _check_names(path, target)
+    if exchange(temporary, target):
+        return _other(path, temporary, target, expected)
+    backup = _kept_link(target)
+    try:
         os.replace(temporary, target)
-    return _other(path, replaced, target, expected)
+        return None if backup is None else _other(path, backup, target, expected)
+    finally:
+        if backup is not None:
+            backup.unlink(missing_ok=True)
 
 
 def _appear(path: Path, temporary: Path, target: Path) -> None:
@@ -355,33 +356,25 @@ def _kept_link(target: Path) -> Path | None:
     return backup
 
 
-def _other(path: Path, replaced: Path | None, target: Path, expected: str) -> bytes | None:
-    """Return the content of a replaced file, if it is not the expected one, and remove it."""
-    if replaced is None:
-        return None
+def _other(path: Path, replaced: Path, target: Path, expected: str) -> bytes | None:
+    """Return the content of a replaced file, if it is not the expected one.
+
+    If it cannot be read, or this is interrupted, it is put back: nobody has seen it.
+    """
     try:
         data = _read(replaced)
-        if data is not None and digest_of(data) != expected:
-            data = _at_rest(replaced)
-    except (OSError, SaveError):
-        if not exchange(replaced, target):  # nobody has seen it
+        if data is None:
+            return None
+        if digest_of(data) != expected or is_being_written(replaced):
+            wait_until_at_rest(replaced)
+            data = _read(replaced)
+    except BaseException as error:
+        if not exchange(replaced, target):
             os.replace(replaced, target)
-        raise SaveError(f"cannot write {path}: another program is writing it") from None
-    with suppress(OSError):
-        replaced.unlink()
+        if isinstance(error, OSError | SaveError):
+            raise SaveError(f"cannot write {path}: another program is writing it") from None
+        raise
     return None if data is None or digest_of(data) == expected else data
-
-
-def _at_rest(path: Path) -> bytes | None:
-    """Return the content of a file that another program may still be writing."""
-    until = time.monotonic() + _LONGEST_REST_S
-    data = _read(path)
-    while time.monotonic() < until:
-        time.sleep(_AT_REST_S)
-        before, data = data, _read(path)
-        if before == data:
-            break
-    return data
 
 
 def _write_into(target: Path, data: bytes) -> None:

@@ -299,7 +299,7 @@ export interface Greeted {
 }
 
 /** The draft is kept; or `unkept` says why not. */
-export interface Kept {
+export interface DraftAnswer {
   unkept: string;
 }
 
@@ -887,7 +887,7 @@ export interface Results {
   choices: RenderChoices;
   save: Saved;
   hello: Greeted;
-  draft: Kept;
+  draft: DraftAnswer;
   versions: VersionList;
   version: VersionText;
 }

@@ -7,7 +7,7 @@
 
 import { make } from "../dom";
 import { differences } from "./differences";
-import { kindOf, UNREADABLE, type FileState } from "./file_state";
+import { kindOf, NO_FILE, UNREADABLE, type FileState } from "./file_state";
 import { sheet } from "./sheets";
 import type { Studio } from "./studio";
 
@@ -70,14 +70,14 @@ export class Conflicts {
   ask(name: string, again = ""): void {
     const { page, settings, texts } = this.studio;
     const state = texts.state(name);
-    const { digest, problem, text } = state.disk;
+    const { digest, text } = state.disk;
     if (digest === UNREADABLE) {
-      return page.tell(`${name} is not saved: what is there now ${problem}.`, ["Close", () => {}]);
+      return page.tell(`${name} is not saved: what is there now ${whatIs(state)}.`, ["Close", () => {}]);
     }
     const buttons = this.#choices(name, digest, text);
     const about = text === null ? explained(digest) : "Nothing is overwritten yet. The text that you leave is kept among the versions.";
     const dialog = sheet(
-      text === null ? `${name} ${problem}` : `${name} is another text on the disk`,
+      text === null ? `${name} ${whatIs(state)}` : `${name} is another text on the disk`,
       make("p", { role: "status" }, `${again}${about}`),
       ...(text === null ? [] : [this.#legend(), differences(text, state.text, "The file's text", settings.nonce)]),
       make("div", { className: "choices" }, ...buttons),
@@ -102,7 +102,7 @@ export class Conflicts {
       };
       return button;
     };
-    const overwrite = choice(digest === "" ? "Write it again" : "Overwrite the file", () => {
+    const overwrite = choice(digest === NO_FILE ? "Write it again" : "Overwrite the file", () => {
       this.#keep(name, digest);
       void files.save();
     });
@@ -132,14 +132,21 @@ export class Conflicts {
   }
 }
 
+/** What is wrong with what the disk has; nothing where it has a text. */
+function whatIs({ disk }: FileState): string {
+  return disk.problem || (disk.digest === NO_FILE ? "is not on the disk" : "");
+}
+
 function sentence(name: string, state: FileState): string {
-  const { digest, problem } = state.disk;
-  if (digest === UNREADABLE) return `${name} ${problem}. Your text is here; it can be saved once that is repaired.`;
-  if (problem || digest === "") return `${name} ${problem || "is not on the disk"}. Its text is still here.`;
+  const problem = whatIs(state);
+  if (state.disk.digest === UNREADABLE) {
+    return `${name} ${problem}. Your text is here; it can be saved once that is repaired.`;
+  }
+  if (problem) return `${name} ${problem}. Its text is still here.`;
   return `${name} was changed by another program or tab; your text is still here.`;
 }
 
 function explained(digest: string): string {
-  if (digest === "") return "Its text is still here, and can be written again.";
+  if (digest === NO_FILE) return "Its text is still here, and can be written again.";
   return "What is there stays among the versions if you overwrite it.";
 }

@@ -265,9 +265,10 @@ export class Looking {
   }
 
   connected(isOpen: boolean): void {
-    if (isOpen) return;
+    const { page, turning } = this.studio;
+    if (isOpen) return page.tell(null);
     this.ready = null;
-    this.studio.turning.drop();
+    turning.drop();
   }
 }
 

@@ -13,6 +13,7 @@ import json
 import os
 import re
 import secrets
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -20,7 +21,7 @@ from pathlib import Path
 from typing import Final
 
 from distal.editor.local.state_folder import state_folder, write_private
-from distal.editor.local.versions import Versions, Why, sweep
+from distal.editor.local.versions import FileVersions, Why, sweep
 from distal.file_writer.locks import is_over, process_name
 from distal.forking import new_lock
 
@@ -77,7 +78,7 @@ class Drafts:
     def __init__(self, root: Path, folder: Path, clock: Callable[[], float] = time.time) -> None:
         self.root = root
         self._folder = root / hashlib.sha256(os.fsencode(folder)).hexdigest()
-        self.versions = Versions(self._folder, clock)
+        self.versions = FileVersions(self._folder, clock)
         self._scene_folder, self._clock = folder, clock
         self._server = secrets.token_hex(4)
         _servers.add(self._server)
@@ -93,7 +94,8 @@ class Drafts:
             PackageError: ``platformdirs`` is not installed.
         """
         root = state_folder() / "drafts"
-        sweep(root)
+        # Thousands of files, perhaps: the studio does not wait for them.
+        threading.Thread(target=sweep, args=(root,), daemon=True).start()
         return cls(root, folder)
 
     def reason(self, error: OSError) -> str:

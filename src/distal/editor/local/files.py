@@ -25,7 +25,7 @@ from distal.forking import new_lock
 
 
 @dataclass(frozen=True, slots=True)
-class _Known:
+class _FileState:
     """What is known of a file.
 
     Attributes:
@@ -37,7 +37,7 @@ class _Known:
     now: SourceFile
 
     @classmethod
-    def of(cls, file: SourceFile) -> _Known:
+    def of(cls, file: SourceFile) -> _FileState:
         return cls(file, file)
 
     @property
@@ -66,7 +66,7 @@ class SceneFiles:
         self._order = 0
         self._unsaved = dict(unsaved or {})
         self._known = {
-            name: _Known.of(SourceFile(text, NO_FILE)) for name, text in self._unsaved.items()
+            name: _FileState.of(SourceFile(text, NO_FILE)) for name, text in self._unsaved.items()
         }
         for name, now in self._seen():
             if now.problem and now.digest != NO_FILE:
@@ -74,13 +74,13 @@ class SceneFiles:
             if now.problem and name not in self._known:
                 raise LoadError(f"'{path.with_name(name)}' cannot be read: {now.problem}")
             if not now.problem:
-                self._known[name] = _Known.of(now)
+                self._known[name] = _FileState.of(now)
         self._told = self._states()
 
     # Reading
 
     def read(self) -> Changed | None:
-        """Read the files again; return what differs from what was told, or None.
+        """Read the files again; return what has changed since the last call, or None.
 
         Of a file that is gone, or has no text, the last text stays.
         """
@@ -105,7 +105,7 @@ class SceneFiles:
             new = [name for name in names if name not in self._known]
             for name in new:
                 now = self._file(name)
-                self._known[name] = _Known(SourceFile("", NO_FILE) if now.problem else now, now)
+                self._known[name] = _FileState(SourceFile("", NO_FILE) if now.problem else now, now)
                 self._keep(name, now.data, "opened")
             self._told.update({name: self._known[name].state for name in new})
             return self._message(new) if new else None
@@ -149,12 +149,12 @@ class SceneFiles:
         """Note what is on the disk now."""
         known = self._known.get(name)
         if known is None:
-            known = _Known.of(SourceFile("", NO_FILE))
+            known = _FileState.of(SourceFile("", NO_FILE))
         if now.digest == NO_FILE and known.last.digest == NO_FILE:
             return  # a new file, still
         if now.digest == NO_FILE:
             now = SourceFile("", NO_FILE, problem=self._fate(known.last))
-        changed = _Known(known.last if now.problem else now, now)
+        changed = _FileState(known.last if now.problem else now, now)
         if name in self._known and changed.state == known.state:
             return
         self._known[name] = changed

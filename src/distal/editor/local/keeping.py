@@ -11,10 +11,10 @@ from distal.editor.local.files import SceneFiles, version_text
 from distal.editor.local.source_file import LONGEST_FILE
 from distal.editor.messages import (
     Answer,
+    DraftAnswer,
     DraftRequest,
     Greeted,
     HelloRequest,
-    Kept,
     Message,
     Mistake,
     Mistakes,
@@ -60,7 +60,7 @@ class TabKeeping:
         if drafts is not None and self._tab:
             drafts.left(self, self._tab)
 
-    def _result(self, request: Request) -> Greeted | Kept | VersionList | VersionText:
+    def _result(self, request: Request) -> Greeted | DraftAnswer | VersionList | VersionText:
         drafts = self._files.drafts
         if isinstance(request, HelloRequest):
             return self._greeted(drafts, request)
@@ -99,21 +99,21 @@ class TabKeeping:
         texts = {n: UnsavedText(text=draft.text, digest=draft.base) for n, draft in offered.items()}
         return Greeted(tab=tab, drafts=texts, others=tuple(others), unkept=unkept)
 
-    def _kept(self, drafts: Drafts | None, request: DraftRequest) -> Kept:
+    def _kept(self, drafts: Drafts | None, request: DraftRequest) -> DraftAnswer:
         if drafts is None:
-            return Kept(unkept=_NOWHERE)
+            return DraftAnswer(unkept=_NOWHERE)
         self._tab = self._tab or drafts.entered(self)
         name, text = request.file, request.text
         try:
             if text is None:
                 drafts.drop(self._tab, name, self._files.text_of(name))
             elif len(text) > LONGEST_FILE:
-                return Kept(unkept=f"it has more than {LONGEST_FILE:,} characters")
+                return DraftAnswer(unkept=f"it has more than {LONGEST_FILE:,} characters")
             else:
                 drafts.put(self._tab, name, text, request.digest)
         except OSError as error:
-            return Kept(unkept=drafts.reason(error))
-        return Kept()
+            return DraftAnswer(unkept=drafts.reason(error))
+        return DraftAnswer()
 
 
 def refusal(id: int, revision: int, text: str) -> Mistakes:

@@ -35,7 +35,7 @@ _HOUR_S: Final = 3600.0
 
 
 @dataclass(frozen=True, slots=True)
-class Version:
+class FileVersion:
     """A version of a file.
 
     Attributes:
@@ -53,7 +53,7 @@ class Version:
     size: int
 
     @classmethod
-    def of(cls, path: Path) -> Version | None:
+    def of(cls, path: Path) -> FileVersion | None:
         """Return the version in a file; None if it is none, or gone."""
         parts = _NAME.fullmatch(path.name)
         if parts is None:
@@ -65,7 +65,7 @@ class Version:
             return None
 
 
-class Versions:
+class FileVersions:
     """The versions of the files of one folder.
 
     Args:
@@ -98,10 +98,10 @@ class Versions:
             with contextlib.suppress(OSError):
                 version.path.unlink()
 
-    def all(self, name: str) -> list[Version]:
+    def all(self, name: str) -> list[FileVersion]:
         """Return the versions of a file, the newest first."""
         try:
-            found = [Version.of(path) for path in (self._folder / name / "versions").iterdir()]
+            found = [FileVersion.of(path) for path in (self._folder / name / "versions").iterdir()]
         except OSError:
             return []
         return sorted(filter(None, found), key=lambda one: one.path.name, reverse=True)
@@ -122,13 +122,13 @@ class Versions:
         raise FileNotFoundError(f"there is no version '{version[:60]}'")
 
 
-def to_remove(versions: Sequence[Version]) -> list[Version]:
+def to_remove(versions: Sequence[FileVersion]) -> list[FileVersion]:
     """Return the versions that go, so that number and bytes are within their limits.
 
     Args:
         versions: Those of a file, the newest first.
     """
-    removed: list[Version] = []
+    removed: list[FileVersion] = []
     left = list(versions)
     while len(left) > MOST or (len(left) > 1 and sum(v.size for v in left) > MOST_BYTES):
         least = _least(left)
@@ -137,14 +137,14 @@ def to_remove(versions: Sequence[Version]) -> list[Version]:
     return removed
 
 
-def _least(versions: Sequence[Version]) -> Version:
+def _least(versions: Sequence[FileVersion]) -> FileVersion:
     """Return the version that is missed least.
 
     That is the oldest one that has a newer one in its hour, or of those before the last day in its
     day; texts that were only typed go before those that were on the disk.
     """
     seen: set[tuple[str, int]] = set()
-    spare: list[Version] = []
+    spare: list[FileVersion] = []
     newest = versions[0].at
     for number, version in enumerate(versions):
         is_of_today = newest - version.at < 24 * _HOUR_S
@@ -159,7 +159,7 @@ def _least(versions: Sequence[Version]) -> Version:
 
 def sweep(root: Path, most: int = MOST_BYTES_IN_ALL) -> None:
     """Remove the oldest versions of all folders until they have no more than some bytes."""
-    found = [Version.of(path) for path in root.glob("*/*/versions/*.py")]
+    found = [FileVersion.of(path) for path in root.glob("*/*/versions/*.py")]
     versions = sorted(filter(None, found), key=lambda one: one.path.name)
     size = sum(version.size for version in versions)
     for version in versions:

@@ -13,10 +13,10 @@ from distal.editor.messages.records import Change, Value
 from distal.editor.messages.results import (
     Checked,
     Counting,
+    DraftAnswer,
     EmittedText,
     ExportedFile,
     Greeted,
-    Kept,
     LineTiming,
     Planned,
     ProbeResult,
@@ -268,7 +268,7 @@ class HelloRequest(AppRequest):
     is_new: bool = True
 
 
-@message("draft", Kept)
+@message("draft", DraftAnswer)
 class DraftRequest(AppRequest):
     """Keep an unsaved text (local only; the server answers).
 

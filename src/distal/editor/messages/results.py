@@ -184,7 +184,7 @@ class Greeted:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Kept:
+class DraftAnswer:
     """The draft is kept; or ``unkept`` says why not."""
 
     unkept: str = ""
@@ -304,7 +304,7 @@ Result: TypeAlias = (
     | Rendered
     | Saved
     | Greeted
-    | Kept
+    | DraftAnswer
     | VersionList
     | VersionText
 )  # in TypeScript, the type that `Results` has for the kind of the request
