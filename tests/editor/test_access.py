@@ -168,19 +168,29 @@ def test_the_end_of_the_server_waits_for_nobody(tmp_path):
 # Pages that are not admitted
 
 
-def test_pages_that_are_not_admitted_have_few_places_for_a_short_time(server, monkeypatch):
+def test_pages_that_are_not_admitted_have_few_places(server, monkeypatch):
+    monkeypatch.setattr(serving, "ADMISSION_S", 600.0)
     secret = secret_of(server)
-    with contextlib.ExitStack() as stack:
-        tab = stack.enter_context(connected(server, secret))
+    with connected(server, secret) as tab, contextlib.ExitStack() as stack:
         until(tab, "ready")
-        monkeypatch.setattr(serving, "ADMISSION_S", 1.0)
-        strangers = [stack.enter_context(opened(server)) for _ in range(serving.MOST_WAITING)]
-        assert closing_code(stack.enter_context(opened(server))) == TRY_LATER
-        assert len(server._tabs) == 1
-        for stranger in strangers:
-            assert closing_code(stranger) == serving.REFUSED
-        again = stack.enter_context(connected(server, secret))
-        until(again, "changed")
+        for _ in range(serving.MOST_WAITING):
+            stranger = stack.enter_context(opened(server))
+        with opened(server) as one_more:
+            assert closing_code(one_more) == TRY_LATER
+        tab.send("nonsense")
+        until(tab, "mistakes", -1)
+        stranger.close()
+        assert soon(lambda: server._waiting._value == 1)
+        with connected(server, secret) as again:
+            until(again, "changed")
+
+
+def test_a_page_that_says_nothing_is_closed(server, monkeypatch):
+    monkeypatch.setattr(serving, "ADMISSION_S", 0.2)
+    with opened(server) as silent, opened(server) as half:
+        half.send(json.dumps({"nonce": "0" * 64, "by": "key"}))
+        assert closing_code(silent) == serving.REFUSED
+        assert soon(lambda: server._waiting._value == serving.MOST_WAITING)
 
 
 def test_connections_are_bounded_and_those_after_them_wait(server, monkeypatch):
