@@ -279,12 +279,11 @@ export class Scenes implements Keeping {
     settings.main = record.main;
     texts.begin(record.files);
     editor.isReadOnly = false;
-    const shown = opening.show(record, isOther, payload);
+    opening.show(record, isOther, payload);
     editor.isReadOnly = !release;
     this.#await();
     if (isOther || release) for (const bar of ["reader", "earlier"]) this.bars.hide(bar);
     this.#showName();
-    await shown;
   }
 
   /** The same example or link became a scene earlier. */
