@@ -228,11 +228,18 @@ def test_a_second_tab_reads_copies_or_takes_over(address):
         assert "Another tab edits “planet” now" in bar(first, "reader").inner_text()
         edited(second, "# two\n")
         first.wait_for_function(f"() => ({TEXT})().includes('# two')")
+        # A scene that is deleted elsewhere is said, and the next change brings it back.
+        first.evaluate("() => studio.scenes.remove(studio.scenes.id)")
+        assert "was deleted in another tab" in bar(second, "deleted").inner_text()
+        edited(second, "# three\n")
+        assert texts(second)["planet"].startswith("# three\n# two\n")
+        bar(second, "deleted").wait_for(state="detached")
+        first.evaluate("(hash) => studio.opening.goTo(hash)", second.url[second.url.index("#") :])
         first.get_by_role("button", name="Edit a copy").click()
         first.wait_for_function("() => document.title === 'planet 2 · distal'")
         edited(first, "# copy\n")
-        assert texts(second)["planet"].startswith("# two\n# one\n")
-        assert texts(second)["planet 2"].startswith("# copy\n# two\n")
+        assert texts(second)["planet"].startswith("# three\n# two\n")
+        assert texts(second)["planet 2"].startswith("# copy\n# three\n")
 
 
 def test_a_frozen_tab_loses_the_scene_but_not_its_text(address):
@@ -354,6 +361,12 @@ def test_the_sheet_of_scenes(address):
         page.keyboard.type("Größe: a/b")
         page.keyboard.press("Enter")
         assert names() == ["planet 2", "Größe: a/b"]
+        # Escape closes the menu alone.
+        page.keyboard.press("Enter")
+        assert sheet.locator(".menu[open]").count() == 1
+        page.keyboard.press("Escape")
+        assert sheet.locator(".menu[open]").count() == 0
+        assert sheet.is_visible()
         assert page.title() == "Größe: a/b · distal"
         choose("planet 2", "Delete")
         assert names() == ["Größe: a/b"]

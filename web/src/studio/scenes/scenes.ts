@@ -114,7 +114,9 @@ export class Scenes implements Keeping {
     });
     // A page that the browser has held back lost its locks and connections.
     addEventListener("pageshow", ({ persisted }) => persisted && location.reload());
-    addEventListener("beforeunload", (event) => this.store.isMissing && event.preventDefault());
+    addEventListener("beforeunload", (event) => {
+      if (this.store.isMissing || (!isThere && this.#isChanged)) event.preventDefault();
+    });
   }
 
   async #takeDrafts(): Promise<void> {
@@ -150,8 +152,12 @@ export class Scenes implements Keeping {
 
   /** A person wants to keep it as it is now. */
   async save(): Promise<void> {
+    if (this.isReader) return this.#tellReader();
     await this.write("named", true);
-    if (!this.store.isMissing) this.studio.page.announcer.textContent = `Kept in this browser as ${quoted(this.name)}`;
+    const isStored = !this.isFrame && !this.store.isMissing;
+    this.studio.page.announcer.textContent = isStored
+      ? `Kept in this browser as ${quoted(this.name)}`
+      : "It is not stored: save a copy, or share a link.";
   }
 
   /** Writes the texts as they are; a reason makes a version of them; `isWanted`: also without an edit. */
@@ -188,6 +194,7 @@ export class Scenes implements Keeping {
     Object.assign(now, { record: scene, isKept: true, written: mine.files });
     if (!this.store.isMissing) forget(scene.id);
     if (!isKept) this.#becameScene(scene);
+    this.bars.hide("deleted");
     this.#tell(scene.id);
   }
 
@@ -282,7 +289,7 @@ export class Scenes implements Keeping {
     opening.show(record, isOther, payload);
     editor.isReadOnly = !release;
     this.#await();
-    if (isOther || release) for (const bar of ["reader", "earlier"]) this.bars.hide(bar);
+    if (isOther || release) for (const bar of ["reader", "earlier", "deleted"]) this.bars.hide(bar);
     this.#showName();
   }
 
@@ -303,7 +310,7 @@ export class Scenes implements Keeping {
   #showName(): void {
     const now = this.#now;
     if (!now) return;
-    this.heading.show(now.record.name, now.isKept, !now.release);
+    this.heading.show(now.record.name, now.isKept || this.isFrame, !now.release);
     document.title = `${now.record.name} · distal`;
   }
 
@@ -362,8 +369,9 @@ export class Scenes implements Keeping {
     if (id === this.id) this.studio.opening.goTo("#start");
   }
 
-  restore(id: string): Promise<void> {
-    return this.#change(id, { deleted: null });
+  async restore(id: string): Promise<void> {
+    this.bars.hide("deleted");
+    await this.#change(id, { deleted: null });
   }
 
   async #change(id: string, change: Partial<r.SceneRecord>): Promise<void> {
@@ -435,9 +443,12 @@ export class Scenes implements Keeping {
       this.#following ||= window.setTimeout(() => void this.#afterwards(() => this.#follow()), FOLLOW_MS);
       return;
     }
-    const { name } = (await this.store.scene(id)) ?? now.record;
+    const { name, deleted } = (await this.store.scene(id)) ?? now.record;
     now.record.name = name;
     this.#showName();
+    if (deleted === null) return this.bars.hide("deleted");
+    const text = `${quoted(name)} was deleted in another tab. Your next change brings it back.`;
+    this.bars.show("deleted", text, ["Bring it back", () => void this.restore(id)]);
   }
 
   /** Another tab asks for the scene: first its text is kept, then it is let go. */
