@@ -43,7 +43,7 @@ FULL = """
 """
 LINK = link_of({"files": {"ball.py": '"""A red ball."""\nscene = 1\n'}, "main": "ball.py"})
 TEXT = "() => studio.editor.view.state.doc.toString()"
-ALL = "() => studio.scenes.all()"
+ALL = "() => studio.scenes.shelf.all()"
 
 
 @contextlib.contextmanager
@@ -249,7 +249,8 @@ def test_a_frozen_tab_loses_the_scene_but_not_its_text(address):
         second = visit(made, first.url)
         # It hears nothing, and writes nothing any more.
         first.evaluate(
-            "() => { studio.scenes.locks.onNews = () => {}; studio.scenes.write = async () => {}; }"
+            "() => { const { scenes } = studio; scenes.turns.locks.onNews = () => {};"
+            " scenes.writeNow = scenes.write = async () => {}; }"
         )
         first.bring_to_front()
         first.keyboard.type("# unheard\n")

@@ -60,7 +60,7 @@ class SceneList {
 
   /** Shows the scenes as they are now; the focus stays at the scene that had it. */
   async fill(): Promise<void> {
-    const [all, taken] = await Promise.all([this.scenes.all(), this.scenes.locks.taken()]);
+    const [all, taken] = await Promise.all([this.scenes.shelf.all(), this.scenes.turns.locks.taken()]);
     // A name that is typed now is not taken away, nor a menu that is open.
     if (this.#list.querySelector("input, .menu[open]")) return;
     const shown = JSON.stringify(all.map(({ files: _, ...one }) => [one, taken.has(one.id)]));
@@ -147,9 +147,9 @@ class SceneList {
   }
 
   async #duplicate(id: string): Promise<void> {
-    const copy = await this.scenes.store.scene(await this.scenes.duplicate(id));
+    const { name } = await this.scenes.duplicate(id);
     await this.fill();
-    this.#tell(`The copy is ${quoted(copy?.name ?? "")}.`);
+    this.#tell(`The copy is ${quoted(name)}.`);
   }
 
   async #remove({ id, name }: SceneRecord): Promise<void> {
@@ -183,7 +183,7 @@ class SceneList {
 
   async #saveAll(): Promise<void> {
     await this.scenes.write();
-    const scenes = (await this.scenes.all()).filter(({ deleted }) => deleted === null);
+    const scenes = (await this.scenes.shelf.all()).filter(({ deleted }) => deleted === null);
     if (!scenes.length) return this.#tell("There is no scene to save.");
     download(new Blob([packed(scenes)], { type: "application/zip" }), "distal-scenes.zip");
     this.#tell(`${countOf(scenes.length)} saved in distal-scenes.zip.`);
@@ -194,7 +194,7 @@ class SceneList {
       const bytes = files.map(async (file) => [file.name, new Uint8Array(await file.arrayBuffer())] as [string, Uint8Array]);
       const loaded = unpacked(await Promise.all(bytes));
       const added: boolean[] = [];
-      for (const one of loaded) added.push(await this.scenes.add(one));
+      for (const one of loaded) added.push(await this.scenes.shelf.take(one));
       const fresh = added.filter(Boolean).length;
       const old = added.length - fresh;
       await this.fill();
