@@ -246,7 +246,9 @@ def test_a_broken_link_shows_the_start(address, visited, fragment):
     visited.wait_for_function(_PLAYER, timeout=SLOW_MS)
     text = visited.evaluate("() => studio.editor.view.state.doc.toString()")
     assert "A planet cut open" in text
-    assert visited.evaluate("() => studio.scenes.all()") == []  # which the next page would show
+    assert (
+        visited.evaluate("() => studio.scenes.shelf.all()") == []
+    )  # which the next page would show
 
 
 def test_a_scene_outlives_a_reload_and_it_works_offline(address):

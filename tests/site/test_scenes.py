@@ -43,7 +43,7 @@ FULL = """
 """
 LINK = link_of({"files": {"ball.py": '"""A red ball."""\nscene = 1\n'}, "main": "ball.py"})
 TEXT = "() => studio.editor.view.state.doc.toString()"
-ALL = "() => studio.scenes.all()"
+ALL = "() => studio.scenes.shelf.all()"
 
 
 @contextlib.contextmanager
@@ -228,11 +228,18 @@ def test_a_second_tab_reads_copies_or_takes_over(address):
         assert "Another tab edits “planet” now" in bar(first, "reader").inner_text()
         edited(second, "# two\n")
         first.wait_for_function(f"() => ({TEXT})().includes('# two')")
+        # A scene that is deleted elsewhere is said, and the next change brings it back.
+        first.evaluate("() => studio.scenes.remove(studio.scenes.id)")
+        assert "was deleted in another tab" in bar(second, "deleted").inner_text()
+        edited(second, "# three\n")
+        assert texts(second)["planet"].startswith("# three\n# two\n")
+        bar(second, "deleted").wait_for(state="detached")
+        first.evaluate("(hash) => studio.opening.goTo(hash)", second.url[second.url.index("#") :])
         first.get_by_role("button", name="Edit a copy").click()
         first.wait_for_function("() => document.title === 'planet 2 · distal'")
         edited(first, "# copy\n")
-        assert texts(second)["planet"].startswith("# two\n# one\n")
-        assert texts(second)["planet 2"].startswith("# copy\n# two\n")
+        assert texts(second)["planet"].startswith("# three\n# two\n")
+        assert texts(second)["planet 2"].startswith("# copy\n# three\n")
 
 
 def test_a_frozen_tab_loses_the_scene_but_not_its_text(address):
@@ -242,7 +249,8 @@ def test_a_frozen_tab_loses_the_scene_but_not_its_text(address):
         second = visit(made, first.url)
         # It hears nothing, and writes nothing any more.
         first.evaluate(
-            "() => { studio.scenes.locks.onNews = () => {}; studio.scenes.write = async () => {}; }"
+            "() => { const { scenes } = studio; scenes.turns.locks.onNews = () => {};"
+            " scenes.writeNow = scenes.write = async () => {}; }"
         )
         first.bring_to_front()
         first.keyboard.type("# unheard\n")
@@ -354,6 +362,12 @@ def test_the_sheet_of_scenes(address):
         page.keyboard.type("Größe: a/b")
         page.keyboard.press("Enter")
         assert names() == ["planet 2", "Größe: a/b"]
+        # Escape closes the menu alone.
+        page.keyboard.press("Enter")
+        assert sheet.locator(".menu[open]").count() == 1
+        page.keyboard.press("Escape")
+        assert sheet.locator(".menu[open]").count() == 0
+        assert sheet.is_visible()
         assert page.title() == "Größe: a/b · distal"
         choose("planet 2", "Delete")
         assert names() == ["Größe: a/b"]
@@ -434,15 +448,19 @@ def test_an_address_of_a_scene_that_is_not_here_says_so(address):
 
 
 @needs_axe
-@pytest.mark.parametrize("width", [1280, 390])
-def test_sheets_and_bars_are_accessible(address, width):
-    size = {"width": width, "height": 800}
-    with visits(address, viewport=size, bypass_csp=True) as made:
+def test_sheets_and_bars_are_accessible(address):
+    with visits(address, bypass_csp=True) as made:
         first = visit(made, address)
         edited(first, "# one\n")
         page = visit(made, first.url)
-        assert bar(page, "reader").is_visible()
-        assert violations(page) == []
-        page.get_by_role("button", name="Scenes").click()
-        page.get_by_label("More for “planet”").click()
-        assert violations(page) == []
+        for width in (1280, 390):
+            page.set_viewport_size({"width": width, "height": 800})
+            assert bar(page, "reader").is_visible()
+            assert violations(page) == []
+            wide = "() => document.documentElement.scrollWidth <= innerWidth"
+            assert page.evaluate(wide), "something stands out of the page"
+            page.get_by_role("button", name="Scenes").click()
+            page.get_by_label("More for “planet”").click()
+            assert violations(page) == []
+            page.keyboard.press("Escape")
+            page.keyboard.press("Escape")

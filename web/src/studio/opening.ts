@@ -117,8 +117,8 @@ export class Opening {
 
   // The picture
 
-  /** Shows texts that have begun, and their picture; `isOther`: not those of the scene that was open. */
-  async show(record: SceneRecord, isOther: boolean, payload?: Payload): Promise<void> {
+  /** Shows texts that have begun; their picture follows. `isOther`: not those of the scene that was open. */
+  show(record: SceneRecord, isOther: boolean, payload?: Payload): void {
     const { channel, costs, editor, looking, page, picture, tabs, texts } = this.studio;
     const here = !isOther && editor.name in texts.files ? editor.name : record.main;
     tabs.show(here);
@@ -131,14 +131,19 @@ export class Opening {
       page.print("");
       this.#waiting = { pose: poseOf(record), revision: texts.revision, isReset: !!picture.player };
     }
-    if (payload) {
-      await picture.show(payload);
-      this.takePose(texts.revision);
-    } else {
-      if (record.thumb) picture.preview(record.thumb);
-      picture.isOld = isOther;
-      void channel.start?.();
-    }
+    if (payload) return void this.#draw(payload, texts.revision);
+    if (record.thumb) picture.preview(record.thumb);
+    picture.isOld = isOther;
+    void channel.start?.();
+    looking.look();
+  }
+
+  /** Draws what needs no Python, then asks for the rest. */
+  async #draw(payload: Payload, revision: number): Promise<void> {
+    const { looking, picture } = this.studio;
+    await picture.show(payload);
+    picture.isOld = false;
+    this.takePose(revision);
     looking.look();
   }
 

@@ -18,6 +18,7 @@ import { momentOf, quoted } from "./wording";
 
 /** Of more scenes there is a field to search them. */
 const FEW = 6;
+const NO_MATCH = "No scene of that name.";
 const PLACE =
   "Scenes are stored in this browser only, and some browsers clear them after a week without a visit. Save all keeps them as files.";
 
@@ -59,7 +60,7 @@ class SceneList {
 
   /** Shows the scenes as they are now; the focus stays at the scene that had it. */
   async fill(): Promise<void> {
-    const [all, taken] = await Promise.all([this.scenes.all(), this.scenes.locks.taken()]);
+    const [all, taken] = await Promise.all([this.scenes.shelf.all(), this.scenes.turns.locks.taken()]);
     // A name that is typed now is not taken away, nor a menu that is open.
     if (this.#list.querySelector("input, .menu[open]")) return;
     const shown = JSON.stringify(all.map(({ files: _, ...one }) => [one, taken.has(one.id)]));
@@ -72,15 +73,19 @@ class SceneList {
     this.#search.hidden = here.length <= FEW;
     this.#fillDeleted(all.filter(({ deleted }) => deleted !== null));
     this.#filter();
-    if (focused) this.#list.querySelector<HTMLElement>(`[data-scene="${focused}"] button`)?.focus();
+    if (focused) this.#focus(focused);
+  }
+
+  #focus(id: string): void {
+    this.#list.querySelector<HTMLElement>(`[data-scene="${id}"] summary`)?.focus();
   }
 
   #filter(): void {
     const words = this.#search.hidden ? [] : this.#search.value.toLowerCase().split(/\s+/);
     const cards = [...this.#list.querySelectorAll<HTMLElement>("[data-name]")];
     for (const card of cards) card.hidden = !words.every((word) => card.dataset["name"]!.includes(word));
-    if (cards.length && cards.every(({ hidden }) => hidden)) this.#tell("No scene of that name.");
-    else if (!this.#status.querySelector("button")) this.#tell("");
+    if (cards.length && cards.every(({ hidden }) => hidden)) this.#tell(NO_MATCH);
+    else if (this.#status.textContent === NO_MATCH) this.#tell("");
   }
 
   #tell(text: string, label = "", act = () => {}): void {
@@ -115,13 +120,14 @@ class SceneList {
       };
       return button;
     };
-    const renamed = (typed: string) => void this.scenes.rename(id, typed).then(() => this.fill());
+    const ended = () => void this.fill().then(() => this.#focus(id));
+    const renamed = (typed: string) => void this.scenes.rename(id, typed).then(ended);
     menu.append(
       make(
         "div",
         {},
-        item("Rename", () => editName(title, name, renamed, () => void this.fill())),
-        item("Duplicate", () => void this.scenes.duplicate(id)),
+        item("Rename", () => editName(title, name, renamed, ended)),
+        item("Duplicate", () => void this.#duplicate(id)),
         item("Versions", () => void openVersions(this.studio, scene)),
         item("Save as a file", () => saveScene(scene)),
         item("Delete", () => void this.#remove(scene)),
@@ -138,6 +144,12 @@ class SceneList {
       if (!menu.contains(relatedTarget as Node | null)) menu.open = false;
     });
     return menu;
+  }
+
+  async #duplicate(id: string): Promise<void> {
+    const { name } = await this.scenes.duplicate(id);
+    await this.fill();
+    this.#tell(`The copy is ${quoted(name)}.`);
   }
 
   async #remove({ id, name }: SceneRecord): Promise<void> {
@@ -171,7 +183,7 @@ class SceneList {
 
   async #saveAll(): Promise<void> {
     await this.scenes.write();
-    const scenes = (await this.scenes.all()).filter(({ deleted }) => deleted === null);
+    const scenes = (await this.scenes.shelf.all()).filter(({ deleted }) => deleted === null);
     if (!scenes.length) return this.#tell("There is no scene to save.");
     download(new Blob([packed(scenes)], { type: "application/zip" }), "distal-scenes.zip");
     this.#tell(`${countOf(scenes.length)} saved in distal-scenes.zip.`);
@@ -182,7 +194,7 @@ class SceneList {
       const bytes = files.map(async (file) => [file.name, new Uint8Array(await file.arrayBuffer())] as [string, Uint8Array]);
       const loaded = unpacked(await Promise.all(bytes));
       const added: boolean[] = [];
-      for (const one of loaded) added.push(await this.scenes.add(one));
+      for (const one of loaded) added.push(await this.scenes.shelf.take(one));
       const fresh = added.filter(Boolean).length;
       const old = added.length - fresh;
       await this.fill();

@@ -169,6 +169,13 @@ export async function digestOf(main: string, files: Texts): Promise<string> {
   return hash ? Array.from(new Uint8Array(hash), (byte) => byte.toString(16).padStart(2, "0")).join("") : "";
 }
 
+/** A scene that begins now, with no picture yet. */
+export function fresh(from: Origin, main: string, files: Texts, pose: Pose = {}): SceneRecord {
+  const now = Date.now();
+  const name = nameOf(from, main, files[main]!);
+  return { id: newId(), name, main, files, thumb: "", from, ...pose, created: now, changed: now, deleted: null };
+}
+
 export function newId(): string {
   const bytes = crypto.getRandomValues(new Uint8Array(16));
   bytes[6] = (bytes[6]! & 0x0f) | 0x40;
