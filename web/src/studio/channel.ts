@@ -12,6 +12,8 @@ export interface Channel {
   /** Makes ready for requests, where that costs something; `ready` follows. */
   start?(): Promise<void>;
   post(request: Request): void;
+  /** An answer could not be shown, though its form is right: whoever sent it is ended, where that can be. */
+  refuse?(place: string): void;
   /** False while another program may answer at the page's address; undefined where there is no server. */
   readonly isOpen?: boolean;
   /** Called with every response. */
