@@ -29,10 +29,7 @@ if "DISTAL_CACHE_DIR" not in os.environ:
     base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     os.environ["DISTAL_CACHE_DIR"] = str(Path(base) / "distal-tests")
 os.environ.setdefault("DISTAL_CACHE_MIB", "1024")
-# Locks and other state of the person.
-os.environ["XDG_STATE_HOME"] = os.environ["DISTAL_CACHE_DIR"] + "-state"
-
-# So do the person's drafts and versions; those of the tests go with the run.
+# So do the person's locks, drafts and versions; those of the tests go with the run.
 if "PYTEST_XDIST_WORKER" not in os.environ:
     STATE = tempfile.TemporaryDirectory(prefix="distal-tests-state-")
     os.environ["XDG_STATE_HOME"] = STATE.name

@@ -398,7 +398,7 @@ def page_of(context, address, condition=IDLE):
 
 REFUSED_NOTE = "() => document.querySelector('.no-access')?.textContent.includes('Press Enter')"
 REFUSED_NOTICE = "() => document.querySelector('.notice').textContent.includes('Press Enter')"
-ENDED = "() => document.querySelector('.notice').textContent.includes('server has ended')"
+ENDED = "() => document.querySelector('.state-bars').textContent.includes('server is away')"
 CONNECTED = "() => document.querySelector('.notice').hidden"
 
 

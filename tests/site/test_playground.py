@@ -1,16 +1,11 @@
-"""The playground in a browser: Python in its cell, links, loops, drafts, offline, sealed."""
+"""The playground in a browser: Python in its cell, links, loops, offline, sealed."""
 
 from __future__ import annotations
 
-import functools
-import http.server
 import os
 import re
 import socket
-import threading
 import zipfile
-from contextlib import contextmanager
-from pathlib import Path
 
 import pytest
 
@@ -19,14 +14,9 @@ from distal.editor.local.files import SceneFiles
 from distal.editor.messages import LookRequest
 from distal.editor.worker import StudioWorker
 from distal.example_files import all_examples, gallery
-from tests.browser import BrowserUnavailableError, browser
-from tests.kept_page import is_of_the_driver
-from tests.made_once import made_once
+from tests.site.served_playground import NAMES, SLOW_MS, context
 from tools.site import playground
 
-SLOW_MS = 120_000
-NAMES = ["melting", "raymarcher", "sdfray_row"]
-KEEP_FRAMES = ["coral", "spectrum"]
 # They import NumPy.
 WITH_NUMPY = frozenset(("beach", "bricks", "forest", "molecule", "ripples", "sdfray_glass"))
 # Without NumPy their parts are in no table.
@@ -34,7 +24,6 @@ WITH_TABLES = frozenset(("catalogue",))
 NO_NUMPY = "NumPy is not in the playground"
 # The whole gallery, in `make sweep`.
 COMPARED = sorted(gallery()) if os.environ.get("DISTAL_ALL_PICTURES") == "1" else NAMES
-DESK = {"viewport": {"width": 1180, "height": 640}}
 
 pytestmark = pytest.mark.skipif(
     not playground.PYODIDE.exists(), reason="pyodide is not installed: run `npm ci` in web/"
@@ -42,52 +31,6 @@ pytestmark = pytest.mark.skipif(
 
 _PLAYER = "() => document.querySelector('.picture .host')?.distal"
 _IDLE = "() => /\\d ms$/.test(document.querySelector('.work').textContent)"
-
-
-class Quiet(http.server.SimpleHTTPRequestHandler):
-    """A server of files that writes no log."""
-
-    def log_message(self, *_: object) -> None:
-        """Say nothing."""
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory) -> Path:
-    def build(made: Path) -> None:
-        playground.build(made / "playground", [*NAMES, *KEEP_FRAMES])
-
-    return made_once(tmp_path_factory, "pages-of-the-playground", build) / "playground"
-
-
-@pytest.fixture(scope="module")
-def address(folder):
-    handler = functools.partial(Quiet, directory=str(folder.parent))
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    yield f"http://127.0.0.1:{server.server_port}/playground/"
-    server.shutdown()
-    server.server_close()
-
-
-@contextmanager
-def context(origin: str, **options):
-    """A browser's context; what it asks for elsewhere, and what it complains of, is a fault."""
-    try:
-        made = browser().new_context(reduced_motion="reduce", **{**DESK, **options})
-    except BrowserUnavailableError as error:
-        pytest.skip(str(error))
-    messages: list[str] = []
-    asked: list[str] = []
-    made.on("console", lambda said: messages.append(f"{said.type}: {said.text}"))
-    made.on("weberror", lambda thrown: messages.append(f"error: {thrown.error}"))
-    made.on("request", lambda request: asked.append(request.url))
-    try:
-        yield made
-        complaints = [m for m in messages if m.startswith(("error", "warning"))]
-        assert [m for m in complaints if not is_of_the_driver(m)] == []
-        assert [u for u in asked if not u.startswith((origin, "blob:", "data:"))] == []
-    finally:
-        made.close()
 
 
 def shown(made, address: str, *, wakes: bool = True):
@@ -303,11 +246,12 @@ def test_a_broken_link_shows_the_start(address, visited, fragment):
     visited.wait_for_function(_PLAYER, timeout=SLOW_MS)
     text = visited.evaluate("() => studio.editor.view.state.doc.toString()")
     assert "A planet cut open" in text
-    kept = "() => Object.keys(localStorage).filter((key) => localStorage[key].includes('planet'))"
-    assert visited.evaluate(kept) == []  # no draft, which the next page would show
+    assert (
+        visited.evaluate("() => studio.scenes.shelf.all()") == []
+    )  # which the next page would show
 
 
-def test_a_draft_outlives_a_reload_and_it_works_offline(address):
+def test_a_scene_outlives_a_reload_and_it_works_offline(address):
     with context(address) as made:
         page = shown(made, address)
         page.evaluate("() => navigator.serviceWorker.ready.then(() => 1)")

@@ -16,6 +16,7 @@ import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from distal.cli.studio import STARTER
 from distal.editor.local.files import SceneFiles
 from distal.editor.local.server import APP, examples
 from distal.editor.messages import LookRequest, SceneFound
@@ -96,21 +97,28 @@ def _add(archive: zipfile.ZipFile, name: str, data: bytes) -> None:
 
 def opened_examples(names: Sequence[str]) -> dict[str, dict[str, object]]:
     """Return the examples with the payload of their first picture, which needs no Python then."""
-    found: dict[str, dict[str, object]] = {}
+    sources = {name: SceneFiles(all_examples()[name]) for name in dict.fromkeys(names)}
     with tempfile.TemporaryDirectory() as folder:
         worker = StudioWorker(Path(folder))
-        for number, name in enumerate(dict.fromkeys(names)):
-            files = SceneFiles(all_examples()[name])
-            texts = files.all().files
-            request = LookRequest(
-                id=number, revision=number, files=texts, main=files.main, guided=False
-            )
-            answer = worker.answers(request)[-1]
-            opened: dict[str, object] = {"main": files.main, "files": texts}
-            if isinstance(answer, SceneFound) and not answer.payload["resources"]:
-                opened["payload"] = answer.payload
-            found[name] = opened
-    return found
+        return {
+            name: _opened(worker, source.main, source.all().files)
+            for name, source in sources.items()
+        }
+
+
+def _opened(worker: StudioWorker, main: str, files: dict[str, str]) -> dict[str, object]:
+    request = LookRequest(id=1, revision=1, files=files, main=main, guided=False)
+    answer = worker.answers(request)[-1]
+    opened: dict[str, object] = {"main": main, "files": files}
+    if isinstance(answer, SceneFound) and not answer.payload["resources"]:
+        opened["payload"] = answer.payload
+    return opened
+
+
+def _starter() -> dict[str, object]:
+    """Return what a new scene begins with, as ``distal studio`` has it."""
+    with tempfile.TemporaryDirectory() as folder:
+        return _opened(StudioWorker(Path(folder)), "scene.py", {"scene.py": STARTER})
 
 
 def _page(folder: Path) -> str:
@@ -123,6 +131,7 @@ def _page(folder: Path) -> str:
         "version": __version__,
         "python": "python/",
         "start": json.loads((folder / "gallery" / f"{START}.json").read_text(encoding="utf-8")),
+        "starter": _starter(),
     }
     text = (APP / "studio.html").read_text(encoding="utf-8")
     filled = json.dumps(settings).replace("<", "\\u003c")  # inside of a script, "<" could end it

@@ -13,6 +13,8 @@ import { SCHEMES, schemeNow, useScheme } from "./appearance";
 import { openGallery } from "./gallery";
 import { dialAtCaret } from "./literals";
 import { openPalette } from "./palette";
+import { openScenes } from "./scenes/list";
+import { openVersions } from "./scenes/versions";
 import { EXPORTS, help } from "./sheets";
 import type { Studio } from "./studio";
 
@@ -87,11 +89,13 @@ function ofApp(studio: Studio): Command[] {
       icon: "M8.5 14a5.5 5.5 0 1 0 0-11 5.5 5.5 0 0 0 0 11zM12.5 12.5 17 17",
       act: () => openPalette([...studio.commands.all, ...commandsNow(studio)].filter(({ id }) => id !== "commands")),
     },
+    ...ofScenes(studio),
     {
       id: "gallery",
       text: "Open the gallery",
       button: "Gallery",
-      hint: "Open a copy of an example",
+      icon: "M3 4h14v12H3zM3 13l4-4 4 4 2.5-2.5L17 14M13 7.5h.2",
+      hint: isLocal ? "Open a copy of an example" : "Open an example as a scene of its own",
       words: "examples pictures",
       act: () => openGallery(settings.gallery, (name) => void studio.opening.open(name)),
     },
@@ -140,6 +144,43 @@ function versionsOf(studio: Studio): Command {
   };
 }
 
+function ofScenes(studio: Studio): Command[] {
+  const { opening, scenes } = studio;
+  if (!scenes || scenes.isFrame) return [];
+  return [
+    {
+      id: "scenes",
+      text: "Your scenes",
+      button: "Scenes",
+      hint: "Your scenes: open, rename, duplicate, delete, save all",
+      icon: "M3 4h6v5H3zM11 4h6v5h-6zM3 11h6v5H3zM11 11h6v5h-6z",
+      words: "list files saved open zip",
+      act: () => openScenes(studio),
+    },
+    { id: "new", text: "New scene", words: "empty file", act: () => void opening.goTo("#new") },
+    {
+      id: "fork",
+      text: "Edit a copy as a scene of your own",
+      words: "fork duplicate copy",
+      act: () => void scenes.fork(),
+    },
+    {
+      id: "rename",
+      text: "Rename the scene",
+      words: "name title",
+      act: () => scenes.heading.edit(),
+      isPossible: () => !scenes.isReader,
+    },
+    {
+      id: "versions",
+      text: "Versions of the scene",
+      words: "history restore before",
+      act: () => void openVersions(studio, scenes.record!),
+      isPossible: () => scenes.isKept,
+    },
+  ];
+}
+
 function shareOf({ sharing }: Studio): Command {
   return {
     id: "share",
@@ -156,7 +197,15 @@ function ofCode(studio: Studio): Command[] {
     act(studio.editor.view);
   };
   return [
-    { id: "run", text: "Run the code now", keys: "Mod-Enter", act: () => studio.looking.run() },
+    {
+      id: "run",
+      text: "Run the code now",
+      keys: "Mod-Enter",
+      act: () => {
+        studio.looking.run();
+        void studio.scenes?.write("run");
+      },
+    },
     {
       id: "dial",
       text: "Turn the number, color or switch at the caret",

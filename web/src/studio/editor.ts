@@ -76,6 +76,8 @@ const linked = StateField.define<DecorationSet>({
 
 export class Editor {
   readonly view: EditorView;
+  /** Whether nothing changes the texts: another tab edits them. */
+  isReadOnly = false;
   #states = new Map<string, EditorState>();
   #name = "";
   #extensions: Extension;
@@ -115,7 +117,12 @@ export class Editor {
         ...lintKeymap,
         indentWithTab,
       ]),
-      EditorView.contentAttributes.of({ "aria-label": "Code", tabindex: "0" }),
+      EditorState.changeFilter.of(() => !this.isReadOnly),
+      EditorView.contentAttributes.of(() => ({
+        "aria-label": "Code",
+        "aria-readonly": String(this.isReadOnly),
+        tabindex: "0",
+      })),
       EditorView.updateListener.of((update) => {
         const { state } = update;
         if (update.docChanged) events.typed(this.#name, state.doc.toString());
@@ -150,6 +157,15 @@ export class Editor {
     this.#name = name;
     this.view.setState(this.#states.get(name) ?? this.#fresh(text));
     this.replace(name, text);
+  }
+
+  /** Takes the states of other files for those that are there; returns these. */
+  exchange(states?: Map<string, EditorState>): Map<string, EditorState> {
+    if (this.#name) this.#states.set(this.#name, this.view.state);
+    const old = this.#states;
+    this.#states = states ?? new Map();
+    this.#name = "";
+    return old;
   }
 
   /** Gives a file another text, as one step that can be undone. */

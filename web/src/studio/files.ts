@@ -20,10 +20,8 @@ export class Files {
 
   /** How files are on the disk. */
   changed(message: Pick<Changed, "files" | "digests"> & Partial<Changed>): void {
-    if (this.#waiting && !this.studio.settings.python) return void this.#waiting.push(message);
+    if (this.#waiting) return void this.#waiting.push(message);
     this.#take(message);
-    const { browserDrafts } = this.studio;
-    if (browserDrafts) this.#restore(browserDrafts.found(Object.keys(message.files)));
     this.#refresh();
   }
 
@@ -105,17 +103,15 @@ export class Files {
 
   /** Saves the files that are not as on the disk, one save after the other. */
   save(): Promise<void> {
+    const { scenes } = this.studio;
+    if (scenes) return scenes.save();
     this.#saving = this.#saving.then(() => this.#saveAll());
     return this.#saving;
   }
 
   async #saveAll(): Promise<void> {
-    const { conflicts, editor, keeping, page, settings, tabs, texts } = this.studio;
+    const { conflicts, editor, keeping, tabs, texts } = this.studio;
     keeping.keep();
-    if (settings.python) {
-      page.announcer.textContent = "Kept in this browser";
-      return;
-    }
     // What was deleted is asked about where one sees it, and not at each save of another file.
     const isMeant = (name: string) => texts.hasOwn(name) || (texts.isChanged(name) && name === editor.name);
     for (const name of texts.names.filter(isMeant)) {

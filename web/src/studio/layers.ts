@@ -80,7 +80,7 @@ export class Layers {
 }
 
 /** Puts pixels on a canvas; their first row is the lowest. */
-function paint(still: HTMLCanvasElement, bytes: Uint8Array): void {
+export function paint(still: HTMLCanvasElement, bytes: Uint8Array): void {
   const { width, height } = still;
   const context = still.getContext("2d")!;
   const image = context.createImageData(width, height);

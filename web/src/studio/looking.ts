@@ -85,6 +85,14 @@ export class Looking {
     void this.#lookOn();
   }
 
+  /** The texts are others: nothing that is known of a program holds. */
+  begin(): void {
+    this.object = null;
+    this.key = null;
+    this.isStopped = false;
+    this.keepsCamera = false;
+  }
+
   /** Shows another picture of the file. */
   choose(object: string): void {
     this.object = object;
@@ -199,7 +207,7 @@ export class Looking {
   async #take(answer: Response, revision: number): Promise<void> {
     const { editor, page, picture, tabs, texts } = this.studio;
     if (answer.kind === "scene") {
-      await this.#show(answer);
+      await this.#show(answer, revision);
     } else if (answer.kind === "numbers") {
       picture.setNumbers(answer);
       this.key = answer.key;
@@ -213,17 +221,18 @@ export class Looking {
     tabs.showMistakes(mistakes);
     if (answer.literals) editor.setLiterals(answer.literals);
     tabs.emitAgain();
+    if (!mistakes.length) this.studio.scenes?.pictured();
     if (!mistakes.length && this.keepsCamera) {
       this.keepsCamera = false;
       picture.player?.resetCamera();
     }
   }
 
-  showScene(answer: SceneFound): Promise<void> {
-    return this.#try(() => this.#show(answer));
+  showScene(answer: SceneFound, revision = this.studio.texts.revision): Promise<void> {
+    return this.#try(() => this.#show(answer, revision));
   }
 
-  async #show(answer: SceneFound): Promise<void> {
+  async #show(answer: SceneFound, revision: number): Promise<void> {
     await this.studio.picture.show(answer.payload);
     this.key = answer.key;
     if (answer.shapes) this.makers = new Set(answer.shapes.map(({ file, line }) => `${file}:${line}`));
@@ -232,7 +241,7 @@ export class Looking {
     objects.replaceChildren(...answer.objects.map((name) => make("option", { value: name }, name)));
     if (this.object) objects.value = this.object;
     this.studio.commands.refresh();
-    this.studio.opening.takeShared();
+    this.studio.opening.takePose(revision);
   }
 
   // The code is written

@@ -110,6 +110,11 @@ export class Picture {
     this.layers.mark(this.player!.view);
   }
 
+  /** Shows what was drawn earlier, until a first picture is there. */
+  preview(address: string): void {
+    if (!this.player) this.#host.replaceChildren(make("img", { className: "preview", src: address, alt: "" }));
+  }
+
   /** Draws with other numbers; the program stays. Throws where they do not belong to it. */
   setNumbers(found: Pick<NumbersFound, "numbers" | "parameters">): void {
     const last = this.#last();

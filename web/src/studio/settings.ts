@@ -15,9 +15,10 @@ export interface Settings {
   /** Of the page's policy, for the editor's style sheet. */
   nonce: string;
   version: string;
-  /** Of the playground: the folder of Python's files, and what it begins with. */
+  /** Of the playground: the folder of Python's files, what it begins with, and what a new scene has. */
   python?: string;
   start?: Opened;
+  starter?: Opened;
 }
 
 /** A scene that is opened; its picture needs no Python where there is a payload. */

@@ -7,6 +7,8 @@
 import { make } from "../dom";
 import { linkOf, type Shared } from "./links";
 import { drawnPicture, renderPart } from "./render_form";
+import { packed } from "./scenes/archive";
+import { fileNameOf, type SceneRecord } from "./scenes/records";
 import { openShare } from "./share_sheet";
 import { EMBED, exports } from "./sheets";
 import type { Studio } from "./studio";
@@ -74,13 +76,24 @@ export class Sharing {
     if (answer?.kind !== "answer" || answer.request !== "export") return "Nobody answers.";
     const { name, media_type, text, base64, command } = answer.result;
     const data = text ?? Uint8Array.from(atob(base64 ?? ""), (letter) => letter.charCodeAt(0));
-    download(new Blob([data], { type: media_type }), name);
-    return `${name} is saved. The same: ${command}`;
+    const named = this.#named(name);
+    download(new Blob([data], { type: media_type }), named);
+    return `${named} is saved. The same: ${command}`;
   }
 
+  /** Saves a copy of the code: one file, or an archive of several. */
   saveSource(): void {
-    const { main } = this.studio.settings;
-    download(new Blob([this.studio.texts.files[main]!]), `${main.replace(/\.py$/, "")}.py`);
+    const { scenes, settings, texts } = this.studio;
+    const { main } = settings;
+    if (scenes?.record) saveScene({ ...scenes.record, files: texts.files });
+    else download(new Blob([texts.files[main]!]), `${main.replace(/\.py$/, "")}.py`);
+  }
+
+  /** A file's name, which is that of the scene instead of its main file. */
+  #named(name: string): string {
+    const { scenes, settings } = this.studio;
+    const stem = settings.main.replace(/\.py$/, "");
+    return scenes && name.startsWith(stem) ? fileNameOf(scenes.name) + name.slice(stem.length) : name;
   }
 
   /** The picture that a page shows first, as base64. */
@@ -96,7 +109,15 @@ function address(): string {
   return location.href.split(/[?#]/)[0]!;
 }
 
-function download(blob: Blob, name: string): void {
+/** Saves a scene's code as one file, or an archive of several. */
+export function saveScene(scene: SceneRecord): void {
+  const { files, main, name } = scene;
+  const isOne = Object.keys(files).length === 1;
+  const data = isOne ? files[main]! : packed([scene]);
+  download(new Blob([data]), `${fileNameOf(name)}.${isOne ? "py" : "zip"}`);
+}
+
+export function download(blob: Blob, name: string): void {
   const link = make("a", { href: URL.createObjectURL(blob), download: name });
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);

@@ -14,7 +14,6 @@ import { Client } from "./client";
 import { Conflicts } from "./conflicts";
 import { CostBar } from "./cost_bar";
 import { Commands } from "./command_keys";
-import { BrowserDrafts } from "./browser_drafts";
 import { Drafts } from "./drafts";
 import { Editor } from "./editor";
 import { Emitted } from "./emitted";
@@ -25,6 +24,7 @@ import { Looking } from "./looking";
 import { Opening } from "./opening";
 import { Page } from "./page";
 import { Picture } from "./picture";
+import { Scenes } from "./scenes/scenes";
 import type { Settings } from "./settings";
 import { Sharing } from "./sharing";
 import { Tabs } from "./tabs";
@@ -42,10 +42,11 @@ export class Studio {
   readonly conflicts = new Conflicts(this);
   readonly versions = new Versions(this);
   readonly keeping: Keeping;
-  readonly browserDrafts: BrowserDrafts | null;
   readonly tabs = new Tabs(this);
   readonly opening = new Opening(this);
   readonly sharing = new Sharing(this);
+  /** The playground's scenes; the local studio has files. */
+  readonly scenes: Scenes | null;
   readonly costs: CostBar;
   readonly commands: Commands;
   readonly client: Client;
@@ -59,13 +60,11 @@ export class Studio {
     readonly channel: Channel,
   ) {
     recallScheme();
-    const { folder, main, python } = settings;
-    // In another page it is small, and a draft of the whole playground is none of its text.
-    const isFramed = new URLSearchParams(location.search).has("embed");
-    if (isFramed) this.page.beFramed(() => this.sharing.whole());
+    const { main, python } = settings;
     const drafts = new Drafts(this);
-    this.browserDrafts = python ? new BrowserDrafts(this, isFramed ? location.href : folder) : null;
-    this.keeping = this.browserDrafts ?? drafts;
+    this.scenes = python ? new Scenes(this) : null;
+    this.keeping = this.scenes ?? drafts;
+    if (this.scenes?.isFrame) this.page.beFramed(() => this.sharing.whole());
     this.picture = this.#picture();
     this.costs = this.#costs();
     this.commands = new Commands(this);
@@ -90,6 +89,7 @@ export class Studio {
     this.page.work.after(this.jobs.chip);
     document.title = `${main} · distal`;
     if (settings.start) void this.opening.begin(settings.start);
+    if (this.scenes) return;
     for (const end of ["beforeunload", "pagehide"]) addEventListener(end, () => this.keeping.keep());
   }
 
@@ -97,7 +97,7 @@ export class Studio {
     return this.files.save();
   }
 
-  #picture(): Picture {
+    #picture(): Picture {
     const { asking, looking, page } = this;
     const picture = new Picture({
       view: () => {

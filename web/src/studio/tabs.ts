@@ -20,12 +20,13 @@ export class Tabs {
   constructor(readonly studio: Studio) {}
 
   fill(): void {
-    const { emitted, page, settings, texts } = this.studio;
+    const { emitted, page, scenes, settings, texts } = this.studio;
     const names = [...texts.names, TEXT_TAB];
     page.files.replaceChildren(
       ...names.map((name) => {
         const isHere = name === this.#now;
-        const isChanged = name !== TEXT_TAB && texts.isChanged(name);
+        // A scene of the playground is kept by itself.
+        const isChanged = !scenes && name !== TEXT_TAB && texts.isChanged(name);
         const tab = make("button", { type: "button", role: "tab" }, isChanged ? `${name} •` : name);
         tab.setAttribute("aria-selected", String(isHere));
         if (isChanged) tab.setAttribute("aria-label", `${name}, not saved`);

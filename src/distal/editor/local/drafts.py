@@ -54,16 +54,16 @@ class Draft:
     def of(cls, path: Path) -> Draft | None:
         """Return the draft in a file; None where there is none, or a damaged one."""
         try:
-            found = json.loads(path.read_bytes())
-            made = cls(found["text"], found["base"], float(found["since"]))
+            fields = json.loads(path.read_bytes())
+            draft = cls(fields["text"], fields["base"], float(fields["since"]))
         except (OSError, ValueError, TypeError, KeyError, RecursionError):
             return None
-        return made if isinstance(made.text, str) and isinstance(made.base, str) else None
+        return draft if isinstance(draft.text, str) and isinstance(draft.base, str) else None
 
     def encoded(self) -> bytes:
         """Return the draft as JSON; half a character of UTF-16 is kept, too."""
-        found = {"text": self.text, "base": self.base, "since": self.since}
-        return json.dumps(found, indent=1).encode()
+        fields = {"text": self.text, "base": self.base, "since": self.since}
+        return json.dumps(fields, indent=1).encode()
 
 
 class Drafts:
@@ -210,7 +210,7 @@ class Drafts:
 
     def _abandoned(self, tab: str, *, is_new: bool) -> dict[str, list[tuple[Path, Draft]]]:
         """Return the drafts that a tab may have, by file: its own first, then the newest."""
-        found: dict[str, list[tuple[bool, float, Path, Draft]]] = {}
+        candidates: dict[str, list[tuple[bool, float, Path, Draft]]] = {}
         for path in self._folder.glob("*/*.json"):
             parts = _NAME.fullmatch(path.name)
             draft = Draft.of(path) if parts else None
@@ -221,10 +221,12 @@ class Drafts:
             is_gone = owner not in self._tabs if is_ours else _is_over(lock_file, token, server)
             is_own = owner == tab and (is_ours or is_gone)
             if is_own or (is_gone and is_new):
-                found.setdefault(path.parent.name, []).append((is_own, draft.since, path, draft))
+                candidates.setdefault(path.parent.name, []).append(
+                    (is_own, draft.since, path, draft)
+                )
         return {
             name: [(path, draft) for _, _, path, draft in sorted(each, key=_order, reverse=True)]
-            for name, each in found.items()
+            for name, each in candidates.items()
         }
 
     def _taken(self, path: Path, own: Path) -> bool:
@@ -263,5 +265,5 @@ def _is_over(lock_file: str, token: str, server: str) -> bool:
     return is_over(lock_file, token) is not False
 
 
-def _order(found: tuple[bool, float, Path, Draft]) -> tuple[bool, float]:
-    return found[:2]
+def _order(candidate: tuple[bool, float, Path, Draft]) -> tuple[bool, float]:
+    return candidate[:2]

@@ -76,7 +76,7 @@ class SceneFiles:
                 raise LoadError(f"'{path.with_name(name)}' cannot be read: {now.problem}")
             if not now.problem:
                 self._known[name] = _FileState.of(now)
-        self._told = self._states()
+        self._reported = self._states()
 
     # Reading
 
@@ -89,8 +89,8 @@ class SceneFiles:
             for name, now in list(self._seen()):
                 self._observe(name, now)
             states = self._states()
-            changed = [name for name, state in states.items() if self._told.get(name) != state]
-            self._told = states
+            changed = [name for name, state in states.items() if self._reported.get(name) != state]
+            self._reported = states
             if not changed:
                 return None
             return self._message(changed)
@@ -108,7 +108,7 @@ class SceneFiles:
                 now = self._file(name)
                 self._known[name] = _FileState(SourceFile("", NO_FILE) if now.problem else now, now)
                 self._keep(name, now.data, "opened")
-            self._told.update({name: self._known[name].state for name in new})
+            self._reported.update({name: self._known[name].state for name in new})
             return self._message(new) if new else None
 
     @property
@@ -207,7 +207,7 @@ class SceneFiles:
                 return self._conflict(name, there, refusal=str(error))
             # Not read again: what another program has written since then would be taken for ours.
             self._observe(name, self._written(path, there, data), "saved")
-            self._told[name] = self._known[name].state
+            self._reported[name] = self._known[name].state
             other = written.other
             if other is not None:
                 self._keep(name, other, "other")

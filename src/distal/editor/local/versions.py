@@ -101,10 +101,12 @@ class FileVersions:
     def all(self, name: str) -> list[FileVersion]:
         """Return the versions of a file, the newest first."""
         try:
-            found = [FileVersion.of(path) for path in (self._folder / name / "versions").iterdir()]
+            versions = [
+                FileVersion.of(path) for path in (self._folder / name / "versions").iterdir()
+            ]
         except OSError:
             return []
-        return sorted(filter(None, found), key=lambda one: one.path.name, reverse=True)
+        return sorted(filter(None, versions), key=lambda one: one.path.name, reverse=True)
 
     def read(self, name: str, version: str) -> bytes:
         """Return the bytes of a version.
@@ -159,8 +161,8 @@ def _least(versions: Sequence[FileVersion]) -> FileVersion:
 
 def sweep(root: Path, most: int = MOST_BYTES_IN_ALL) -> None:
     """Remove the oldest versions of all folders until they have no more than some bytes."""
-    found = [FileVersion.of(path) for path in root.glob("*/*/versions/*.py")]
-    versions = sorted(filter(None, found), key=lambda one: one.path.name)
+    files = (FileVersion.of(path) for path in root.glob("*/*/versions/*.py"))
+    versions = sorted(filter(None, files), key=lambda one: one.path.name)
     size = sum(version.size for version in versions)
     for version in versions:
         if size <= most:
