@@ -21,13 +21,13 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from distal.file_writer import SaveError
 from PIL import Image
 
 import distal
 from distal.devices.resources import texels
 from distal.diagnostics import CompileError, LoadError
 from distal.editor.links import LinkError, link_of, shared_by
+from distal.file_writer import SaveError
 from distal.images import exr, jpeg, picture_files, png
 from distal.images.metadata import ReadError
 from distal.ir.types import TextureShape
