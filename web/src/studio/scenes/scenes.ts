@@ -119,7 +119,8 @@ export class Scenes implements Keeping {
   /** The page ends, or may: what is not written is left where no promise is needed. */
   #leave(): void {
     const now = this.now;
-    if (!now?.release || !this.#isChanged) return void this.write();
+    const isStored = !this.#isChanged && !this.store.isMissing;
+    if (!now?.release || isStored) return void this.write();
     leave({ scene: this.textsNow(now), base: now.record.changed, at: Date.now() });
     void this.write();
   }
@@ -154,6 +155,7 @@ export class Scenes implements Keeping {
     return this.afterwards(() => this.writeNow(why, isWanted));
   }
 
+  /** As `write`, for what is done within the queue. */
   async writeNow(why?: r.Reason, isWanted = false): Promise<void> {
     const now = this.now;
     if (this.isFrame || !now?.release) return;
@@ -181,7 +183,7 @@ export class Scenes implements Keeping {
     Object.assign(now, { record: scene, isKept: true, written: mine.files });
     if (!this.store.isMissing) forget(scene.id);
     if (!isKept) this.#becameScene(scene);
-    this.bars.hide("deleted");
+    if (scene.deleted === null) this.bars.hide("deleted");
     this.#tell(scene.id);
   }
 
@@ -198,6 +200,7 @@ export class Scenes implements Keeping {
     return !!this.now && !r.sameTexts(this.studio.texts.files, this.now.written);
   }
 
+  /** The record of a scene with the texts and the picture as they are. */
   textsNow({ record }: Current): r.SceneRecord {
     const { values: _, camera: __, time: ___, ...rest } = record;
     return { ...rest, ...this.studio.opening.pose, files: this.studio.texts.files };
@@ -241,7 +244,7 @@ export class Scenes implements Keeping {
     this.#isLeaving = true;
     await this.writeNow("typed");
     // A key that was pressed meanwhile.
-    if (this.#isChanged) await this.writeNow("typed");
+    for (let tries = 0; tries < 3 && this.#isChanged; tries++) await this.writeNow("typed");
     this.#isLeaving = false;
     const { editor, opening, settings, texts } = this.studio;
     const old = this.now;
