@@ -105,6 +105,7 @@ export class Studio {
       },
       refused: (reason) => page.tell(reason, ["Close", () => {}]),
       drawn: (text) => (page.drawn.textContent = text),
+      named: () => this.scenes?.name ?? "",
       guide: () => looking.guide(this.texts.revision),
       program: (view) => looking.program(view),
       map: () => asking.map(),

@@ -284,6 +284,9 @@ export class Scenes implements Keeping {
     if (!now) return;
     this.heading.show(now.record.name, now.isKept || this.isFrame, !now.release);
     document.title = `${now.record.name} · distal`;
+    const { player } = this.studio.picture;
+    const { name } = now.record;
+    if (player && player.payload.name !== name) player.payload = { ...player.payload, name };
   }
 
   // What is done with scenes
