@@ -12,6 +12,8 @@
 # make sweep-segments  follows 1e7 segments of rays and counts those on the wrong side of a surface
 # make sweep-meshes  meshes every solid, the printable examples and 100 random fields, and names faults;
 #                    saves the enclosure from its page at 128 cells
+# make sweep-keeping  random saves, conflicts, reloads and kills of the studio: nothing is lost
+#                    (SEQUENCES=3000 for more)
 # make parity    draws every example in every place and writes docs/parity.md
 # make mutate    changes the source in small ways and reports what no test notices:
 #                MODULES="distal/fields distal/scene" COUNT=200 SEED=7
@@ -38,6 +40,7 @@ SAMPLES ?= 40
 SEGMENTS ?= 1e7
 PROCESSES ?= 200
 TOLERANCE ?= 0.01
+SEQUENCES ?= 300
 MODULES ?= distal/fields distal/render distal/passes/fold* distal/scene
 COUNT ?= 100
 SEED ?=
@@ -47,7 +50,7 @@ SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers g
 # A worker begins with a part of the files, and so compiles few programs that another compiles too.
 UNITS = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -rfEs
 
-.PHONY: picture test test-all test-for record lint style units system bench site sweep sweep-fields sweep-threads sweep-segments sweep-meshes parity mutate versions clean
+.PHONY: picture test test-all test-for record lint style units system bench site sweep sweep-fields sweep-threads sweep-segments sweep-meshes sweep-keeping parity mutate versions clean
 .NOTPARALLEL:
 
 picture: $(VENV)/.setup-run
@@ -112,6 +115,10 @@ sweep-segments: $(VENV)/.setup-test
 sweep-meshes: $(VENV)/.setup-test
 	nice $(BIN)/python tools/sweep_meshes.py $(GROUPS) --tolerance $(TOLERANCE)
 	nice $(BIN)/python tools/sweep_page.py
+
+sweep-keeping: $(VENV)/.setup-test
+	$(BIN)/python -m tests.editor.keeping_sequences $(SEQUENCES) $(or $(SEED),0)
+	$(BIN)/python -m tests.editor.keeping_in_browser $$(($(SEQUENCES) / 15)) $(or $(SEED),0)
 
 site: $(VENV)/.setup-test web/node_modules/.ready
 	$(BIN)/python tools/build_site.py

@@ -3,6 +3,7 @@
 import gc
 import os
 import signal
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -28,6 +29,13 @@ if "DISTAL_CACHE_DIR" not in os.environ:
     base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     os.environ["DISTAL_CACHE_DIR"] = str(Path(base) / "distal-tests")
 os.environ.setdefault("DISTAL_CACHE_MIB", "1024")
+# Locks and other state of the person.
+os.environ["XDG_STATE_HOME"] = os.environ["DISTAL_CACHE_DIR"] + "-state"
+
+# So do the person's drafts and versions; those of the tests go with the run.
+if "PYTEST_XDIST_WORKER" not in os.environ:
+    STATE = tempfile.TemporaryDirectory(prefix="distal-tests-state-")
+    os.environ["XDG_STATE_HOME"] = STATE.name
 
 # LLVM generates code in half of the time without optimization, with the same bits (decision 92).
 # Tests of what compiles and compares machine code get that of the package; none waits for two.

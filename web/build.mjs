@@ -101,6 +101,7 @@ for (const [source, file, paths, edited, frames] of [
   ["src/inspect/main.ts", join(folder, "inspect_player.js"), "true", "true", "false"],
   ["src/lesson/main.ts", join(lessons, "lesson.js"), "false", "false", "false"],
   ["src/studio/main.ts", join(studio, "studio.js"), "true", "true", "true"],
+  ["src/studio/lesson_page.ts", join(studio, "lesson_page.js"), "false", "false", "false"],
 ]) {
   await build({
     absWorkingDir: here,

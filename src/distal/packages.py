@@ -79,6 +79,7 @@ PACKAGES: Final = (
     Package("manifold3d", "mesh", "meshes with fewer triangles"),
     Package("distributed", "cluster", "rendering on more than one machine"),
     Package("websockets", "studio", "the studio in a browser"),
+    Package("platformdirs", "studio", "drafts of the studio"),
 )
 _BY_MODULE: Final = {package.imported_as: package for package in PACKAGES}
 # Texts of errors that loaders and libraries raise when memory runs out; the class varies.

@@ -35,7 +35,7 @@ scene = Scene(ball | box, lights=DistantLight((1, 2, 3)), background="#123456",
 '''
 PLAYER = "() => document.querySelector('.picture .host')?.distal"
 SETTLED = "() => document.querySelector('.picture .host').distal.settled()"
-IDLE = "() => /\\d ms$/.test(document.querySelector('.work').textContent)"
+IDLE = "() => /\\d ms$/.test(document.querySelector('.work')?.textContent)"
 TEXT = "() => studio.editor.view.state.doc.toString()"
 
 
@@ -49,7 +49,8 @@ class Shown:
         try:
             self.page.wait_for_function(condition, timeout=SLOW_MS)
         except PlaywrightTimeoutError as error:
-            says = {name: self.page.locator(name).inner_text() for name in (".notice", ".work")}
+            shown = (".state-bars", ".notice", ".work")
+            says = {name: self.page.locator(name).inner_text() for name in shown}
             error.add_note(f"the app says {says}, its mistakes are {self.mistakes!r}")
             raise
 
@@ -110,7 +111,7 @@ def studio(folder: Path, text: str = SCENE, tabs: int = 1, limit: float = LIMIT_
     thread.start()
     try:
         with kept_page(reduced_motion="reduce", **{**DESK, **options}) as kept:
-            origin = server.address.split("/?")[0]
+            origin = server.address.split("/#")[0]
             pages = [kept.page, *(kept.context.new_page() for _ in range(1, tabs))]
             made = []
             for page in pages:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import http.client
+import json
 import threading
 from contextlib import contextmanager
 
@@ -11,6 +11,7 @@ import pytest
 from distal.editor.local.lesson_server import LessonServer
 from tests.browser import BrowserUnavailableError, browser
 from tests.editor.studio_page import SLOW_MS
+from tests.editor.test_local_server import admitted, asked, opened, secret_of
 
 pytest.importorskip("websockets")
 pytest.importorskip("markdown_it")
@@ -72,29 +73,33 @@ def test_a_scene_that_loops_is_ended(tmp_path):
         page.wait_for_function(f"() => ({_TOLD})().includes('does a scene run for ever?')")
 
 
-def test_only_the_lesson_is_served_and_only_to_its_own_browser(tmp_path):
+def test_only_the_lesson_is_served_and_only_to_its_own_browser(tmp_path, monkeypatch):
+    def made(_, page):
+        page.write_text("the page")
+
+    monkeypatch.setattr(LessonServer, "_mistake_of_making", made)
     (tmp_path / "lesson.md").write_text(LESSON)
     (tmp_path / "ball.py").write_text(SCENE)
     server = LessonServer(tmp_path / "lesson.md")
-    host = server.address.split("/")[2]
-
-    def asked(path, **headers):
-        connection = http.client.HTTPConnection(host, timeout=10)
-        connection.request("GET", path, headers={"Host": host, **headers})
-        response = connection.getresponse()
-        return response.status, response.headers
-
     try:
-        assert asked("/")[0] == 403
-        assert asked("/lesson")[0] == 403
-        _, headers = asked("/?" + server.address.split("/?")[1])
-        cookie = {"Cookie": headers["Set-Cookie"].split(";")[0]}
-        status, headers = asked("/", **cookie)
-        assert status == 200
-        assert "default-src 'none'" in headers["Content-Security-Policy"]
-        assert asked("/ball.py", **cookie)[0] == 404
-        assert asked("/../lesson.md", **cookie)[0] == 404
-        assert asked("/", Host="example.org", **cookie)[0] == 403
-        assert asked("/", Origin="http://example.org", **cookie)[0] == 403
+        assert "ball" not in asked(server, "/")[2].decode()
+        assert "default-src 'none'" in asked(server, "/")[1]["Content-Security-Policy"]
+        assert asked(server, "/lesson_page.js")[0] == 200
+        for path in ("/lesson", "/lesson/", "/ball.py", "/../lesson.md", "/lesson.md"):
+            assert asked(server, path)[0] == 404
+        assert asked(server, "/", Host="example.org")[0] == 403
+        assert asked(server, "/", Origin="http://example.org")[0] == 403
+        secret = secret_of(server)
+        with opened(server) as socket:
+            assert admitted(socket, secret) == {"settings": {"name": "lesson.md"}}
+            assert json.loads(socket.recv(timeout=10.0))["address"] == ""
+            server._make()
+            addresses = [json.loads(socket.recv(timeout=60.0))["address"] for _ in range(2)]
+        first = addresses[1]
+        assert addresses[0] == ""
+        assert asked(server, first)[::2] == (200, b"the page")
+        assert asked(server, first + "x")[0] == 404
+        server._make()
+        assert asked(server, first)[0] == 404  # the page has another address now
     finally:
         server.close()

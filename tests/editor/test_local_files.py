@@ -7,7 +7,9 @@ import os
 import pytest
 
 from distal.diagnostics import LoadError
-from distal.editor.local.files import SceneFiles, digest_of
+from distal.editor.local.files import SceneFiles
+from distal.editor.messages import DiskProblem
+from distal.file_writer import digest_of
 
 SCENE = "import parts\nscene = parts.ball\n"
 
@@ -80,7 +82,9 @@ def test_a_new_file_is_there_once_it_is_saved(tmp_path):
 
 def test_a_copy_does_not_hide_what_is_on_the_disk(folder):
     files = SceneFiles(folder / "scene.py", {"scene.py": "an example\n"})
-    assert files.all().files == {"scene.py": "an example\n"}
+    assert files.all().files["scene.py"] == SCENE
+    assert files.taken_unsaved() == {"scene.py": "an example\n"}
+    assert files.taken_unsaved() == {}
     assert files.save("scene.py", "an example\n", "").conflict == SCENE
     assert (folder / "scene.py").read_text() == SCENE
 
@@ -88,11 +92,15 @@ def test_a_copy_does_not_hide_what_is_on_the_disk(folder):
 def test_a_file_that_goes_keeps_its_text(folder):
     files = SceneFiles(folder / "scene.py")
     (folder / "scene.py").unlink()
+    digest = files.all().digests["scene.py"]
     changed = files.read()
     assert changed is not None
     assert changed.files == {"scene.py": SCENE}
-    assert changed.digests == {"scene.py": ""}
-    assert files.save("scene.py", SCENE, "").conflict is None
+    assert changed.digests == {"scene.py": digest}
+    assert changed.problems == {"scene.py": DiskProblem(digest="", text="was deleted")}
+    refused = files.save("scene.py", SCENE, digest)
+    assert (refused.is_saved, refused.digest, refused.problem) == (False, "", "was deleted")
+    assert files.save("scene.py", SCENE, "").is_saved
     assert (folder / "scene.py").read_text() == SCENE
 
 

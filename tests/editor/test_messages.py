@@ -111,9 +111,10 @@ def test_an_answer_has_the_result_of_its_request() -> None:
         parsed(json.dumps(message))
 
 
-def test_the_types_of_typescript_are_fresh() -> None:
-    spec = importlib.util.spec_from_file_location("gen_messages", ROOT / "tools/gen_messages.py")
+@pytest.mark.parametrize("tool", ["gen_messages", "gen_forms"])
+def test_the_types_and_forms_of_typescript_are_fresh(tool: str) -> None:
+    spec = importlib.util.spec_from_file_location(tool, ROOT / f"tools/{tool}.py")
     assert spec is not None and spec.loader is not None
     made = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(made)
-    assert made.FILE.read_text(encoding="utf-8") == made.text(), "run tools/gen_messages.py"
+    assert made.FILE.read_text(encoding="utf-8") == made.text(), f"run tools/{tool}.py"

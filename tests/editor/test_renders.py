@@ -21,7 +21,7 @@ from distal.editor.local.renders import RenderLimits, RenderQueue, placed
 from distal.editor.local.server import StudioServer
 from distal.editor.messages import ExportRequest, RenderRequest, parsed
 from distal.images.picture_files import read
-from tests.editor.test_local_server import ANSWER_S, asked, connected, cookie_of
+from tests.editor.test_local_server import ANSWER_S, asked, connected, secret_of
 from tests.editor.test_local_server import until as until_any
 
 pytest.importorskip("websockets")
@@ -104,12 +104,12 @@ def server(tmp_path, monkeypatch, request):
 
 @pytest.fixture
 def socket(server):
-    with connected(server, cookie_of(server)) as opened:
+    with connected(server, secret_of(server)) as opened:
         yield opened
 
 
-def fetched(server, cookie, result):
-    status, _, body = asked(server, result.address, Cookie=cookie)
+def fetched(server, result):
+    status, _, body = asked(server, result.address)
     assert status == 200
     assert len(body) == result.bytes
     return body
@@ -128,18 +128,19 @@ def by_command(folder, command, output, monkeypatch):
 
 
 def test_a_picture_is_the_one_of_its_command(server, tmp_path, monkeypatch):
-    folder, cookie = tmp_path / "scenes", cookie_of(server)
+    folder, secret = tmp_path / "scenes", secret_of(server)
     there = folder / "scene.png"
     there.write_bytes(b"mine")
     chosen = {"size": 0.55, "tint": [0.1, 0.5, 0.25]}
     more = {"values": chosen, "time": 0.5, "steering": MOVED, "bits": 16, "transparent": True}
-    with connected(server, cookie) as socket:
+    with connected(server, secret) as socket:
         socket.send(rendering(7, **more))
         first = until(socket, "progress", 7)
         result = until(socket, "answer", 7).result
-        data = fetched(server, cookie, result)
-        assert asked(server, result.address + "x", Cookie=cookie)[0] == 404
-        assert asked(server, result.address)[0] == 403
+        data = fetched(server, result)
+        assert asked(server, result.address + "x")[0] == 404
+        # Without its token the folder, whose name every user can see, is of no use.
+        assert asked(server, result.address.rpartition("/")[0] + "/scene.png")[0] == 404
     assert first.label == "loading"
     assert result.name == "scene.png"
     assert there.read_bytes() == b"mine"
@@ -224,9 +225,9 @@ def test_code_that_makes_no_picture_is_told(server, socket, text, reason):
 
 
 def test_renders_of_two_tabs_wait_for_each_other_and_end_with_their_tab(server, tmp_path):
-    cookie = cookie_of(server)
-    with connected(server, cookie) as second:
-        with connected(server, cookie) as first:
+    secret = secret_of(server)
+    with connected(server, secret) as second:
+        with connected(server, secret) as first:
             first.send(rendering(1, SLOW, size=[1600, 1200]))
             while until(first, "progress", 1).label != "rendering":
                 continue

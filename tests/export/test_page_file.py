@@ -25,7 +25,7 @@ from distal.export import page_programs, resources
 from distal.export.payload import name_of
 from distal.export.poster import MOST_TRIANGLE_BYTES
 from distal.export.registry import export
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.ir.types import Buffer, Texture, TextureShape
 from distal.lang import resources as lang
 from distal.triangles import decode

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 import distal
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from tests.browser import BrowserUnavailableError
 from tests.browser import browser as running_browser
 from tests.export import hosts

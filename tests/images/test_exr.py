@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.images.metadata import ReadError
 from distal.images.picture import Picture
 from distal.images.picture_files import read

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.lang.units import UNITS
 from distal.mesh.files.formats import MESH_FORMATS, OUTLINE_FORMATS, write, write_outlines
 from distal.mesh.files.parts import Finish

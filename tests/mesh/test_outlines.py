@@ -20,7 +20,7 @@ from distal import (
     Text,
 )
 from distal.devices.base import Cancelled
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.lang import floor, fract, func, length, max, mix, sin, slider, vec2
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.outlines.crossings import crossing_lines

@@ -11,7 +11,7 @@ import pytest
 
 from distal import Box, Cylinder, Plane, Scene, Sphere, brass, glass
 from distal.diagnostics import CompileError
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.mesh.scene_parts import parts_of
 
 BALL = Sphere(0.5).named("ball").paint(brass())

@@ -21,7 +21,7 @@ from distal import Box, Camera, Scene
 from distal.cli.application import application
 from distal.export.page import page, write
 from distal.export.page_options import PageOptions
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.lang.render_options import RenderOptions
 from distal.scene.section import CutPlane
 from distal.scene.viewing.viewable import viewable

@@ -14,7 +14,7 @@ import pytest
 
 from distal import PointLight, Scene, Sphere
 from distal.devices.base import Cancelled
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.images.picture_files import read
 from distal.lang.render_options import Refinement, RenderOptions
 from distal.lang.runtime_access import executor

@@ -330,15 +330,15 @@ def test_the_cell_is_sealed(awake):
 MADE_UP = """
 import __main__, json
 def post(**message): __main__.post(json.dumps(message))
-for text in ("{", "null", "[1]", '"x"', "{}", '{"kind":"__proto__"}', "x" * 65_000_000):
-    __main__.post(text)
-post(kind="changed", files={"planet.py": "stolen"}, digests={"planet.py": "x"})
-post(kind="restarted", id=None, reason="made up")
-for number in (-7, None, "x", 10**9):
-    post(kind="mistakes", id=number, revision=1, mistakes=[])
+for number in (-7, 10**9):
+    post(kind="answer", id=number, revision=1, request="command", result={"command": "x"})
     post(kind="dropped", id=number, revision=1)
 from distal import *
 scene = Scene(Sphere(0.5))
+"""
+STOLEN = """
+import __main__
+__main__.post('{"kind":"changed","files":{"planet.py":"stolen"},"digests":{}}')
 """
 FLOOD = """
 import __main__
@@ -350,10 +350,18 @@ while True:
 def test_what_the_code_in_the_cell_makes_up_is_left_out(awake):
     page = awake
     show_again(page)
-    before = page.evaluate("() => studio.editor.view.state.doc.toString()")
     assert ask(page, MADE_UP)["kind"] == "scene"
+    assert page.locator(".notice").inner_text() == ""
+
+
+def test_what_no_worker_sends_ends_the_worker(awake):
+    page = awake
+    show_again(page)
+    before = page.evaluate("() => studio.editor.view.state.doc.toString()")
+    assert ask(page, STOLEN) is None
+    assert "sent a broken answer (kind)" in page.locator(".notice").inner_text()
     assert page.evaluate("() => studio.editor.view.state.doc.toString()") == before
-    assert "made up" not in page.locator(".notice").inner_text()
+    show_again(page)
 
 
 def test_a_flood_of_messages_ends_the_worker(awake):
@@ -373,6 +381,6 @@ def test_an_answer_of_no_form_leaves_the_app_alive(awake):
         " channel.post = old; setTimeout(() => channel.onMessage("
         "{ kind: 'scene', id: asked.id, objects: [] })); }; studio.looking.look(); }"
     )
-    told = "() => document.body.textContent.includes('The picture cannot be shown')"
+    told = "() => document.querySelector('.notice').textContent.includes('a broken answer')"
     page.wait_for_function(told, timeout=SLOW_MS)
     show_again(page)

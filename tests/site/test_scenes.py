@@ -95,7 +95,7 @@ def versions(page) -> list[tuple[str, str]]:
 
 
 def bar(page, name: str):
-    return page.locator(f"[data-bar={name}]")
+    return page.locator(f"[data-key={name}]")
 
 
 def test_the_tab_is_closed_half_a_second_after_the_last_key(address):

@@ -15,7 +15,7 @@ import distal
 from distal import Scene, Sphere
 from distal.cli.application import application
 from distal.devices.base import Cancelled
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.images.png import quantise
 from distal.lang import Frame, choice, color, image, integer, slider, toggle, vec3
 from distal.sweeps.axes import axis_of

@@ -10,7 +10,7 @@ import time
 import pytest
 
 import distal
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.video import encoding, video
 from distal.video.moving_picture import MovingPicture
 from tests.video.moving import decode, scene_file

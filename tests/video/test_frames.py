@@ -6,7 +6,7 @@ from PIL import Image
 
 import distal
 from distal import Camera, DistantLight, Scene, Sphere, Steering, time
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.video import video
 from distal.video.formats import VideoError
 from tests.video.moving import SCENE, scene_file, still

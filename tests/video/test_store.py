@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.video.store import Store
 
 MANIFEST = {"program": "a", "size": [640, 480], "quality": 80.0, "parameters": {}}

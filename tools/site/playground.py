@@ -128,17 +128,17 @@ def _page(folder: Path) -> str:
         "folder": "playground",
         "isNew": False,
         "gallery": [row for row in examples() if row["name"] in known],
-        "nonce": "",
         "version": __version__,
         "python": "python/",
         "start": json.loads((folder / "gallery" / f"{START}.json").read_text(encoding="utf-8")),
         "starter": _starter(),
     }
     text = (APP / "studio.html").read_text(encoding="utf-8")
-    filled = json.dumps(settings).replace("<", "\\u003c")
+    filled = json.dumps(settings).replace("<", "\\u003c")  # inside of a script, "<" could end it
     content = _POLICY.replace("{cell}", _digest_of_script(APP / "cell.html"))
     policy = f'<meta http-equiv="Content-Security-Policy" content="{content}">'
-    made = text.replace(' nonce="{nonce}"', "").replace("{settings}", filled)
+    script = f'<script type="application/json" id="settings">{filled}</script>\n'
+    made = text.replace(' nonce="{nonce}"', "").replace("<script", f"{script}<script", 1)
     made = made.replace('<meta name="viewport"', f'{policy}\n<meta name="viewport"')
     return made.replace("<title>distal</title>", "<title>Playground · distal</title>")
 

@@ -29,7 +29,7 @@ from distal.cli.base import (
 from distal.compiler.driver import COMPILE_TARGETS, IR_TARGET
 from distal.example_files import EXAMPLE_PREFIX, all_examples
 from distal.export.texts import with_header, write_files
-from distal.images.atomic_files import check_destination
+from distal.file_writer import check_destination
 
 for _name in COMMANDS:
     if _name not in SHORT:  # importing a module adds its command

@@ -21,7 +21,7 @@ from distal.cli.arguments import UsageError, read_assignments, read_scene
 from distal.cli.messages import say
 from distal.devices.memory_limit import is_limited, require
 from distal.diagnostics import CompileError, DeviceError, LoadError
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.lang.units import UNITS
 from distal.packages import explained
 from distal.runtime import device_names

@@ -199,7 +199,7 @@ def _check(
         UsageError: They are not.
     """
     from distal.export.registry import FORMATS, kind_of
-    from distal.images.atomic_files import check_destination
+    from distal.file_writer import check_destination
 
     try:
         name = kind_of(output, target)
@@ -227,7 +227,7 @@ def _check_panel(wanted: str, given: list[str]) -> None:
 
 def _write_lesson(scene: str, output: Path, target: str | None, given: list[str]) -> None:
     """Write the page of a lesson, whose file says everything else."""
-    from distal.images.atomic_files import check_destination
+    from distal.file_writer import check_destination
     from distal.lessons.page import write
 
     if target not in (None, "html") or output.suffix.lower() not in (".html", ".htm"):

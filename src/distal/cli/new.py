@@ -13,7 +13,7 @@ import typer
 
 from distal.cli.arguments import UsageError
 from distal.cli.base import application, reporting
-from distal.images.atomic_files import SaveError, check_destination
+from distal.file_writer import ChangedError, SaveError, save
 
 TEXT: Final = '''\
 """A ball on a box: change a number, save, and look again."""
@@ -50,12 +50,8 @@ def new(
     if file.suffix not in ("", ".py"):
         raise UsageError(f"a scene is a Python file: {file.with_suffix('.py')}")
     file = file.with_suffix(".py")
-    check_destination(file)
     try:
-        with file.open("x", encoding="utf-8", newline="\n") as made:
-            made.write(TEXT)
-    except FileExistsError:
+        save(file, TEXT.encode(), expected=None)
+    except ChangedError:
         raise SaveError(f"{file} is there already; give another name") from None
-    except OSError as error:
-        raise SaveError(f"cannot write {file}: {error.strerror}") from None
     say(_NEXT.format(file=file))

@@ -263,6 +263,7 @@ def render(
     from distal.cli.messages import say
     from distal.cli.preview import PreviewFile, described
     from distal.cli.report import picture_progress, stages
+    from distal.file_writer import name_beside
     from distal.images.picture import check_savable
     from distal.lang.render_options import LARGEST_SIDE_PX, RenderOptions
     from distal.scene.viewing.viewable import viewable
@@ -272,7 +273,7 @@ def render(
     suffix, _ = check_savable(output, bits)
     if transparent and suffix == ".jpg":
         raise UsageError("a JPEG has no transparency: -o FILE.png")
-    film = output.with_name(output.name + ".film")
+    film = name_beside(output, ".film")
     progress = picture_progress(shown_progress)
     preview = PreviewFile(output, bits, film, progress)
     paths = PathArguments(
@@ -305,7 +306,8 @@ def render(
         picture = rendered_picture(seen, arguments, wanted, options)
     rendered = time.perf_counter()
     picture.save(output, bits)
-    paths.forget()
+    if picture.provenance.mode == "path":
+        paths.forget()
     figures = {
         "load_s": loaded - begin,
         **dict.fromkeys(("compile_s", "render_s", "cache_hit", "lanes", "threads")),

@@ -34,7 +34,7 @@ from distal.cli.base import (
 )
 from distal.cli.messages import say
 from distal.diagnostics import LoadError
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 
 if TYPE_CHECKING:
     from distal.mesh.outlines.layers import SolidLayer

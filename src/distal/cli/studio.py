@@ -5,7 +5,13 @@ Input: parsed arguments. Output: a server on this machine until it is interrupte
 
 from __future__ import annotations
 
-import webbrowser
+import contextlib
+import errno
+import os
+import signal
+import sys
+import threading
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,15 +19,20 @@ import typer
 
 from distal.cli.arguments import UsageError
 from distal.cli.base import answer, application, reporting
+from distal.cli.messages import say
 from distal.editor.local.early import EarlyWorker
 from distal.editor.local.files import SceneFiles
 from distal.example_files import EXAMPLE_PREFIX, all_examples
+from distal.file_writer import SaveError
 
 if TYPE_CHECKING:
     from distal.editor.local.serving import LocalServer
 
 # So long the browser may take to open, until the worker that waits for it is ended.
 _OPENING_S = 60.0
+_KEYS = "Ctrl-C ends it; unsaved changes are kept. Enter prints an address for another browser."
+_LONGEST_INPUT = 1024  # bytes that are read of the terminal at once
+_BACKGROUND_S = 1.0
 # What a new file begins with.
 STARTER = '''"""A scene: change a number, or drag it, and see."""
 
@@ -68,15 +79,49 @@ def studio(
     except OSError as error:
         raise UsageError(f"port {port} cannot be used: {error.strerror}") from None
     try:
-        address = server.address
-        answer(f"{name} at {address}\nCtrl-C ends it; unsaved changes stay in the browser.")
+        answer(f"{name} at {server.address}\n{_KEYS}")
+        if sys.stdin is not None:  # None: a program of Windows without a console
+            _watch_terminal(server)
         if browser:
-            webbrowser.open(address)
+            _open_browser(server)
         server.serve()
     except KeyboardInterrupt:
         pass
     finally:
         server.close()
+
+
+def _open_browser(server: LocalServer) -> None:
+    try:
+        reason = "" if server.open_browser() else "there is none"
+    except OSError as error:
+        reason = error.strerror or str(error)
+    if reason:
+        say(f"warning: the browser is not opened ({reason}): open the address above yourself")
+
+
+def _watch_terminal(server: LocalServer) -> None:
+    if hasattr(signal, "SIGTTIN"):  # it would stop a server in the background of a shell
+        signal.signal(signal.SIGTTIN, signal.SIG_IGN)
+    threading.Thread(target=_print_addresses, args=(server,), daemon=True).start()
+
+
+def _print_addresses(server: LocalServer) -> None:
+    """Print an address whenever Enter is pressed, until the input ends."""
+    while True:
+        try:
+            # Not by the stream: a thread that reads it would hold up the end of the program.
+            text = os.read(sys.stdin.fileno(), _LONGEST_INPUT)
+        except OSError as error:
+            if error.errno != errno.EIO:  # there is no input
+                return
+            time.sleep(_BACKGROUND_S)  # in the background of a shell nothing can be read
+            continue
+        if not text:
+            return
+        if b"\n" in text:
+            with contextlib.suppress(SaveError, OSError):  # nobody reads what is printed
+                answer(server.address)
 
 
 def _scene(given: str, port: int, time_limit: float) -> tuple[LocalServer, str]:

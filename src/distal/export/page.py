@@ -22,7 +22,7 @@ from distal.export.exported import Exported
 from distal.export.page_options import NO_POSTER, TRIANGLE_POSTER, WEBP, PageOptions
 from distal.export.page_programs import PagePrograms
 from distal.export.payload import payload, view_names
-from distal.images.atomic_files import replacement
+from distal.file_writer import replacement
 from distal.lang.lazy_module import LazyModule
 from distal.scene.viewing.viewable import Viewable
 from distal.version import __version__

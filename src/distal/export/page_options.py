@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.lang.render_options import checked_size, checked_time
 from distal.lang.units import meters_of
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, Unpack
 from distal.backends import TEXT_TARGETS
 from distal.export.exported import Exported
 from distal.export.page_options import PageOptions, TextOptions
-from distal.images.atomic_files import SaveError, check_destination
+from distal.file_writer import SaveError, check_destination
 from distal.lang.lazy_module import LazyModule
 from distal.lang.presentable import ExportOptions
 from distal.scene.viewing.viewable import viewable

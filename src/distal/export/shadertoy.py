@@ -19,8 +19,8 @@ from distal.error_codes import ErrorCode
 from distal.export import texts
 from distal.export.exported import Exported
 from distal.export.page_options import TextOptions
+from distal.file_writer import replacement
 from distal.frontend import lower
-from distal.images.atomic_files import replacement
 from distal.ir.nodes import ResourceDeclaration
 from distal.lang.chosen_values import checked_values
 from distal.lang.functions import Image

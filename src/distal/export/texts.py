@@ -19,8 +19,8 @@ from distal.backends.targets import Declares
 from distal.compiler.driver import TEXT_TABLE_FROM, run_passes
 from distal.export.exported import Exported
 from distal.export.page_options import TextOptions
+from distal.file_writer import SaveError, replacement
 from distal.frontend import lower
-from distal.images.atomic_files import SaveError, replacement
 from distal.ir.nodes import EntryKind, Module, Origin
 from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed

@@ -1,6 +1,5 @@
 """Finished pictures, and the files in which they are saved.
 
 Input: arrays of pixels from a device. Output: ``Picture``, PNG and OpenEXR files. Does not depend
-on scenes, devices or the compiler. ``images.atomic_files`` needs no third-party package,
-``images.picture`` needs NumPy.
+on scenes, devices or the compiler. ``images.picture`` needs NumPy.
 """

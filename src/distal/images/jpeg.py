@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.images.metadata import ReadError
 from distal.images.png import quantise
 from distal.lang.lazy_module import LazyModule

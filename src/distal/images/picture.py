@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.file_writer import SaveError, check_destination, replacement
 from distal.images import jpeg, metadata, png
-from distal.images.atomic_files import SaveError, check_destination, replacement
 from distal.images.metadata import Provenance
 from distal.lang.lazy_module import LazyModule
 from distal.lang.runtime_access import executor

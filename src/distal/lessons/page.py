@@ -23,7 +23,7 @@ from distal.export.page import ICON, NO_SCRIPT, escaped, player_script, policy, 
 from distal.export.page_options import PageOptions
 from distal.export.payload import payload
 from distal.export.poster import poster
-from distal.images.atomic_files import replacement
+from distal.file_writer import replacement
 from distal.images.png import quantise
 from distal.lang.parameter_values import Value
 from distal.lang.render_options import RenderOptions

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from distal.compiler.driver import compile
 from distal.export.page import NO_SCRIPT, escaped, json_text, player_script, policy
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.mesh import preview_arithmetic
 from distal.mesh.preview import MOST_TRIANGLES, preview_of
 

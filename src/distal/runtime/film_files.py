@@ -14,7 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from distal.images.atomic_files import SaveError, check_destination, replacement
+from distal.file_writer import SaveError, check_destination, replacement
 from distal.runtime.accumulation import Film
 
 # Seconds between two writes; a slow disk is written to less often.

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from distal.diagnostics import LONGEST_MESSAGE, LoadError, printable
 from distal.example_files import EXAMPLE_PREFIX
+from distal.file_writer import SaveError
 from distal.images import exr, jpeg, png
-from distal.images.atomic_files import SaveError
 from distal.images.metadata import Provenance, ReadError
 from distal.images.picture import Picture
 from distal.images.picture_files import Record, read

@@ -24,8 +24,8 @@ import numpy as np
 
 from distal.devices.base import PartError, cancel_test
 from distal.diagnostics import DeviceError
+from distal.file_writer import SaveError, check_destination, replacement
 from distal.forking import new_lock
-from distal.images.atomic_files import SaveError, check_destination, replacement
 from distal.images.picture import Picture
 from distal.images.png import encode_levels
 from distal.lang.lazy_module import LazyModule

@@ -16,7 +16,7 @@ from typing import Any, Final
 import numpy as np
 from PIL import Image
 
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.video.formats import LOSSLESS, VideoFormat, library
 from distal.video.pixels import BT709, FULL, RGB, SRGB
 from distal.video.segments import whole_or_nothing

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from distal.devices.features import host_features
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.packages import PackageError, imported
 
 # Names for qualities; a quality is a number from 0 to 100.

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from distal.images.atomic_files import SaveError, replacement
+from distal.file_writer import SaveError, replacement
 from distal.images.picture import Picture
 from distal.images.png import encode
 from distal.video.moving_picture import MovingPicture

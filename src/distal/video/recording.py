@@ -21,7 +21,7 @@ import numpy as np
 
 from distal.devices.base import cancel_test
 from distal.devices.threads import usable_threads
-from distal.images.atomic_files import check_destination
+from distal.file_writer import check_destination
 from distal.images.picture import Picture
 from distal.lang.render_options import Cancel, RenderOptions, checked_samples, checked_size
 from distal.scene.steering import Steering
@@ -244,6 +244,7 @@ class _RecordingJob:
     def _numbered(self) -> tuple[int, int]:
         make_folder(self.output.parent)
         frames = self._frames(self.output)
+        check_destination(frames.files[-1])
         rendered = self._write_frames(frames)
         return rendered, sum(file.stat().st_size for file in frames.files)
 

@@ -13,7 +13,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, Final
 
-from distal.images.atomic_files import SaveError, move_into_place
+from distal.file_writer import SaveError, move_into_place
 from distal.sounds.reading import Samples
 from distal.video.formats import Codec, VideoFormat, library
 from distal.video.pixels import tag

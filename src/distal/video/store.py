@@ -8,7 +8,6 @@ made.
 from __future__ import annotations
 
 import json
-import os
 import shutil
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -16,7 +15,13 @@ from pathlib import Path
 from typing import IO, Any, Final
 
 from distal.diagnostics import printable
-from distal.images.atomic_files import SaveError, check_destination, move_into_place, replacement
+from distal.file_writer import (
+    SaveError,
+    check_destination,
+    move_into_place,
+    name_beside,
+    replacement,
+)
 
 try:
     import fcntl
@@ -34,7 +39,7 @@ class Store:
 
     def __init__(self, output: Path) -> None:
         self.output = output
-        self.folder = output.with_name(f".{output.name}.distal")
+        self.folder = name_beside(output, ".distal", ".")
         self._lock: IO[Any] | None = None
 
     def open(self, manifest: Mapping[str, Any], fresh: bool, tell: Tell) -> None:
@@ -93,10 +98,7 @@ class Store:
         Raises:
             SaveError: The video cannot be moved.
         """
-        try:
-            move_into_place(made, Path(os.path.realpath(self.output)))
-        except OSError as error:
-            raise SaveError(f"cannot write {self.output}: {error.strerror or error}") from error
+        move_into_place(made, self.output)
         shutil.rmtree(self.folder, ignore_errors=True)
         self.close()
 

@@ -22,7 +22,7 @@ from distal.diagnostics import (
     printable_lines,
 )
 from distal.example_files import EXAMPLE_PREFIX
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.images.metadata import Ends
 from distal.lang.number_text import shown as number_text
 from distal.load_watch import LoadWatch

@@ -52,6 +52,24 @@ def test_options_reach_the_picture(run):
     assert not Path("a.png.film").exists()
 
 
+@pytest.mark.parametrize("mode", ["direct", "path"])
+def test_longest_name_of_a_file_is_possible(run, mode):
+    name = "x" * 250 + ".png"
+    words = ["--spp", "1"] if mode == "path" else []
+    result = run("-o", name, "--mode", mode, *words)
+    assert result.exit_code == 0, result.output
+    assert sorted(map(str, Path().iterdir())) == ["scene.py", name]
+    result = run("-o", "x" * 296 + ".png", "--mode", mode, *words)
+    assert result.exit_code == 1
+    assert result.stderr == f"error: cannot write {'x' * 296}.png: File name too long\n"
+
+
+def test_direct_light_leaves_a_film_alone(run):
+    Path("a.png.film").write_bytes(b"samples of an hour")
+    assert run("-o", "a.png").exit_code == 0
+    assert Path("a.png.film").read_bytes() == b"samples of an hour"
+
+
 def test_a_biased_picture_is_said_to_be_so(run):
     result = run("-o", "a.png", "--mode", "path", "--spp", "8", "--clamp", "5")
     assert result.stderr.splitlines()[-1] == (

@@ -16,10 +16,10 @@ pytest.importorskip("websockets")
 ENDS_S = 30.0
 
 
-def started(folder, *words):
+def started(folder, *words, browser=("--no-browser",)):
     """The command as a process of its own group, as a terminal starts it."""
     return subprocess.Popen(
-        [sys.executable, "-m", "distal.cli", "studio", "--no-browser", *words],
+        [sys.executable, "-m", "distal.cli", "studio", *browser, *words],
         cwd=folder,
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
         stdout=subprocess.PIPE,
@@ -61,9 +61,20 @@ def test_a_port_that_is_taken_is_named(tmp_path):
 def test_ctrl_c_ends_it(tmp_path):
     running = started(tmp_path, "new.py")
     line = running.stdout.readline()
-    assert re.match(r"new\.py at http://127\.0\.0\.1:\d+/\?key=\S+$", line)
+    assert re.match(r"new\.py at http://127\.0\.0\.1:\d+/#key=\S+$", line)
     running.send_signal(signal.SIGINT)
     _, text = running.communicate(timeout=ENDS_S)
     assert running.returncode == 0
     assert text == ""
     assert not (tmp_path / "new.py").exists()  # nobody has saved it
+
+
+def test_without_a_browser_one_is_asked_to_open_the_address(monkeypatch, tmp_path):
+    monkeypatch.setenv("BROWSER", str(tmp_path / "none"))
+    running = started(tmp_path, "new.py", browser=())
+    assert running.stderr.readline() == (
+        "warning: the browser is not opened (there is none): open the address above yourself\n"
+    )
+    running.send_signal(signal.SIGINT)
+    running.communicate(timeout=ENDS_S)
+    assert running.returncode == 0

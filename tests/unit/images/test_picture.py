@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.images.picture import Picture, Provenance
 from distal.images.png import quantise
 from distal.version import __version__

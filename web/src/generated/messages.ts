@@ -121,6 +121,32 @@ export interface RenderFormat {
   missing: string | null;
 }
 
+/** A file on the disk that has no text. */
+export interface DiskProblem {
+  /** Of its bytes; "" if it is gone, "?" if it cannot be read. */
+  digest: string;
+  /** What is wrong, for a sentence that begins with its name: "was deleted". */
+  text: string;
+}
+
+/** A draft: a text, and the digest of what was on the disk when it began. */
+export interface UnsavedText {
+  text: string;
+  digest: string;
+}
+
+/** A version of a file. */
+export interface VersionEntry {
+  /** Names it in `version`. */
+  name: string;
+  /** When it was kept, in milliseconds since 1970. */
+  at: number;
+  /** "opened" (on the disk then), "saved" (here), "other" (by another program), "typed" (in the page), "left" (in a tab that is gone). */
+  why: string;
+  /** In bytes. */
+  size: number;
+}
+
 /** Edits that make the changes; the new literals are found by the next `look`. */
 export interface Written {
   edits: Edit[];
@@ -240,10 +266,51 @@ export interface RenderChoices {
   path_samples: number;
 }
 
-/** The file is on the disk, with this digest; or a conflict: what is there instead. */
+/** The file is on the disk with this digest; or it is not written, and this is there instead. */
 export interface Saved {
+  /** Of what is on the disk now; "" for nothing, "?" for what cannot be read. */
   digest: string;
+  /** Whether the text is on the disk. */
+  is_saved: boolean;
+  /** The text that is there instead; None where there is none. */
   conflict: string | null;
+  /** What is wrong with the file that is there instead, as `DiskProblem.text`; or "". */
+  problem: string;
+  /** Why the file is not replaced, although `in_place` would write it; or "". */
+  refusal: string;
+  /** What another program wrote while the file was replaced; it is among the versions. */
+  other: string | null;
+  /** Why the versions cannot be kept; "" where they are. */
+  unkept: string;
+  /** As in `changed`. */
+  order: number;
+}
+
+/** What a tab begins with. */
+export interface Greeted {
+  /** The tab's name, to be said when the page is loaded again. */
+  tab: string;
+  /** Its unsaved texts by file. */
+  drafts: Record<string, UnsavedText>;
+  /** Files of which other unsaved texts were there; they are versions now. */
+  others: string[];
+  /** Why nothing can be kept; "" where it can. */
+  unkept: string;
+}
+
+/** The draft is kept; or `unkept` says why not. */
+export interface DraftAnswer {
+  unkept: string;
+}
+
+/** The versions of a file, the newest first. */
+export interface VersionList {
+  versions: VersionEntry[];
+}
+
+/** The text of a version. */
+export interface VersionText {
+  text: string;
 }
 
 /** Compile a scene's view. Answered by `scene`, `numbers` or `mistakes`. */
@@ -663,16 +730,70 @@ export interface CancelRequest {
   job: number;
 }
 
-/** Write a file (local only; the server answers). `digest` is that of the text it replaces. */
+/** Write a file (local only; the server answers). */
 export interface SaveRequest {
   kind: "save";
   /** The app's number of the request, never used twice. */
   id: number;
   /** The app's number of the text, greater after each change. */
   revision: number;
+  /** The file's name. */
   file: string;
+  /** Its new text. */
   text: string;
+  /** The digest of what it replaces; None or "" for a new file. */
   digest?: string | null;
+  /** Whether the file itself is written, not replaced by another: other names of it (hard links) then have the new text, too. */
+  in_place?: boolean;
+}
+
+/** Say which tab this is (local only; the server answers). */
+export interface HelloRequest {
+  kind: "hello";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  /** The name that the tab had before it was loaded again, or "". */
+  tab?: string;
+  /** Whether it has no texts yet: then it gets the drafts of tabs that are gone. */
+  is_new?: boolean;
+}
+
+/** Keep an unsaved text (local only; the server answers). */
+export interface DraftRequest {
+  kind: "draft";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  /** The file's name. */
+  file: string;
+  /** The text; None where the file on the disk has it. */
+  text: string | null;
+  /** The digest of the text on the disk that it began with; "" for a new file. */
+  digest?: string;
+}
+
+/** List the versions of a file that are kept (local only; the server answers). */
+export interface VersionsRequest {
+  kind: "versions";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  file: string;
+}
+
+/** Give the text of a version (local only; the server answers). */
+export interface VersionRequest {
+  kind: "version";
+  /** The app's number of the request, never used twice. */
+  id: number;
+  /** The app's number of the text, greater after each change. */
+  revision: number;
+  file: string;
+  version: string;
 }
 
 /** End the worker; it answers nothing. */
@@ -765,6 +886,10 @@ export interface Results {
   command: Planned;
   choices: RenderChoices;
   save: Saved;
+  hello: Greeted;
+  draft: DraftAnswer;
+  versions: VersionList;
+  version: VersionText;
 }
 
 /** The result of a request; `request` is its kind. */
@@ -805,11 +930,17 @@ export interface Progress {
   remaining_s: number | null;
 }
 
-/** Files were changed by another program (local only; from the server): their new texts. */
+/** How files are on the disk (local only; from the server): all at first, then what changes. */
 export interface Changed {
   kind: "changed";
+  /** The texts by name; of a file with a problem the last one that it had. */
   files: Record<string, string>;
+  /** Of these texts; "" for those that are not on the disk yet. */
   digests: Record<string, string>;
+  /** Of files that have no text now. */
+  problems: Record<string, DiskProblem>;
+  /** Grows with each change: an older message says nothing of newer ones. */
+  order: number;
 }
 
 /** The worker did not answer and was replaced (from the carrier); `id` is not answered. */
@@ -819,6 +950,6 @@ export interface Restarted {
   reason: string;
 }
 
-export type Request = LookRequest | HoldRequest | WriteRequest | CountRequest | TimeRequest | MapRequest | ProbeRequest | CheckRequest | TextRequest | ExportRequest | RenderRequest | CommandRequest | ChoicesRequest | CancelRequest | SaveRequest | StopRequest;
+export type Request = LookRequest | HoldRequest | WriteRequest | CountRequest | TimeRequest | MapRequest | ProbeRequest | CheckRequest | TextRequest | ExportRequest | RenderRequest | CommandRequest | ChoicesRequest | CancelRequest | SaveRequest | HelloRequest | DraftRequest | VersionsRequest | VersionRequest | StopRequest;
 
 export type Response = Ready | SceneFound | NumbersFound | Mistakes | Answer | Dropped | Printed | Progress | Changed | Restarted;

@@ -9,6 +9,7 @@ import { MOST_MESSAGES } from "../cell/limits";
 import { make } from "../dom";
 import type { Request, Response } from "../generated/messages";
 import type { Channel } from "./channel";
+import { faultOf } from "./message_check";
 
 const FILES = ["pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json", "distal.zip"];
 /** Milliseconds that the author's code has, and that the work after it has. */
@@ -17,7 +18,6 @@ const WORK_MS = 120_000;
 const ANSWERS = ["scene", "numbers", "answer", "mistakes", "dropped"];
 /** What comes out of the cell is a stranger's: longer messages are not read. */
 const LONGEST = 64_000_000;
-const KINDS = ["ready", "printed", "progress", ...ANSWERS];
 
 export class CellChannel implements Channel {
   onMessage: Channel["onMessage"] = () => {};
@@ -32,8 +32,8 @@ export class CellChannel implements Channel {
   #count = 0;
   /** The author's code has ended, for the first request that waits. */
   #hasRun = false;
-  /** The worker was told to end: what it still says is not read. */
-  #isEnding = false;
+  /** A worker begins, or was told to end: until the next one is ready, what is still said is not read. */
+  #isBeginning = true;
 
   /** `folder`: where the files of Python are. */
   constructor(readonly folder: string) {}
@@ -90,10 +90,15 @@ export class CellChannel implements Channel {
       return this.#fail(String((data as { failed?: unknown } | null)?.failed).slice(0, 400));
     }
     const message = messageOf(data);
-    if (this.#isEnding && message?.kind !== "ready") return;
+    if (this.#isBeginning) {
+      if (typeof message === "string" || message.kind !== "ready") return;
+      this.#begin();
+      return this.onMessage(message);
+    }
     if (++this.#count > MOST_MESSAGES) return this.#restart("the scene's code sent too many messages");
-    if (!message) return;
-    if (message.kind === "ready") this.#begin();
+    if (typeof message === "string") return this.refuse(message);
+    // There is a new worker only after the last one was ended.
+    if (message.kind === "ready") return this.refuse("ready");
     const isAnswer = ANSWERS.includes(message.kind);
     // Only answers to what was asked count: code that makes up others would never be ended.
     if (isAnswer && !this.#waiting.delete((message as { id: number }).id)) return;
@@ -108,9 +113,13 @@ export class CellChannel implements Channel {
     this.onMessage(message);
   }
 
+  refuse(place: string): void {
+    this.#restart(`the scene's code sent a broken answer (${place.slice(0, 100)})`);
+  }
+
   /** The next request is the worker's. */
   #begin(): void {
-    this.#isEnding = this.#hasRun = false;
+    this.#isBeginning = this.#hasRun = false;
     this.#count = 0;
   }
 
@@ -123,7 +132,7 @@ export class CellChannel implements Channel {
 
   #restart(reason: string): void {
     clearTimeout(this.#timer);
-    this.#isEnding = true;
+    this.#isBeginning = true;
     const [first, ...others] = this.#waiting;
     this.#waiting.clear();
     this.onMessage({ kind: "restarted", id: first?.[0] ?? null, reason });
@@ -138,13 +147,13 @@ export class CellChannel implements Channel {
   }
 }
 
-/** The message in a text of the cell; null for a text that is none, or of a kind that no worker sends. */
-function messageOf(text: string): Response | null {
-  if (text.length > LONGEST) return null;
+/** The message in a text of the cell; for a text that is none, where it is wrong. */
+function messageOf(text: string): Response | string {
+  if (text.length > LONGEST) return "its length";
   try {
-    const found = JSON.parse(text) as Response | null;
-    return found && KINDS.includes(found.kind) ? found : null;
+    const found = JSON.parse(text) as Response;
+    return faultOf(found) ?? found;
   } catch {
-    return null;
+    return "no JSON";
   }
 }

@@ -6,40 +6,36 @@
  */
 
 import type { Request, Response } from "../generated/messages";
+import type { Access } from "./access";
 
 export interface Channel {
   /** Makes ready for requests, where that costs something; `ready` follows. */
   start?(): Promise<void>;
   post(request: Request): void;
+  /** An answer could not be shown, though its form is right: whoever sent it is ended, where that can be. */
+  refuse?(place: string): void;
+  /** False while another program may answer at the page's address; undefined where there is no server. */
+  readonly isOpen?: boolean;
   /** Called with every response. */
   onMessage: (response: Response) => void;
   /** Called when the connection opens or closes. */
   onState: (isOpen: boolean) => void;
 }
 
-const RETRY_MS = 1500;
-
+/** The channel of the local studio. */
 export class SocketChannel implements Channel {
   onMessage: Channel["onMessage"] = () => {};
   onState: Channel["onState"] = () => {};
-  #socket: WebSocket | null = null;
 
-  constructor(readonly address: string) {
-    this.#open();
+  constructor(readonly access: Access) {
+    access.onText = (text) => this.onMessage(JSON.parse(text) as Response);
+  }
+
+  get isOpen(): boolean {
+    return this.access.isOpen;
   }
 
   post(request: Request): void {
-    if (this.#socket?.readyState === WebSocket.OPEN) this.#socket.send(JSON.stringify(request));
-  }
-
-  #open(): void {
-    const socket = new WebSocket(this.address);
-    this.#socket = socket;
-    socket.onopen = () => this.onState(true);
-    socket.onmessage = ({ data }) => this.onMessage(JSON.parse(String(data)) as Response);
-    socket.onclose = () => {
-      this.onState(false);
-      setTimeout(() => this.#open(), RETRY_MS);
-    };
+    this.access.send(JSON.stringify(request));
   }
 }

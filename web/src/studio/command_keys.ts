@@ -59,7 +59,12 @@ export class Commands {
   }
 
   #pressed(event: KeyboardEvent): void {
-    if (event.defaultPrevented || event.isComposing || document.querySelector("dialog[open]")) return;
+    if (event.defaultPrevented || event.isComposing) return;
+    if (document.querySelector("dialog[open]")) {
+      // A save that is pressed twice is not the browser's "Save page as".
+      if (isPressed("Mod-s", event)) event.preventDefault();
+      return;
+    }
     const found = this.all.find(({ keys, isOfCode }) => keys && !isOfCode && isPressed(keys, event));
     if (!found?.act) return;
     event.preventDefault();

@@ -123,7 +123,7 @@ function ofApp(studio: Studio): Command[] {
       ...(isLocal && { button: "Save" }),
       act: () => void studio.save(),
     },
-    ...(isLocal ? [] : [shareOf(studio)]),
+    isLocal ? versionsOf(studio) : shareOf(studio),
     {
       id: "help",
       text: "Show all keys",
@@ -170,6 +170,15 @@ function ofScenes(studio: Studio): Command[] {
       isPossible: () => scenes.isKept,
     },
   ];
+}
+
+function versionsOf(studio: Studio): Command {
+  return {
+    id: "versions",
+    text: "Show the versions of this file",
+    words: "history backup restore earlier draft",
+    act: () => void studio.versions.open(studio.editor.name),
+  };
 }
 
 function shareOf({ sharing }: Studio): Command {

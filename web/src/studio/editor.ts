@@ -5,7 +5,6 @@
  * records in them.
  */
 
-import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } from "@codemirror/autocomplete";
 import { defaultKeymap, history, historyKeymap, indentWithTab, isolateHistory } from "@codemirror/commands";
 import { pythonLanguage } from "@codemirror/lang-python";
 import {
@@ -32,9 +31,11 @@ import {
 } from "@codemirror/view";
 import { tags } from "@lezer/highlight";
 import type { Edit, Mistake, MistakeLabel, SourceLiteral } from "../generated/messages";
+import { completion } from "./completion";
 import { costs, showFigures, type Figure } from "./costs";
 import { literals, setLiterals, type Turning } from "./literals";
 import { names } from "./names";
+import { pairs } from "./pairs";
 
 export interface EditorEvents extends Turning {
   /** A person changed a file's text. */
@@ -45,7 +46,7 @@ export interface EditorEvents extends Turning {
   pointed(name: string, line: number | null, isMouse: boolean): void;
 }
 
-const HIGHLIGHT = HighlightStyle.define([
+export const HIGHLIGHT = HighlightStyle.define([
   { tag: [tags.keyword, tags.operatorKeyword, tags.modifier], color: "var(--word)" },
   { tag: [tags.string, tags.special(tags.string)], color: "var(--text)" },
   { tag: [tags.comment, tags.docString], color: "var(--quiet)", fontStyle: "italic" },
@@ -98,8 +99,8 @@ export class Editor {
       indentUnit.of("    "),
       syntaxHighlighting(HIGHLIGHT),
       bracketMatching(),
-      closeBrackets(),
-      autocompletion(),
+      pairs(),
+      completion(),
       highlightActiveLine(),
       highlightSelectionMatches(),
       linked,
@@ -109,12 +110,10 @@ export class Editor {
       names(),
       keymap.of([
         ...keys,
-        ...closeBracketsKeymap,
         ...defaultKeymap,
         ...searchKeymap,
         ...historyKeymap,
         ...foldKeymap,
-        ...completionKeymap,
         ...lintKeymap,
         indentWithTab,
       ]),

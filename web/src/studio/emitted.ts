@@ -17,10 +17,11 @@ const marked = StateField.define<DecorationSet>({
     const found = effects.find((effect) => effect.is(mark));
     if (!found) return now;
     const line = Decoration.line({ class: "linked" });
-    const numbers = (found.value as readonly [number, number][]).flatMap(([first, last]) =>
-      Array.from({ length: last - first + 1 }, (_, i) => first + i),
-    );
-    const known = [...new Set(numbers)].filter((number) => number <= state.doc.lines);
+    const numbers = (found.value as readonly [number, number][]).flatMap(([first, last]) => {
+      const end = Math.min(last, state.doc.lines);
+      return Array.from({ length: Math.max(end - Math.max(first, 1) + 1, 0) }, (_, i) => Math.max(first, 1) + i);
+    });
+    const known = [...new Set(numbers)];
     return Decoration.set(known.map((number) => line.range(state.doc.line(number).from)), true);
   },
   provide: (field) => EditorView.decorations.from(field),
@@ -82,7 +83,7 @@ export class Emitted {
     const ranges = places.map(([first, last]) => [first, last] as [number, number]);
     const effects: StateEffect<unknown>[] = [mark.of(ranges)];
     const { doc } = this.#view.state;
-    if (ranges[0] && ranges[0][0] <= doc.lines) {
+    if (ranges[0] && ranges[0][0] >= 1 && ranges[0][0] <= doc.lines) {
       effects.push(EditorView.scrollIntoView(doc.line(ranges[0][0]).from, { y: "center" }));
     }
     this.#view.dispatch({ effects });

@@ -72,11 +72,11 @@ const marks = StateField.define<Marks>({
 
 function decorated(literals: readonly SourceLiteral[], length: number): DecorationSet {
   const ranges = literals
-    .filter(({ start, end }) => end <= length && start < end)
+    .filter(({ start, end }) => start >= 0 && end <= length && start < end)
     .flatMap((literal) => {
       const { start, end, type, value } = literal;
       const mark = Decoration.mark({ class: `literal ${type}`, literal }).range(start, end);
-      const isHex = type === "color" && typeof value === "string";
+      const isHex = type === "color" && typeof value === "string" && /^#[0-9a-f]+$/i.test(value);
       return isHex ? [Decoration.widget({ widget: new Swatch(value), side: -1 }).range(start), mark] : [mark];
     });
   return Decoration.set(ranges, true);

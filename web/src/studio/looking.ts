@@ -119,9 +119,22 @@ export class Looking {
   }
 
   async #lookOn(): Promise<void> {
-    const { client, costs, keeping, page, picture, texts, turning } = this.studio;
-    if (this.#isBusy || this.isStopped || !this.ready || turning.isOn) return;
+    const { costs, picture, texts, turning } = this.studio;
+    if (this.#isBusy || this.isStopped || !this.ready || turning.isOn || !texts.names.length) return;
     this.#isBusy = true;
+    try {
+      await this.#lookNow();
+    } finally {
+      this.#isBusy = false;
+    }
+    this.#guideSoon();
+    void costs.compiled();
+    if (picture.player && picture.layers.isOpen) void picture.layers.draw(picture.player);
+  }
+
+  /** Asks until the newest text is answered. */
+  async #lookNow(): Promise<void> {
+    const { client, keeping, page, texts, turning } = this.studio;
     while (this.#done !== this.#wanted && !this.isStopped && !turning.isOn) {
       const wanted = this.#wanted;
       const { revision } = texts;
@@ -129,18 +142,8 @@ export class Looking {
       page.work.textContent = "…";
       const answer = await client.ask({ kind: "look", ...this.source, guided: false });
       this.#done = wanted;
-      try {
-        if (answer) await this.take(answer, revision);
-      } catch (error) {
-        // A worker that runs a stranger's code may answer anything; the next text is asked all the same.
-        page.print(`The picture cannot be shown: ${String((error as Error).message).slice(0, 200)}`);
-        page.work.textContent = "";
-      }
+      if (answer) await this.take(answer, revision);
     }
-    this.#isBusy = false;
-    this.#guideSoon();
-    void costs.compiled();
-    if (picture.player && picture.layers.isOpen) void picture.layers.draw(picture.player);
   }
 
   /** The program of a view of the text as it is. */
@@ -176,19 +179,38 @@ export class Looking {
     this.#guided = revision;
     const answer = await client.ask({ kind: "look", ...this.source, lean: true });
     const isStale = texts.revision !== revision || turning.isOn;
-    if (answer?.kind === "scene" && !isStale) await picture.show(answer.payload);
+    if (answer?.kind === "scene" && !isStale) await this.#try(() => picture.show(answer.payload));
   }
 
   // Answers
 
   /** Shows an answer to a text; -1 for one that is not in the editor. */
   async take(answer: Response, revision: number): Promise<void> {
+    await this.#try(() => this.#take(answer, revision));
+  }
+
+  /** Does what an answer says; one that cannot be shown leaves the last picture. */
+  async #try(act: () => Promise<void>): Promise<void> {
+    const { channel, page } = this.studio;
+    try {
+      await act();
+    } catch (error) {
+      const reason = String((error as Error).message).slice(0, 200);
+      // The next answer is a whole picture.
+      this.key = null;
+      page.work.textContent = "";
+      if (channel.refuse) channel.refuse(reason);
+      else page.print(`The picture cannot be shown: ${reason}`);
+    }
+  }
+
+  async #take(answer: Response, revision: number): Promise<void> {
     const { editor, page, picture, tabs, texts } = this.studio;
     if (answer.kind === "scene") {
-      await this.showScene(answer, revision);
+      await this.#show(answer, revision);
     } else if (answer.kind === "numbers") {
-      this.key = answer.key;
       picture.setNumbers(answer);
+      this.key = answer.key;
     } else if (answer.kind !== "mistakes") return;
     if (this.#isStoppedTold) page.tell(null);
     this.#isStoppedTold = false;
@@ -206,14 +228,18 @@ export class Looking {
     }
   }
 
-  async showScene(answer: SceneFound, revision = this.studio.texts.revision): Promise<void> {
+  showScene(answer: SceneFound): Promise<void> {
+    return this.#try(() => this.#show(answer));
+  }
+
+  async #show(answer: SceneFound, revision = this.studio.texts.revision): Promise<void> {
+    await this.studio.picture.show(answer.payload);
     this.key = answer.key;
     if (answer.shapes) this.makers = new Set(answer.shapes.map(({ file, line }) => `${file}:${line}`));
     const { objects } = this.studio.page;
     objects.hidden = answer.objects.length < 2;
     objects.replaceChildren(...answer.objects.map((name) => make("option", { value: name }, name)));
     if (this.object) objects.value = this.object;
-    await this.studio.picture.show(answer.payload);
     this.studio.commands.refresh();
     this.studio.opening.takePose(revision);
   }
@@ -265,12 +291,10 @@ export class Looking {
   }
 
   connected(isOpen: boolean): void {
-    const { page, settings, turning } = this.studio;
+    const { page, turning } = this.studio;
     if (isOpen) return page.tell(null);
     this.ready = null;
     turning.drop();
-    if (settings.python) return;
-    page.tell("The studio's server has ended; your text is kept in this browser.");
   }
 }
 

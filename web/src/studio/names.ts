@@ -1,12 +1,10 @@
 /**
- * What the editor knows of the language: completion, what a name is, the arguments of a call.
+ * What the editor knows of the language: what a name is, the arguments of a call.
  *
  * Input: the names that `tools/gen_names.py` found. Output: an extension of the editor. It reads the text's
  * syntax only and asks nobody.
  */
 
-import type { Completion, CompletionContext, CompletionResult } from "@codemirror/autocomplete";
-import { localCompletionSource, pythonLanguage } from "@codemirror/lang-python";
 import { syntaxTree } from "@codemirror/language";
 import { StateField, type EditorState, type Extension } from "@codemirror/state";
 import { hoverTooltip, showTooltip, type Tooltip } from "@codemirror/view";
@@ -16,38 +14,6 @@ import { DISTAL, LANGUAGE, METHODS, type Names } from "../generated/names";
 type SyntaxNode = ReturnType<typeof syntaxTree>["topNode"];
 
 const GLOBALS: Names = { ...LANGUAGE, ...DISTAL };
-
-function completions(names: Names, isMethod: boolean): Completion[] {
-  return Object.entries(names).map(([label, [detail, info]]) => {
-    const isClass = /^[A-Z]/.test(label);
-    const type = isMethod ? "method" : isClass ? "class" : detail ? "function" : "variable";
-    return { label, type, detail, info, boost: isMethod ? 1 : 0 };
-  });
-}
-
-/** Of Python itself, what scenes use: the many names of its exceptions would hide those of distal. */
-const PYTHON =
-  "and break def elif else enumerate False float for from if import in int len list None not " +
-  "or print range return round sorted sum True tuple while zip";
-const OF_PYTHON: Completion[] = PYTHON.split(" ").map((label) => ({ label, type: "keyword" }));
-
-const OF_GLOBALS = [...completions(GLOBALS, false), ...OF_PYTHON.filter(({ label }) => !(label in GLOBALS))];
-const OF_METHODS = completions(METHODS, true);
-
-function complete(context: CompletionContext): CompletionResult | null {
-  const node = syntaxTree(context.state).resolveInner(context.pos, -1);
-  if (/String|Comment/.test(node.name)) return null;
-  const member = context.matchBefore(/\.\w*$/);
-  if (member) {
-    // After a number the point is no member's.
-    const before = context.state.sliceDoc(Math.max(0, member.from - 1), member.from);
-    if (/\d/.test(before)) return null;
-    return { from: member.from + 1, options: OF_METHODS, validFor: /^\w*$/ };
-  }
-  const word = context.matchBefore(/\w+$/);
-  if (!word && !context.explicit) return null;
-  return { from: word?.from ?? context.pos, options: OF_GLOBALS, validFor: /^\w*$/ };
-}
 
 function shown(name: string, [args, about]: [string, string]): HTMLElement {
   const head = make("div", { className: "name-head" }, `${name}${args}`);
@@ -106,6 +72,5 @@ const called = StateField.define<Called | null>({
 });
 
 export function names(): Extension {
-  const sources = [complete, localCompletionSource];
-  return [sources.map((autocomplete) => pythonLanguage.data.of({ autocomplete })), hover, called];
+  return [hover, called];
 }

@@ -6,6 +6,7 @@
  */
 
 import type { Payload } from "../payload";
+import { REASONS } from "./access";
 import { sharedOf } from "./links";
 import { digestOf, poseOf, type Origin, type Pose, type SceneRecord } from "./scenes/records";
 import type { Opened } from "./settings";
@@ -45,9 +46,27 @@ export class Opening {
     await this.#follow();
   }
 
-  /** An example as a scene of its own, which the first edit keeps. */
+  /** An example as a scene of its own, which the first edit keeps; the local studio has files. */
   open(name: string): Promise<void> {
-    return this.goTo(`#example=${name}`);
+    return this.studio.scenes ? this.goTo(`#example=${name}`) : this.#copy(name);
+  }
+
+  /** An example takes the place of the text; undo brings the old one back. */
+  async #copy(name: string): Promise<void> {
+    const { channel, files, looking, page, picture, settings, tabs, texts } = this.studio;
+    if (channel.isOpen === false) return page.tell(REASONS.away, CLOSE);
+    const found = await this.#example(name);
+    if (!found) return page.tell(`There is no example ${name}.`, CLOSE);
+    for (const [file, text] of Object.entries(found.files)) {
+      const into = file === found.main ? settings.main : file;
+      if (into in texts.files) files.replace(into, text);
+      else texts.take(into, text, "");
+    }
+    looking.object = null;
+    picture.player?.resetCamera();
+    tabs.show(settings.main);
+    tabs.fill();
+    looking.look();
   }
 
   async #follow(): Promise<void> {

@@ -18,6 +18,7 @@ export class Page {
   readonly show = make("section", { className: "show", "aria-label": "Picture", tabIndex: -1 });
   readonly left = make("section", { className: "left", "aria-label": "Code", tabIndex: -1 });
   readonly notice = make("div", { className: "notice", role: "alert", hidden: true });
+  readonly bars = make("div", { className: "state-bars" });
   readonly work = make("span", { className: "work" });
   readonly drawn = make("span", { className: "drawn" });
   readonly announcer = make("div", { className: "announcer", role: "status" });
@@ -29,7 +30,7 @@ export class Page {
     this.left.append(this.tabRow, this.code, this.printed, this.mistakes);
     const main = make("main", { className: "panes" }, this.left, this.show);
     const status = make("footer", { className: "status" }, this.work, this.drawn);
-    parent.append(header, this.#narrow, this.notice, main, status, this.announcer);
+    parent.append(header, this.#narrow, this.bars, this.notice, main, status, this.announcer);
     this.#fillSwitch(main);
   }
 
@@ -72,6 +73,18 @@ export class Page {
   print(text: string): void {
     this.printed.hidden = !text;
     this.printed.textContent = text;
+  }
+
+  /** A sentence with its own place, which stays until it is taken away: null does that. */
+  bar(key: string, text: string | null, ...actions: [label: string, act: () => void][]): void {
+    const bars = [...this.bars.children] as HTMLElement[];
+    const old = bars.find((one) => one.dataset["key"] === key);
+    if (text === null) return old?.remove();
+    const buttons = actions.map(([label, onclick]) => make("button", { type: "button", onclick }, label));
+    const bar = make("div", { className: "state-bar", role: "alert" }, make("span", {}, text), ...buttons);
+    bar.dataset["key"] = key;
+    if (old) old.replaceWith(bar);
+    else this.bars.append(bar);
   }
 
   /** A sentence over everything, with what can be done; null takes it away. */

@@ -68,12 +68,46 @@ export class Picture {
     this.#listenToClicks();
   }
 
-  /** Shows a payload, in the player that is there if it can. */
+  /** Shows a payload, in the player that is there if it can; throws where it fails, with the last one shown. */
   async show(payload: Payload): Promise<void> {
+    const last = this.#last();
+    try {
+      await this.#show(payload);
+    } catch (error) {
+      this.#restore(last);
+      throw error;
+    }
+  }
+
+  /** What is shown, with the values that a person has chosen. */
+  #last(): Payload | null {
+    const { player } = this;
+    return player && { ...player.payload, values: player.parameters() };
+  }
+
+  /** Begins again with what was shown: a payload that failed has changed a part of everything. */
+  #restore(last: Payload | null): void {
+    this.#declared = "";
+    delete this.strip.dataset["key"];
+    if (last) {
+      this.#begin(last);
+      this.#fill(last);
+    } else {
+      this.player?.dispose();
+      this.player = null;
+    }
+  }
+
+  async #show(payload: Payload): Promise<void> {
     const name = this.events.named() || payload.name;
     const shown = { ...payload, name, embed: true, panel: false };
     if (!(await this.player?.load(shown))) this.#begin(shown);
-    this.#declare(payload.parameters);
+    this.#fill(payload);
+  }
+
+  /** The elements around a picture. */
+  #fill({ parameters, ...payload }: Payload): void {
+    this.#declare(parameters);
     this.#fillStrip(payload);
     this.layers.list(payload.views, payload.size);
     this.layers.mark(this.player!.view);
@@ -84,10 +118,18 @@ export class Picture {
     if (!this.player) this.#host.replaceChildren(make("img", { className: "preview", src: address, alt: "" }));
   }
 
-  /** Draws with other numbers; the program stays. */
-  setNumbers({ numbers, parameters }: Pick<NumbersFound, "numbers" | "parameters">): void {
-    const { player } = this;
-    if (!player) return;
+  /** Draws with other numbers; the program stays. Throws where they do not belong to it. */
+  setNumbers(found: Pick<NumbersFound, "numbers" | "parameters">): void {
+    const last = this.#last();
+    try {
+      if (this.player) this.#setNumbers(this.player, found);
+    } catch (error) {
+      this.#restore(last);
+      throw error;
+    }
+  }
+
+  #setNumbers(player: Player, { numbers, parameters }: Pick<NumbersFound, "numbers" | "parameters">): void {
     const old = player.payload.parameters;
     const now = player.parameters();
     player.payload = { ...player.payload, parameters };
@@ -182,7 +224,7 @@ export class Picture {
 
   // The strip under the picture
 
-  #fillStrip(payload: Payload): void {
+  #fillStrip(payload: Pick<Payload, "views" | "time" | "steering">): void {
     const key = JSON.stringify([payload.views.map(({ name }) => name), payload.time.animated, !!payload.steering]);
     if (this.strip.dataset["key"] === key) return;
     this.strip.dataset["key"] = key;
@@ -214,7 +256,7 @@ export class Picture {
     this.events.refused("The camera is not kept: the graphics driver does not say where it is.");
   }
 
-  #views(player: Player, { views }: Payload): HTMLElement {
+  #views(player: Player, { views }: Pick<Payload, "views">): HTMLElement {
     const items = views.map(({ name, label }) => make("option", { value: name }, label));
     const menu = make("select", { "aria-label": "View", title: "View" }, ...items);
     menu.value = player.view;

@@ -12,6 +12,7 @@ export interface Settings {
   folder: string;
   isNew: boolean;
   gallery: Example[];
+  /** Of the page's policy, for the editor's style sheet. */
   nonce: string;
   version: string;
   /** Of the playground: the folder of Python's files, what it begins with, and what a new scene has. */

@@ -1,7 +1,7 @@
 /**
  * The studio: code, picture and parameters side by side.
  *
- * Input: the settings in the page, a channel to the worker. Output: the running app. Here its parts are
+ * Input: the settings, a channel to the worker. Output: the running app. Here its parts are
  * made and connected: what a person does goes to the part that answers it.
  */
 
@@ -9,10 +9,12 @@ import type { LiteralValue } from "../generated/messages";
 import { recallScheme } from "./appearance";
 import { Asking } from "./asking";
 import { CellChannel } from "./cell_channel";
-import { SocketChannel, type Channel } from "./channel";
+import type { Channel } from "./channel";
 import { Client } from "./client";
+import { Conflicts } from "./conflicts";
 import { CostBar } from "./cost_bar";
 import { Commands } from "./command_keys";
+import { Drafts } from "./drafts";
 import { Editor } from "./editor";
 import { Emitted } from "./emitted";
 import { Files } from "./files";
@@ -28,35 +30,40 @@ import { Sharing } from "./sharing";
 import { Tabs } from "./tabs";
 import { Texts } from "./texts";
 import { Turning } from "./turning";
+import { Versions } from "./versions";
 
 export class Studio {
-  readonly texts: Texts;
+  readonly texts = new Texts();
   readonly page = new Page(document.body);
   readonly looking = new Looking(this);
   readonly turning = new Turning(this);
   readonly asking = new Asking(this);
   readonly files = new Files(this);
+  readonly conflicts = new Conflicts(this);
+  readonly versions = new Versions(this);
+  readonly keeping: Keeping;
   readonly tabs = new Tabs(this);
   readonly opening = new Opening(this);
   readonly sharing = new Sharing(this);
   /** The playground's scenes; the local studio has files. */
   readonly scenes: Scenes | null;
-  readonly keeping: Keeping;
   readonly costs: CostBar;
   readonly commands: Commands;
-  readonly channel: Channel;
   readonly client: Client;
   readonly jobs: Jobs;
   readonly editor: Editor;
   readonly picture: Picture;
   readonly emitted: Emitted;
 
-  constructor(readonly settings: Settings) {
+  constructor(
+    readonly settings: Settings,
+    readonly channel: Channel,
+  ) {
     recallScheme();
-    const { folder, main, python } = settings;
-    this.texts = new Texts(folder);
-    this.scenes = settings.python ? new Scenes(this) : null;
-    this.keeping = this.scenes ?? this.#drafts();
+    const { main, python } = settings;
+    this.scenes = python ? new Scenes(this) : null;
+    const drafts = python ? null : new Drafts(this);
+    this.keeping = this.scenes ?? drafts!;
     if (this.scenes?.isFrame) this.page.beFramed(() => this.sharing.whole());
     this.picture = this.#picture();
     this.costs = this.#costs();
@@ -64,29 +71,31 @@ export class Studio {
     this.editor = this.#editor();
     this.emitted = this.#emitted();
     this.#fillButtons();
-    this.channel = python ? this.#cell(python) : new SocketChannel(`ws://${location.host}/socket`);
+    if (channel instanceof CellChannel) this.#watch(channel);
     this.client = new Client(this.channel, {
       ready: (message) => this.looking.started(message),
       changed: (message) => this.files.changed(message),
       printed: ({ text }) => this.page.print(text),
       restarted: ({ reason }) => this.looking.restarted(reason),
-      state: (isOpen) => this.looking.connected(isOpen),
+      state: (isOpen) => {
+        this.looking.connected(isOpen);
+        if (!drafts) return;
+        this.files.connected(isOpen);
+        void drafts.connected(isOpen);
+      },
     });
     const announce = (text: string) => (this.page.announcer.textContent = text);
     this.jobs = new Jobs(this.client, announce, () => void this.sharing.export());
     this.page.work.after(this.jobs.chip);
     document.title = `${main} · distal`;
     if (settings.start) void this.opening.begin(settings.start);
-    if (!this.scenes) addEventListener("beforeunload", () => this.keeping.keep());
+    if (!this.scenes) {
+      for (const end of ["beforeunload", "pagehide"]) addEventListener(end, () => this.keeping.keep());
+    }
   }
 
   save(): Promise<void> {
     return this.files.save();
-  }
-
-  #drafts(): Keeping {
-    const { texts } = this;
-    return { changed() {}, keep: () => texts.names.forEach((name) => texts.keepDraft(name)) };
   }
 
   #picture(): Picture {
@@ -157,8 +166,7 @@ export class Studio {
     return emitted;
   }
 
-  #cell(folder: string): CellChannel {
-    const cell = new CellChannel(folder);
+  #watch(cell: CellChannel): void {
     cell.onProgress = (part) => {
       this.page.work.textContent = part < 1 ? `Loading Python: ${Math.round(100 * part)} %` : "Starting Python …";
     };
@@ -166,7 +174,6 @@ export class Studio {
     for (const kind of ["pointerdown", "focusin"]) {
       this.page.left.addEventListener(kind, () => void cell.start(), { once: true });
     }
-    return cell;
   }
 
   #fillButtons(): void {

@@ -50,6 +50,8 @@ export class Tabs {
 
   show(name: string): void {
     const { costs, editor, texts } = this.studio;
+    // A stranger's answer may name any file.
+    if (name !== TEXT_TAB && !Object.hasOwn(texts.files, name)) return;
     const was = this.#now;
     this.#now = name;
     if (name === TEXT_TAB) void this.emit();
@@ -70,7 +72,7 @@ export class Tabs {
   goTo(file: string, line: number, column = 0, isFocused = false): void {
     const { editor } = this.studio;
     if (editor.name !== file) this.show(file);
-    editor.goTo(line, column, isFocused);
+    if (editor.name === file) editor.goTo(line, column, isFocused);
   }
 
   /** The caret is on another line. */

@@ -1,26 +1,17 @@
 /**
- * The texts that are edited: what the disk has, what is unsaved, and a draft that outlives the tab.
+ * The texts that are edited, each with the state of its file.
  *
- * Input: texts of the disk, texts of the editor. Output: the revision, what is unsaved, drafts. A draft
- * is kept before each compilation, because a scene may stop the page.
+ * Input: texts of the disk, texts of the editor, choices. Output: the texts, the revision, what is unsaved.
  */
 
-interface Draft {
-  text: string;
-  /** The digest of the text on the disk that it began with. */
-  digest: string;
-}
+import * as state from "./file_state";
+import type { Disk, FileState } from "./file_state";
 
 export class Texts {
   /** Grows with each change. */
   revision = 0;
   #now: Record<string, string> = {};
-  #saved: Record<string, string> = {};
-  #digests: Record<string, string> = {};
-  /** The files whose drafts are this tab's: those of other tabs stay. */
-  #drafts = new Set<string>();
-
-  constructor(readonly key: string) {}
+  #states = new Map<string, FileState>();
 
   get files(): Record<string, string> {
     return this.#now;
@@ -30,79 +21,69 @@ export class Texts {
     return Object.keys(this.#now);
   }
 
-  digest(name: string): string {
-    return this.#digests[name] ?? "";
+  /** The state of a file that is there. */
+  state(name: string): FileState {
+    return this.#states.get(name)!;
   }
 
   isChanged(name: string): boolean {
-    return this.#now[name] !== this.#saved[name] || !this.#digests[name];
+    return state.kindOf(this.state(name)) !== "same";
   }
 
-  /** A file as the disk has it. Returns the unsaved text that is in its way, if there is one. */
-  take(name: string, text: string, digest: string): string | null {
-    const now = this.#now[name];
-    // After the server was away: nothing is new.
-    if (now !== undefined && this.#digests[name] === digest && digest) return null;
-    const isKept = now !== undefined && now !== this.#saved[name] && now !== text;
-    this.#saved[name] = text;
-    this.#digests[name] = digest;
-    if (isKept) return now;
-    this.set(name, text);
-    return null;
+  /** Whether the page has a text that was not on the disk. */
+  hasOwn(name: string): boolean {
+    return ["mine", "both"].includes(state.kindOf(this.state(name)));
+  }
+
+  /** Whether the disk has another text than the one that the page's began with. */
+  isOpen(name: string): boolean {
+    return state.isOpen(this.state(name));
+  }
+
+  /** A file that was not there yet, as the disk has it; without a digest it is not on the disk. */
+  take(name: string, text: string, digest: string, order = 0): void {
+    this.#become(name, state.begun(text, digest, order));
   }
 
   /** Other texts take the place of all. */
   begin(files: Record<string, string>): void {
+    this.#states = new Map(Object.entries(files).map(([name, text]) => [name, state.begun(text, "begun")]));
     this.#now = { ...files };
-    this.#saved = { ...files };
     this.revision += 1;
+  }
+
+  seen(name: string, disk: Disk): void {
+    this.#become(name, state.seen(this.state(name), disk));
   }
 
   set(name: string, text: string): void {
-    if (this.#now[name] === text) return;
-    this.#now = { ...this.#now, [name]: text };
+    this.#become(name, state.typed(this.state(name), text));
+  }
+
+  restore(name: string, text: string, digest: string): void {
+    this.#become(name, state.restored(this.state(name), text, digest));
+  }
+
+  saved(name: string, text: string, digest: string, order: number): void {
+    this.#become(name, state.saved(this.state(name), text, digest, order));
+  }
+
+  keepMine(name: string, digest: string): void {
+    this.#become(name, state.keptMine(this.state(name), digest));
+  }
+
+  takeTheirs(name: string, digest: string): void {
+    this.#become(name, state.tookTheirs(this.state(name), digest));
+  }
+
+  reconnected(): void {
+    for (const [name, one] of this.#states) this.#states.set(name, state.reconnected(one));
+  }
+
+  #become(name: string, next: FileState): void {
+    this.#states.set(name, next);
+    if (this.#now[name] === next.text) return;
+    this.#now = { ...this.#now, [name]: next.text };
     this.revision += 1;
-  }
-
-  saved(name: string, text: string, digest: string): void {
-    this.#saved[name] = text;
-    this.#digests[name] = digest;
-    this.keepDraft(name);
-  }
-
-  /** Remembers an unsaved text, and forgets one that is saved. */
-  keepDraft(name: string): void {
-    const key = this.#keyOf(name);
-    try {
-      if (this.#now[name] === this.#saved[name]) {
-        if (this.#drafts.delete(name)) localStorage.removeItem(key);
-        return;
-      }
-      this.#drafts.add(name);
-      const draft: Draft = { text: this.#now[name]!, digest: this.digest(name) };
-      localStorage.setItem(key, JSON.stringify(draft));
-    } catch {
-      // No storage, or a full one: the text is still in the editor.
-    }
-  }
-
-  /** An unsaved text of an earlier visit, and whether the disk still has what it began with. */
-  draft(name: string): { text: string; isCurrent: boolean } | null {
-    try {
-      const found = JSON.parse(localStorage.getItem(this.#keyOf(name)) ?? "null") as Draft | null;
-      if (!found || found.text === this.#now[name]) return null;
-      return { text: found.text, isCurrent: found.digest === this.digest(name) };
-    } catch {
-      return null;
-    }
-  }
-
-  forgetDraft(name: string): void {
-    this.#drafts.add(name);
-    this.keepDraft(name);
-  }
-
-  #keyOf(name: string): string {
-    return `distal:${this.key}/${name}`;
   }
 }

@@ -1,104 +1,57 @@
 """The files that the studio shows and saves: the scene's file and the modules beside it.
 
-Input: a path. Output: texts, their digests, what other programs changed. Texts end lines by a
-newline alone; a file keeps the line ends that it had. Needs the standard library alone.
+Input: a path, texts to save. Output: texts, their digests, what other programs changed. Every text
+that is seen on the disk is kept as a version; nothing is written over a text that its author did
+not know. Needs the standard library alone.
 """
 
 from __future__ import annotations
 
 import ast
-import errno
-import hashlib
+import contextlib
 import os
-import stat
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
 
 from distal.diagnostics import LoadError
-from distal.editor.messages import Changed, Saved
-from distal.editor.scene_folder import check_name, encoded_text
-from distal.images.atomic_files import replacement
-
-LONGEST_FILE: Final = 8_000_000  # bytes of a file that is shown or saved
-_BOM = "\ufeff"
+from distal.editor.local.drafts import Drafts
+from distal.editor.local.source_file import NO_FILE, UNREADABLE, SourceFile, plain
+from distal.editor.local.versions import Why
+from distal.editor.messages import Changed, DiskProblem, Saved
+from distal.editor.scene_folder import check_name
+from distal.file_writer import ChangedError, LinkedError, digest_of, save
+from distal.forking import new_lock
 
 
 @dataclass(frozen=True, slots=True)
-class SourceFile:
-    """A file's text as the app has it, and how it stands on the disk.
+class _FileState:
+    """What is known of a file.
 
     Attributes:
-        text: The text; lines end by a newline alone.
-        digest: The digest of the file's bytes.
-        ends: What ends lines on the disk.
-        mark: The byte order mark that begins the file, or "".
+        last: The last text that it had on the disk; or the text that a new file begins with.
+        now: What is there now: as ``last``, or something without a text.
     """
 
-    text: str
-    digest: str
-    ends: str = "\n"
-    mark: str = ""
+    last: SourceFile
+    now: SourceFile
 
     @classmethod
-    def of(cls, path: Path) -> SourceFile:
-        """Read a file.
+    def of(cls, file: SourceFile) -> _FileState:
+        return cls(file, file)
 
-        Raises:
-            LoadError: It cannot be read, or is not UTF-8.
-        """
-        try:
-            with open(path, "rb", opener=_opened) as file:
-                data = file.read(LONGEST_FILE + 1)
-            text = data.decode("utf-8")
-        except OSError as error:
-            raise LoadError(f"'{path}' cannot be read: {error.strerror}") from None
-        except UnicodeDecodeError:
-            raise LoadError(f"'{path}' is not UTF-8 text") from None
-        if len(data) > LONGEST_FILE:
-            raise LoadError(f"'{path}' has more than {LONGEST_FILE:,} bytes")
-        mark = _BOM if text.startswith(_BOM) else ""
-        ends = "\r\n" if "\r\n" in text else "\n"
-        plain = text.removeprefix(_BOM).replace("\r\n", "\n").replace("\r", "\n")
-        return cls(plain, digest_of(data), ends, mark)
-
-    def encoded(self, name: str, text: str) -> bytes:
-        """Return the bytes of a new text of this file.
-
-        Raises:
-            LoadError: It is too long, or has what no file can hold.
-        """
-        data = encoded_text(name, self.mark + text.replace("\n", self.ends))
-        if len(data) > LONGEST_FILE:
-            raise LoadError(f"'{name}' would have more than {LONGEST_FILE:,} bytes")
-        return data
-
-
-def _opened(path: str, flags: int) -> int:
-    """Open an ordinary file; a pipe or a device would never come to its end.
-
-    Raises:
-        OSError: It is none, or it cannot be opened.
-    """
-    found = os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
-    if not stat.S_ISREG(os.fstat(found).st_mode):
-        os.close(found)
-        raise OSError(errno.EINVAL, "it is no ordinary file")
-    return found
-
-
-def digest_of(data: bytes) -> str:
-    """Return a short name of some bytes."""
-    return hashlib.sha256(data).hexdigest()[:16]
+    @property
+    def state(self) -> tuple[str, str]:
+        """Equal while nothing has changed."""
+        return self.now.digest, self.now.problem
 
 
 class SceneFiles:
     """The file that is edited, and the modules beside it that it imports.
 
     Args:
-        path: The scene's file.
-        unsaved: Texts by name that are shown in place of files of these names until they are saved.
+        path: The scene's file; where it is a link, the file that it leads to is edited.
+        unsaved: Texts by name that are not saved yet: of a new file, or of a copy of an example.
 
     Raises:
         LoadError: A file cannot be read.
@@ -107,56 +60,184 @@ class SceneFiles:
     def __init__(self, path: Path, unsaved: Mapping[str, str] | None = None) -> None:
         self.folder = path.parent.resolve()
         self.main = path.name
-        self._known = {n: SourceFile(text, "") for n, text in (unsaved or {}).items()}
-        self.read()
+        self.drafts: Drafts | None = None
+        self.unkept = ""  # why a version could not be kept
+        self._lock = new_lock()
+        self._order = 0
+        self._unsaved = dict(unsaved or {})
+        self._known = {
+            name: _FileState.of(SourceFile(text, NO_FILE)) for name, text in self._unsaved.items()
+        }
+        for name, now in self._seen():
+            if now.problem and now.digest != NO_FILE:
+                raise LoadError(f"'{path.with_name(name)}' {now.problem}")
+            if now.problem and name not in self._known:
+                raise LoadError(f"'{path.with_name(name)}' cannot be read: {now.problem}")
+            if not now.problem:
+                self._known[name] = _FileState.of(now)
+        self._told = self._states()
+
+    # Reading
 
     def read(self) -> Changed | None:
-        """Read the files again; return what differs from what is known, or None.
+        """Read the files again; return what has changed since the last call, or None.
 
-        A file that is gone keeps its text, and is new: the next save writes it.
-
-        Raises:
-            LoadError: A file cannot be read.
+        Of a file that is gone, or has no text, the last text stays.
         """
-        found = dict(self._found())
-        changed = {
-            name: file
-            for name, file in found.items()
-            if name not in self._known or self._known[name].digest != file.digest
-        }
-        self._known = found
-        return _told(changed) if changed else None
+        with self._lock:
+            for name, now in list(self._seen()):
+                self._observe(name, now)
+            states = self._states()
+            changed = [name for name, state in states.items() if self._told.get(name) != state]
+            self._told = states
+            if not changed:
+                return None
+            return self._message(changed)
 
     def all(self) -> Changed:
         """Return all texts."""
-        return _told(self._known)
+        with self._lock:
+            return self._message(list(self._known))
+
+    def included(self, names: Iterable[str]) -> Changed | None:
+        """Show more files, of which there are drafts; return those that are not known yet."""
+        with self._lock:
+            new = [name for name in names if name not in self._known]
+            for name in new:
+                now = self._file(name)
+                self._known[name] = _FileState(SourceFile("", NO_FILE) if now.problem else now, now)
+                self._keep(name, now.data, "opened")
+            self._told.update({name: self._known[name].state for name in new})
+            return self._message(new) if new else None
 
     @property
     def is_new(self) -> bool:
         """Whether the scene's file is not on the disk yet."""
-        return not self._known[self.main].digest
+        return not self._known[self.main].last.digest
 
-    def save(self, name: str, text: str, digest: str | None) -> Saved:
-        """Write a text, unless another program has changed the file.
+    def text_of(self, name: str) -> str | None:
+        """Return the text that the disk has of a file; None if it has none."""
+        known = self._known.get(name)
+        return None if known is None or not known.now.digest else known.now.text
+
+    # Keeping
+
+    def keep_in(self, drafts: Drafts) -> None:
+        """Keep from now on what was on the disk, beginning with what is there."""
+        with self._lock:
+            self.drafts = drafts
+            for name, known in self._known.items():
+                self._keep(name, known.now.data, "opened")
+
+    def taken_unsaved(self) -> dict[str, str]:
+        """Return, once, the texts that the files begin with although the disk has others."""
+        with self._lock:
+            texts, self._unsaved = self._unsaved, {}
+            return {n: text for n, text in texts.items() if self._known[n].last.digest}
+
+    def _keep(self, name: str, data: bytes, why: Why) -> None:
+        """Keep a version; that it cannot be kept does not stop what is done."""
+        if self.drafts is None:
+            return
+        try:
+            self.drafts.versions.keep(name, data, why)
+            self.unkept = ""
+        except OSError as error:
+            self.unkept = self.drafts.reason(error)
+
+    def _observe(self, name: str, now: SourceFile, why: Why = "other") -> None:
+        """Note what is on the disk now."""
+        known = self._known.get(name)
+        if known is None:
+            known = _FileState.of(SourceFile("", NO_FILE))
+        if now.digest == NO_FILE and known.last.digest == NO_FILE:
+            return  # a new file, still
+        if now.digest == NO_FILE:
+            now = SourceFile("", NO_FILE, problem=self._fate(known.last))
+        changed = _FileState(known.last if now.problem else now, now)
+        if name in self._known and changed.state == known.state:
+            return
+        self._known[name] = changed
+        self._order += 1
+        self._keep(name, known.now.data, why)
+        self._keep(name, now.data, why)
+
+    def _fate(self, last: SourceFile) -> str:
+        """Return what became of a file that is gone."""
+        try:
+            for entry in os.scandir(self.folder):
+                is_it = entry.name.endswith(".py") and last.inode and entry.inode() == last.inode
+                # A number of a file that is gone is soon that of another one.
+                if is_it and SourceFile.of(Path(entry)).digest == last.digest:
+                    return f"was renamed to {entry.name}"
+        except OSError:
+            pass
+        return "was deleted"
+
+    # Saving
+
+    def save(self, name: str, text: str, digest: str | None, *, in_place: bool = False) -> Saved:
+        """Write a text, unless the disk has another one than its author knows.
 
         Args:
             name: The name of a file in the folder.
             text: The text.
             digest: The digest of what it replaces; None or "" for a new file.
+            in_place: Whether the file itself is written, with all its other names.
 
         Raises:
             LoadError: There is no such name, or the text cannot be in a file.
             SaveError: The file cannot be written.
         """
         path = self._path_of(name)
-        there = SourceFile.of(path) if os.path.lexists(path) else SourceFile("", "")
-        if there.digest != (digest or ""):
-            return Saved(digest=there.digest, conflict=there.text)
-        data = there.encoded(name, text)
-        with replacement(path) as file:
-            file.write(data)
-        self._known[name] = SourceFile(text, digest_of(data), there.ends, there.mark)
-        return Saved(digest=digest_of(data))
+        with self._lock:
+            there = SourceFile.of(path)
+            self._observe(name, there)
+            if there.digest == UNREADABLE:
+                raise LoadError(f"{name} is not saved: what is there now {there.problem}")
+            if there.digest != (digest or NO_FILE):
+                return self._conflict(name, there)
+            data = there.encoded(name, text)
+            try:
+                written = save(path, data, expected=there.digest, in_place=in_place)
+            except ChangedError:  # since it was read above
+                return self._conflict(name, self._file(name))
+            except LinkedError as error:
+                return self._conflict(name, there, refusal=str(error))
+            # Not read again: what another program has written since then would be taken for ours.
+            self._observe(name, self._written(path, there, data), "saved")
+            self._told[name] = self._known[name].state
+            other = written.other
+            if other is not None:
+                self._keep(name, other, "other")
+            return Saved(
+                digest=written.digest,
+                other=None if other is None else version_text(other),
+                unkept=self.unkept,
+                order=self._order,
+            )
+
+    def _written(self, path: Path, before: SourceFile, data: bytes) -> SourceFile:
+        inode = 0
+        with contextlib.suppress(OSError):
+            inode = path.stat().st_ino
+        text = plain(data.decode("utf-8"))
+        return replace(
+            before, text=text, digest=digest_of(data), data=data, problem="", inode=inode
+        )
+
+    def _conflict(self, name: str, there: SourceFile, refusal: str = "") -> Saved:
+        self._observe(name, there)
+        known = self._known.get(name)
+        problem = (known.now.problem if known is not None else "") or there.problem
+        return Saved(
+            digest=there.digest,
+            is_saved=False,
+            conflict=None if problem or refusal else there.text,
+            problem="" if refusal else problem,
+            refusal=refusal,
+            order=self._order,
+        )
 
     def _path_of(self, name: str) -> Path:
         try:
@@ -164,7 +245,7 @@ class SceneFiles:
         except LoadError as error:
             raise LoadError(f"{error.reason} in {self.folder}") from None
         path = self.folder / name
-        if not self._is_inside(path):
+        if name != self.main and not self._is_inside(path):
             raise LoadError(f"'{name[:80]}' is not the name of a Python file in {self.folder}")
         return path
 
@@ -175,28 +256,49 @@ class SceneFiles:
         except (OSError, ValueError):
             return False
 
-    def _found(self) -> Iterator[tuple[str, SourceFile]]:
-        """Yield the scene's file and the modules that it imports, and those that they import."""
-        waiting, seen = [self.main], {self.main}
+    def _seen(self) -> Iterator[tuple[str, SourceFile]]:
+        """Yield what is on the disk: of files that are known, and modules that they import."""
+        waiting = list(dict.fromkeys((self.main, *self._known)))
+        seen = set(waiting)
         while waiting:
             name = waiting.pop()
-            file = self._read(name)
+            file = self._file(name)
             yield name, file
-            for beside in sorted(f"{module}.py" for module in _imported(file.text)):
+            known = self._known.get(name)
+            text = known.last.text if file.problem and known is not None else file.text
+            for beside in sorted(f"{module}.py" for module in _imported(text)):
                 path = self.folder / beside
-                is_there = beside in self._known or (path.is_file() and self._is_inside(path))
-                if is_there and beside not in seen:
+                if beside not in seen and os.path.isfile(path) and self._is_inside(path):
                     seen.add(beside)
                     waiting.append(beside)
 
-    def _read(self, name: str) -> SourceFile:
-        known = self._known.get(name)
-        if known is not None and not known.digest:
-            return known  # not saved yet
+    def _file(self, name: str) -> SourceFile:
+        """Return what is on the disk now."""
         path = self.folder / name
-        if known is not None and not path.exists():
-            return SourceFile(known.text, "", known.ends, known.mark)
+        if name != self.main and os.path.lexists(path) and not self._is_inside(path):
+            return SourceFile("", UNREADABLE, problem="leads out of the folder")
         return SourceFile.of(path)
+
+    def _states(self) -> dict[str, tuple[str, str]]:
+        return {name: known.state for name, known in self._known.items()}
+
+    def _message(self, names: list[str]) -> Changed:
+        known = {name: self._known[name] for name in names}
+        return Changed(
+            files={name: one.last.text for name, one in known.items()},
+            digests={name: one.last.digest for name, one in known.items()},
+            problems={
+                name: DiskProblem(digest=one.now.digest, text=one.now.problem)
+                for name, one in known.items()
+                if one.now.problem
+            },
+            order=self._order,
+        )
+
+
+def version_text(data: bytes) -> str:
+    """Return the text of a version's bytes; what is not UTF-8 is replaced."""
+    return plain(data.decode("utf-8", "replace"))
 
 
 def _imported(text: str) -> set[str]:
@@ -205,17 +307,10 @@ def _imported(text: str) -> set[str]:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return set()
-    found: set[str] = set()
+    names: set[str] = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
-            found |= {alias.name.partition(".")[0] for alias in node.names}
+            names |= {alias.name.partition(".")[0] for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            found.add(node.module.partition(".")[0])
-    return found
-
-
-def _told(files: dict[str, SourceFile]) -> Changed:
-    return Changed(
-        files={name: file.text for name, file in files.items()},
-        digests={name: file.digest for name, file in files.items()},
-    )
+            names.add(node.module.partition(".")[0])
+    return names

@@ -7,14 +7,17 @@ own, which makes the page as ``distal export`` does; one that takes too long is 
 from __future__ import annotations
 
 import contextlib
+import hmac
 import json
 import queue
 import secrets
 import sys
 import time
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
+from distal.editor.local.connection import TabConnection
 from distal.editor.local.process import ChildProcess
 from distal.editor.local.scratch import LESSON, ScratchFolder
 from distal.editor.local.serving import NOT_FOUND, HttpReply, LocalServer
@@ -25,6 +28,7 @@ _LOOK_S: Final = 0.3
 _TICK_S: Final = 0.05
 _SUFFIXES: Final = (".md", ".py", ".png", ".jpg", ".hdr", ".exr", ".svg")
 _SHELL: Final = Path(__file__).with_name("lesson.html")
+_SCRIPT: Final = Path(__file__).parent.parent / "app" / "lesson_page.js"
 
 
 class LessonServer(LocalServer):
@@ -43,7 +47,7 @@ class LessonServer(LocalServer):
     def __init__(self, lesson: Path, port: int = 0, limit: float = MAKING_S) -> None:
         self._lesson, self._limit = lesson.resolve(), limit
         self._page = b""
-        self._count = 0
+        self._address = ""  # of the page; whoever has it may read the page
         self._text = "The page is made …"
         self._process: ChildProcess | None = None
         self._process_lock = new_lock()
@@ -86,7 +90,7 @@ class LessonServer(LocalServer):
             mistake = self._mistake_of_making(page)
             if mistake is None:
                 self._page = page.read_bytes()
-                self._count += 1
+                self._address = f"/lesson/{secrets.token_urlsafe(24)}"
         except FileNotFoundError:
             mistake = "The page was not made: a scene's code ended the process (exit status 0)."
         except OSError as error:
@@ -129,29 +133,33 @@ class LessonServer(LocalServer):
         self._send_all(self._state())
 
     def _state(self) -> str:
-        return json.dumps({"text": self._text, "count": self._count})
+        return json.dumps({"text": self._text, "address": self._address})
 
-    def _talk(self, connection: Any) -> None:
+    def _settings(self) -> Mapping[str, object]:
+        return {"name": self._lesson.name}
+
+    def _talk(self, connection: TabConnection) -> None:
         connection.send(self._state())
         for _ in connection:
             pass
 
     def _reply(self, path: str) -> HttpReply:
-        if path == "/lesson" and self._page:
+        if self._address and hmac.compare_digest(path.encode(), self._address.encode()):
             # The page has a policy of its own, with the hashes of its scripts.
             policy = (("Content-Security-Policy", "frame-ancestors 'self'"),)
             return HttpReply(200, self._page, "text/html", policy)
+        if path == f"/{_SCRIPT.name}":
+            return HttpReply(200, _SCRIPT.read_bytes(), "text/javascript")
         if path != "/":
             return HttpReply(NOT_FOUND, b"There is no such page.\n")
         nonce = secrets.token_urlsafe(16)
         text = _SHELL.read_text(encoding="utf-8").replace("{nonce}", nonce)
-        name = self._lesson.name.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
         policy = (
             (
                 "Content-Security-Policy",
-                f"default-src 'none'; script-src 'nonce-{nonce}'; style-src 'nonce-{nonce}'; "
+                f"default-src 'none'; script-src 'self'; style-src 'nonce-{nonce}'; "
                 f"frame-src 'self'; connect-src ws://{self._guard.authority}; "
                 "frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
             ),
         )
-        return HttpReply(200, text.replace("{name}", name).encode(), "text/html", policy)
+        return HttpReply(200, text.encode(), "text/html", policy)

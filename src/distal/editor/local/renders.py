@@ -38,8 +38,8 @@ from distal.editor.messages import (
     RenderRequest,
 )
 from distal.editor.scene_folder import check_name, encoded_text, link_beside
+from distal.file_writer import SaveError, TakenError, replacement
 from distal.forking import new_lock
-from distal.images.atomic_files import SaveError, replacement
 from distal.lang.lazy_module import LazyModule
 from distal.lang.progress_lines import KEY, LOADING, STAGES
 
@@ -292,17 +292,10 @@ def placed(file: Path, folder: Path) -> Path:
     for count in itertools.count(1):
         path = folder / (file.name if count == 1 else f"{file.stem}-{count}{file.suffix}")
         try:
-            path.open("xb").close()  # the name is taken from now on
-        except FileExistsError:
-            continue
-        except OSError as error:
-            raise SaveError(f"cannot write {path}: {error.strerror or error}") from None
-        try:
-            with replacement(path) as target, file.open("rb") as source:
+            with replacement(path, new=True) as target, file.open("rb") as source:
                 shutil.copyfileobj(source, target)
-        except BaseException:
-            path.unlink(missing_ok=True)
-            raise
+        except TakenError:  # the name is taken
+            continue
         break
     return path
 

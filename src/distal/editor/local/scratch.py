@@ -22,6 +22,7 @@ if sys.platform != "win32":
 WORKER: Final = "distal_studio_"
 RENDER: Final = "distal_render_"
 LESSON: Final = "distal_lesson_"
+OPENING: Final = "distal_opening_"
 _LOCK: Final = ".owner"
 _YOUNGEST_S: Final = 60.0  # a younger folder may not be locked yet
 
@@ -67,7 +68,7 @@ def _is_taken(lock: int) -> bool:
 
 def sweep() -> None:
     """Remove the folders of studios that were killed."""
-    for prefix in (WORKER, RENDER, LESSON):
+    for prefix in (WORKER, RENDER, LESSON, OPENING):
         for folder in Path(tempfile.gettempdir()).glob(f"{prefix}*"):
             with contextlib.suppress(OSError):  # another's, without a lock, or gone in this moment
                 if time.time() - folder.stat().st_mtime < _YOUNGEST_S:

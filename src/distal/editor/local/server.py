@@ -6,19 +6,20 @@ tab has a worker in a process of its own. Uses ``websockets``.
 
 from __future__ import annotations
 
-import contextlib
 import json
 import secrets
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 from urllib.parse import unquote
 
-from distal.diagnostics import LoadError
+from distal.editor.local.connection import TabConnection
+from distal.editor.local.drafts import Drafts
 from distal.editor.local.early import EarlyWorker
 from distal.editor.local.files import SceneFiles
 from distal.editor.local.renders import CODE_S as RENDER_CODE_S
 from distal.editor.local.renders import RenderLimits, RenderQueue
-from distal.editor.local.serving import NOT_FOUND, HttpReply, LocalServer
+from distal.editor.local.serving import NOT_FOUND, RESULT_S, HttpReply, LocalServer
 from distal.editor.local.tab import CODE_S, StudioTab
 from distal.editor.messages import Changed, Restarted, encoded
 from distal.example_files import all_examples, posters
@@ -38,9 +39,10 @@ class StudioServer(LocalServer):
         limit: Seconds that the author's code has.
         early: A worker for the first tab.
         renders: The limits of time of renders; None for those of ``RenderLimits``.
+        drafts: Where drafts and versions are kept; None for the user's state.
 
     Raises:
-        PackageError: ``websockets`` is not installed.
+        PackageError: ``websockets`` or ``platformdirs`` is not installed.
         OSError: The port is taken.
     """
 
@@ -51,8 +53,11 @@ class StudioServer(LocalServer):
         limit: float = CODE_S,
         early: EarlyWorker | None = None,
         renders: RenderLimits | None = None,
+        drafts: Drafts | None = None,
     ) -> None:
         self._files, self._limit, self._early = files, limit, early
+        self._drafts = drafts or Drafts.of_user(files.folder)
+        files.keep_in(self._drafts)
         self._renders = RenderQueue(
             files.folder, renders or RenderLimits(max(limit, RENDER_CODE_S))
         )
@@ -73,14 +78,12 @@ class StudioServer(LocalServer):
             self._early.end()
         self._renders.close()
         super().close()
+        self._drafts.close()
 
     # Sockets
 
-    def _talk(self, connection: Any) -> None:
-        def send(text: str) -> None:
-            with contextlib.suppress(self._closed):  # the tab is gone: the loop below ends
-                connection.send(text)
-
+    def _talk(self, connection: TabConnection) -> None:
+        send = connection.send
         send(encoded(self._files.all()))
         early, self._early = self._early, None
         try:
@@ -106,10 +109,7 @@ class StudioServer(LocalServer):
     def _look_at_files(self) -> None:
         """Tell all tabs what other programs have changed."""
         while not self._over.wait(_LOOK_S):
-            try:
-                changed = self._files.read()
-            except (LoadError, OSError):
-                continue  # while it is written; or gone: the app still has the text
+            changed = self._files.read()
             if changed is not None:
                 self._tell(changed)
 
@@ -130,24 +130,22 @@ class StudioServer(LocalServer):
             return HttpReply(200, (APP / name).read_bytes(), _TYPES[Path(name).suffix])
         return HttpReply(404, b"There is no such page.\n")
 
-    def _page(self) -> HttpReply:
-        nonce = secrets.token_urlsafe(16)
-        settings = {
+    def _settings(self) -> Mapping[str, object]:
+        return {
             "main": self._files.main,
             "folder": str(self._files.folder),
             "isNew": self._files.is_new,
             "gallery": examples(),
-            "nonce": nonce,
             "version": __version__,
         }
+
+    def _page(self) -> HttpReply:
+        nonce = secrets.token_urlsafe(16)
         text = (APP / "studio.html").read_text(encoding="utf-8")
-        # Inside of a script, only "<" could end it.
-        filled = json.dumps(settings).replace("<", "\\u003c")
-        body = text.replace("{nonce}", nonce).replace("{settings}", filled).encode()
-        sources = f"'self' ws://{self._guard.authority}"
+        body = text.replace("{nonce}", nonce).encode()
         policy = (
-            f"default-src 'none'; script-src 'self' 'nonce-{nonce}'; style-src 'self' "
-            f"'nonce-{nonce}'; img-src 'self' data: blob:; connect-src {sources}; "
+            f"default-src 'none'; script-src 'self'; style-src 'self' 'nonce-{nonce}'; "
+            f"img-src 'self' data: blob:; connect-src 'self' ws://{self._guard.authority}; "
             "frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
         )
         return HttpReply(200, body, "text/html", (("Content-Security-Policy", policy),))
@@ -157,7 +155,7 @@ class StudioServer(LocalServer):
         data = self._renders.result(folder, token)
         if data is None:
             return HttpReply(NOT_FOUND, b"This picture is not there any more: render it again.\n")
-        return HttpReply(200, data, "application/octet-stream")
+        return HttpReply(200, data, "application/octet-stream", limit=RESULT_S)
 
 
 def _of_gallery(file: str) -> HttpReply:

@@ -16,6 +16,7 @@ from typing import Final
 from distal.diagnostics import LoadError
 from distal.editor.local.early import EARLY_ID, EarlyWorker
 from distal.editor.local.files import SceneFiles
+from distal.editor.local.keeping import TabKeeping, refusal
 from distal.editor.local.process import WorkerProcess
 from distal.editor.local.renders import RenderQueue, command_of, render_choices
 from distal.editor.messages import (
@@ -25,21 +26,23 @@ from distal.editor.messages import (
     Changed,
     ChoicesRequest,
     CommandRequest,
+    DraftRequest,
     Dropped,
+    HelloRequest,
     Message,
     MessageError,
-    Mistake,
-    Mistakes,
     Planned,
     RenderRequest,
     Restarted,
     SaveRequest,
     StopRequest,
+    VersionRequest,
+    VersionsRequest,
     encoded,
     parsed,
 )
+from distal.file_writer import SaveError
 from distal.forking import new_lock
-from distal.images.atomic_files import SaveError
 
 # Seconds that the author's code has, and that a compilation, a check or an export has after it.
 CODE_S: Final = 5.0
@@ -74,6 +77,7 @@ class StudioTab:
     ) -> None:
         self._files, self._send, self._limit, self._start = files, send, limit, start
         self._on_saved, self._renders = saved, renders
+        self._keeping = TabKeeping(files)
         self._lock = new_lock()
         self._waiting: dict[int, int] = {}  # the revision by id, in the order of arrival
         self._ends = 0.0
@@ -89,13 +93,16 @@ class StudioTab:
         try:
             self._take(parsed(text))
         except MessageError as error:
-            self._tell(_refusal(-1, -1, str(error)))
+            self._tell(refusal(-1, -1, str(error)))
         except RecursionError:
-            self._tell(_refusal(-1, -1, "the message is nested too deeply"))
+            self._tell(refusal(-1, -1, "the message is nested too deeply"))
 
     def _take(self, request: Message) -> None:
         if isinstance(request, SaveRequest):
             self._tell(self._saved(request))
+        elif isinstance(request, HelloRequest | DraftRequest | VersionsRequest | VersionRequest):
+            for message in self._keeping.answered(request):
+                self._tell(message)
         elif isinstance(request, RenderRequest | CommandRequest | ChoicesRequest | CancelRequest):
             self._render(request)
         elif isinstance(request, AppRequest) and not isinstance(request, StopRequest):
@@ -110,6 +117,7 @@ class StudioTab:
         with self._lock:
             self._is_over = True
             self._worker.kill()
+        self._keeping.end()
         if self._renders is not None:
             self._renders.forget(self)
 
@@ -119,7 +127,7 @@ class StudioTab:
         """Begin or end a render, or answer a question about one."""
         number = request.numbers
         if self._renders is None:
-            self._tell(_refusal(**number, text="nothing is rendered here"))
+            self._tell(refusal(**number, text="nothing is rendered here"))
         elif isinstance(request, CancelRequest):
             self._renders.cancel(self, request.job)
         elif isinstance(request, RenderRequest):
@@ -131,19 +139,20 @@ class StudioTab:
             try:
                 planned = Planned(command=command_of(request))
             except LoadError as error:
-                self._tell(_refusal(**number, text=error.reason))
+                self._tell(refusal(**number, text=error.reason))
             else:
                 self._tell(Answer(**number, request="command", result=planned))
 
     def _saved(self, request: SaveRequest) -> Message:
+        name = request.file
         try:
-            saved = self._files.save(request.file, request.text, request.digest)
+            saved = self._files.save(name, request.text, request.digest, in_place=request.in_place)
         except (LoadError, SaveError) as error:
             reason = error.reason if isinstance(error, LoadError) else str(error)
-            return _refusal(request.id, request.revision, reason)
-        if saved.conflict is None:
-            name = request.file
-            self._on_saved(Changed(files={name: request.text}, digests={name: saved.digest}))
+            return refusal(request.id, request.revision, reason)
+        if saved.is_saved:
+            texts, digests = {name: request.text}, {name: saved.digest}
+            self._on_saved(Changed(files=texts, digests=digests, order=saved.order))
         return Answer(**request.numbers, request="save", result=saved)
 
     def _started(self, early: EarlyWorker | None = None) -> WorkerProcess:
@@ -220,8 +229,3 @@ class StudioTab:
 
     def _tell(self, message: Message) -> None:
         self._send(encoded(message))
-
-
-def _refusal(id: int, revision: int, text: str) -> Mistakes:
-    mistakes = (Mistake(severity="error", message=text),)
-    return Mistakes(id=id, revision=revision, mistakes=mistakes)

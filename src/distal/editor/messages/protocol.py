@@ -21,7 +21,7 @@ from distal.editor.messages.records import (
 )
 from distal.editor.messages.requests import AppRequest
 from distal.editor.messages.responses import Answer
-from distal.editor.messages.results import RenderFormat
+from distal.editor.messages.results import DiskProblem, RenderFormat, UnsavedText, VersionEntry
 
 LONGEST_MESSAGE: Final = 64_000_000  # characters of a message
 LONGEST_PRINTED: Final = 20_000  # characters that are kept of what the author's code prints
@@ -66,7 +66,7 @@ def _check_result(answer: Answer) -> None:
 def records() -> Iterator[type]:
     """Yield every record that a message is or has, each once: those in a message first."""
     yield from (Change, Edit, SourceLiteral, ShapePlace, MistakeLabel, Mistake)
-    yield RenderFormat
+    yield from (RenderFormat, DiskProblem, UnsavedText, VersionEntry)
     yield from (made.result for made in REQUESTS if made.result is not None)
     yield from REQUESTS
     yield from RESPONSES

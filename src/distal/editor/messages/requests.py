@@ -13,8 +13,10 @@ from distal.editor.messages.records import Change, Value
 from distal.editor.messages.results import (
     Checked,
     Counting,
+    DraftAnswer,
     EmittedText,
     ExportedFile,
+    Greeted,
     LineTiming,
     Planned,
     ProbeResult,
@@ -22,6 +24,8 @@ from distal.editor.messages.results import (
     Rendered,
     Saved,
     ShapeMap,
+    VersionList,
+    VersionText,
     Written,
 )
 
@@ -235,11 +239,63 @@ class CancelRequest(AppRequest):
 
 @message("save", Saved)
 class SaveRequest(AppRequest):
-    """Write a file (local only; the server answers). ``digest`` is that of the text it replaces."""
+    """Write a file (local only; the server answers).
+
+    Attributes:
+        file: The file's name.
+        text: Its new text.
+        digest: The digest of what it replaces; None or "" for a new file.
+        in_place: Whether the file itself is written, not replaced by another: other names of it
+            (hard links) then have the new text, too.
+    """
 
     file: str
     text: str
     digest: str | None = None
+    in_place: bool = False
+
+
+@message("hello", Greeted)
+class HelloRequest(AppRequest):
+    """Say which tab this is (local only; the server answers).
+
+    Attributes:
+        tab: The name that the tab had before it was loaded again, or "".
+        is_new: Whether it has no texts yet: then it gets the drafts of tabs that are gone.
+    """
+
+    tab: str = ""
+    is_new: bool = True
+
+
+@message("draft", DraftAnswer)
+class DraftRequest(AppRequest):
+    """Keep an unsaved text (local only; the server answers).
+
+    Attributes:
+        file: The file's name.
+        text: The text; None where the file on the disk has it.
+        digest: The digest of the text on the disk that it began with; "" for a new file.
+    """
+
+    file: str
+    text: str | None
+    digest: str = ""
+
+
+@message("versions", VersionList)
+class VersionsRequest(AppRequest):
+    """List the versions of a file that are kept (local only; the server answers)."""
+
+    file: str
+
+
+@message("version", VersionText)
+class VersionRequest(AppRequest):
+    """Give the text of a version (local only; the server answers)."""
+
+    file: str
+    version: str
 
 
 @message("stop")

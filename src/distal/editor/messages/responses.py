@@ -17,7 +17,7 @@ from distal.editor.messages.records import (
     SourceLiteral,
     UniformValue,
 )
-from distal.editor.messages.results import Result
+from distal.editor.messages.results import DiskProblem, Result
 
 
 @message("ready")
@@ -148,10 +148,19 @@ class Progress(Reply):
 
 @message("changed")
 class Changed(Message):
-    """Files were changed by another program (local only; from the server): their new texts."""
+    """How files are on the disk (local only; from the server): all at first, then what changes.
+
+    Attributes:
+        files: The texts by name; of a file with a problem the last one that it had.
+        digests: Of these texts; "" for those that are not on the disk yet.
+        problems: Of files that have no text now.
+        order: Grows with each change: an older message says nothing of newer ones.
+    """
 
     files: dict[str, str]
     digests: dict[str, str]
+    problems: dict[str, DiskProblem] = field(default_factory=dict)
+    order: int = 0
 
 
 @message("restarted")

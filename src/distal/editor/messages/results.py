@@ -122,10 +122,104 @@ class Checked:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Saved:
-    """The file is on the disk, with this digest; or a conflict: what is there instead."""
+    """The file is on the disk with this digest; or it is not written, and this is there instead.
+
+    Attributes:
+        digest: Of what is on the disk now; "" for nothing, "?" for what cannot be read.
+        is_saved: Whether the text is on the disk.
+        conflict: The text that is there instead; None where there is none.
+        problem: What is wrong with the file that is there instead, as ``DiskProblem.text``; or "".
+        refusal: Why the file is not replaced, although ``in_place`` would write it; or "".
+        other: What another program wrote while the file was replaced; it is among the versions.
+        unkept: Why the versions cannot be kept; "" where they are.
+        order: As in ``changed``.
+    """
 
     digest: str
+    is_saved: bool = True
     conflict: str | None = None
+    problem: str = ""
+    refusal: str = ""
+    other: str | None = None
+    unkept: str = ""
+    order: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DiskProblem:
+    """A file on the disk that has no text.
+
+    Attributes:
+        digest: Of its bytes; "" if it is gone, "?" if it cannot be read.
+        text: What is wrong, for a sentence that begins with its name: "was deleted".
+    """
+
+    digest: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class UnsavedText:
+    """A draft: a text, and the digest of what was on the disk when it began."""
+
+    text: str
+    digest: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Greeted:
+    """What a tab begins with.
+
+    Attributes:
+        tab: The tab's name, to be said when the page is loaded again.
+        drafts: Its unsaved texts by file.
+        others: Files of which other unsaved texts were there; they are versions now.
+        unkept: Why nothing can be kept; "" where it can.
+    """
+
+    tab: str
+    drafts: dict[str, UnsavedText]
+    others: tuple[str, ...]
+    unkept: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DraftAnswer:
+    """The draft is kept; or ``unkept`` says why not."""
+
+    unkept: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VersionEntry:
+    """A version of a file.
+
+    Attributes:
+        name: Names it in ``version``.
+        at: When it was kept, in milliseconds since 1970.
+        why: "opened" (on the disk then), "saved" (here), "other" (by another program), "typed"
+            (in the page), "left" (in a tab that is gone).
+        size: In bytes.
+    """
+
+    name: str
+    at: float
+    why: str
+    size: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VersionList:
+    """The versions of a file, the newest first."""
+
+    versions: tuple[VersionEntry, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VersionText:
+    """The text of a version."""
+
+    text: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -209,4 +303,8 @@ Result: TypeAlias = (
     | Planned
     | Rendered
     | Saved
+    | Greeted
+    | DraftAnswer
+    | VersionList
+    | VersionText
 )  # in TypeScript, the type that `Results` has for the kind of the request

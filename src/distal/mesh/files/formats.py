@@ -15,7 +15,7 @@ from typing import Any, BinaryIO, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.images.atomic_files import SaveError, check_destination, replacement
+from distal.file_writer import SaveError, check_destination, replacement
 from distal.lang.units import MILLIMETER, meters_of
 from distal.mesh.files.glb import write_glb
 from distal.mesh.files.obj import write_obj

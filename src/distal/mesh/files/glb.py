@@ -15,7 +15,7 @@ from typing import Any, BinaryIO, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.mesh.files.parts import FilePart, Finish
 
 _FLOAT, _UINT, _USHORT = 5126, 5125, 5123

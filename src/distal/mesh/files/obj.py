@@ -11,7 +11,7 @@ from typing import Any, BinaryIO, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.mesh.files.parts import FilePart, display_codes
 
 _MOST_MATERIALS: Final = 1024

@@ -13,7 +13,7 @@ from typing import Any, Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.lang.runtime_access import executor
 from distal.lang.srgb import encode_srgb
 

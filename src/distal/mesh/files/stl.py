@@ -10,7 +10,7 @@ from typing import BinaryIO, Final
 
 import numpy as np
 
-from distal.images.atomic_files import SaveError
+from distal.file_writer import SaveError
 from distal.mesh.files.parts import FilePart
 
 # The text must not begin with "solid", by which readers recognize the other kind of STL.

@@ -10,7 +10,6 @@ import type { EditorState } from "@codemirror/state";
 import type { Payload } from "../../payload";
 import type { Keeping } from "../keeping";
 import type { Studio } from "../studio";
-import { Bars } from "./bars";
 import { Heading } from "./heading";
 import { askToPersist, forget, leave, left } from "./last";
 import type { Release } from "./locks";
@@ -45,7 +44,6 @@ export class Scenes implements Keeping {
   readonly shelf = new Shelf((id) => this.#tell(id));
   readonly store: Store = this.shelf.store;
   readonly turns = new Turns(this);
-  readonly bars = new Bars();
   readonly heading = new Heading((name) => void this.rename(this.id, name), () => this.turns.tell());
   /** In another page it is small: nothing is read from the store, or written. */
   readonly isFrame = new URLSearchParams(location.search).has("embed");
@@ -92,7 +90,6 @@ export class Scenes implements Keeping {
 
   /** Takes what earlier pages left into the store. */
   async start(): Promise<void> {
-    this.studio.page.notice.after(this.bars.element);
     this.studio.page.name.replaceWith(this.heading.element);
     if (this.isFrame) return;
     const isThere = !(await this.store.open());
@@ -183,14 +180,14 @@ export class Scenes implements Keeping {
     Object.assign(now, { record: scene, isKept: true, written: mine.files });
     if (!this.store.isMissing) forget(scene.id);
     if (!isKept) this.#becameScene(scene);
-    if (scene.deleted === null) this.bars.hide("deleted");
+    if (scene.deleted === null) this.studio.page.bar("deleted", null);
     this.#tell(scene.id);
   }
 
   /** The texts are a scene from now on. */
   #becameScene({ id }: r.SceneRecord): void {
     if (!this.#isLeaving) history.replaceState(null, "", `#scene=${id}`);
-    this.bars.hide("earlier");
+    this.studio.page.bar("earlier", null);
     this.showName();
     this.pictured();
     askToPersist();
@@ -263,7 +260,7 @@ export class Scenes implements Keeping {
     opening.show(record, isOther, payload);
     editor.isReadOnly = !release;
     this.turns.wait();
-    if (isOther || release) for (const bar of ["reader", "earlier", "deleted"]) this.bars.hide(bar);
+    if (isOther || release) for (const bar of ["reader", "earlier", "deleted"]) this.studio.page.bar(bar, null);
     this.showName();
   }
 
@@ -271,11 +268,11 @@ export class Scenes implements Keeping {
   async #tellEarlier(from: r.Origin): Promise<void> {
     const earlier = await this.shelf.begunAs(from);
     if (!earlier) return;
-    this.bars.show(
+    this.studio.page.bar(
       "earlier",
       earlierText(earlier),
       ["Open it", () => this.studio.opening.goTo(`#scene=${earlier.id}`)],
-      ["Go on with the original", () => this.bars.hide("earlier")],
+      ["Go on with the original", () => this.studio.page.bar("earlier", null)],
     );
   }
 
@@ -361,9 +358,9 @@ export class Scenes implements Keeping {
   }
 
   #failed(error: Error | null): void {
-    if (!error) return this.bars.hide("storage");
+    if (!error) return this.studio.page.bar("storage", null);
     const { sharing } = this.studio;
-    this.bars.show(
+    this.studio.page.bar(
       "storage",
       failureText(error),
       ["Save a copy", () => sharing.saveSource()],

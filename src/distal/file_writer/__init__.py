@@ -1,0 +1,40 @@
+"""Write files: completely or not at all, and never over what another program saved unseen.
+
+Input: a path and bytes, and what the caller knows of the file that they replace. Output: the file,
+replaced in one step, with the mode and the owner of the old one. Every file that distal writes for
+its user is written here. Needs the standard library alone.
+"""
+
+from distal.file_writer.destinations import (
+    ChangedError,
+    LinkedError,
+    SaveError,
+    TakenError,
+    check_destination,
+    name_beside,
+)
+from distal.file_writer.writing import (
+    ANY,
+    SavedBytes,
+    Unchecked,
+    digest_of,
+    move_into_place,
+    replacement,
+    save,
+)
+
+__all__ = [
+    "ANY",
+    "ChangedError",
+    "LinkedError",
+    "SaveError",
+    "SavedBytes",
+    "TakenError",
+    "Unchecked",
+    "check_destination",
+    "digest_of",
+    "move_into_place",
+    "name_beside",
+    "replacement",
+    "save",
+]
