@@ -25,6 +25,8 @@ export interface PictureEvents {
   /** Asks for the program that knows where the camera is; resolves when it is there, or none can be. */
   guide(): Promise<void>;
   drawn(text: string): void;
+  /** The name of what is saved, where that is not the file's. */
+  named(): string;
   /** The program of a view, for its still. */
   program(view: string): Promise<Program | null>;
   /** Which shape each pixel shows. */
@@ -97,7 +99,8 @@ export class Picture {
   }
 
   async #show(payload: Payload): Promise<void> {
-    const shown = { ...payload, embed: true, panel: false };
+    const name = this.events.named() || payload.name;
+    const shown = { ...payload, name, embed: true, panel: false };
     if (!(await this.player?.load(shown))) this.#begin(shown);
     this.#fill(payload);
   }

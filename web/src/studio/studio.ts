@@ -61,9 +61,9 @@ export class Studio {
   ) {
     recallScheme();
     const { main, python } = settings;
-    const drafts = new Drafts(this);
     this.scenes = python ? new Scenes(this) : null;
-    this.keeping = this.scenes ?? drafts;
+    const drafts = python ? null : new Drafts(this);
+    this.keeping = this.scenes ?? drafts!;
     if (this.scenes?.isFrame) this.page.beFramed(() => this.sharing.whole());
     this.picture = this.#picture();
     this.costs = this.#costs();
@@ -79,7 +79,7 @@ export class Studio {
       restarted: ({ reason }) => this.looking.restarted(reason),
       state: (isOpen) => {
         this.looking.connected(isOpen);
-        if (python) return;
+        if (!drafts) return;
         this.files.connected(isOpen);
         void drafts.connected(isOpen);
       },
@@ -89,15 +89,16 @@ export class Studio {
     this.page.work.after(this.jobs.chip);
     document.title = `${main} · distal`;
     if (settings.start) void this.opening.begin(settings.start);
-    if (this.scenes) return;
-    for (const end of ["beforeunload", "pagehide"]) addEventListener(end, () => this.keeping.keep());
+    if (!this.scenes) {
+      for (const end of ["beforeunload", "pagehide"]) addEventListener(end, () => this.keeping.keep());
+    }
   }
 
   save(): Promise<void> {
     return this.files.save();
   }
 
-    #picture(): Picture {
+  #picture(): Picture {
     const { asking, looking, page } = this;
     const picture = new Picture({
       view: () => {
@@ -113,6 +114,7 @@ export class Studio {
       },
       refused: (reason) => page.tell(reason, ["Close", () => {}]),
       drawn: (text) => (page.drawn.textContent = text),
+      named: () => this.scenes?.name ?? "",
       guide: () => looking.guide(this.texts.revision),
       program: (view) => looking.program(view),
       map: () => asking.map(),

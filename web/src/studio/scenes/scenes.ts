@@ -10,7 +10,6 @@ import type { EditorState } from "@codemirror/state";
 import type { Payload } from "../../payload";
 import type { Keeping } from "../keeping";
 import type { Studio } from "../studio";
-import { Bars } from "./bars";
 import { Heading } from "./heading";
 import { askToPersist, forget, leave, left } from "./last";
 import type { Release } from "./locks";
@@ -45,7 +44,6 @@ export class Scenes implements Keeping {
   readonly shelf = new Shelf((id) => this.#tell(id));
   readonly store: Store = this.shelf.store;
   readonly turns = new Turns(this);
-  readonly bars = new Bars();
   readonly heading = new Heading((name) => void this.rename(this.id, name), () => this.turns.tell());
   /** In another page it is small: nothing is read from the store, or written. */
   readonly isFrame = new URLSearchParams(location.search).has("embed");
@@ -92,7 +90,6 @@ export class Scenes implements Keeping {
 
   /** Takes what earlier pages left into the store. */
   async start(): Promise<void> {
-    this.studio.page.notice.after(this.bars.element);
     this.studio.page.name.replaceWith(this.heading.element);
     if (this.isFrame) return;
     const isThere = !(await this.store.open());
@@ -119,7 +116,8 @@ export class Scenes implements Keeping {
   /** The page ends, or may: what is not written is left where no promise is needed. */
   #leave(): void {
     const now = this.now;
-    if (!now?.release || !this.#isChanged) return void this.write();
+    const isStored = !this.#isChanged && !this.store.isMissing;
+    if (!now?.release || isStored) return void this.write();
     leave({ scene: this.textsNow(now), base: now.record.changed, at: Date.now() });
     void this.write();
   }
@@ -154,6 +152,7 @@ export class Scenes implements Keeping {
     return this.afterwards(() => this.writeNow(why, isWanted));
   }
 
+  /** As `write`, for what is done within the queue. */
   async writeNow(why?: r.Reason, isWanted = false): Promise<void> {
     const now = this.now;
     if (this.isFrame || !now?.release) return;
@@ -181,14 +180,14 @@ export class Scenes implements Keeping {
     Object.assign(now, { record: scene, isKept: true, written: mine.files });
     if (!this.store.isMissing) forget(scene.id);
     if (!isKept) this.#becameScene(scene);
-    this.bars.hide("deleted");
+    if (scene.deleted === null) this.studio.page.bar("deleted", null);
     this.#tell(scene.id);
   }
 
   /** The texts are a scene from now on. */
   #becameScene({ id }: r.SceneRecord): void {
     if (!this.#isLeaving) history.replaceState(null, "", `#scene=${id}`);
-    this.bars.hide("earlier");
+    this.studio.page.bar("earlier", null);
     this.showName();
     this.pictured();
     askToPersist();
@@ -198,6 +197,7 @@ export class Scenes implements Keeping {
     return !!this.now && !r.sameTexts(this.studio.texts.files, this.now.written);
   }
 
+  /** The record of a scene with the texts and the picture as they are. */
   textsNow({ record }: Current): r.SceneRecord {
     const { values: _, camera: __, time: ___, ...rest } = record;
     return { ...rest, ...this.studio.opening.pose, files: this.studio.texts.files };
@@ -241,7 +241,7 @@ export class Scenes implements Keeping {
     this.#isLeaving = true;
     await this.writeNow("typed");
     // A key that was pressed meanwhile.
-    if (this.#isChanged) await this.writeNow("typed");
+    for (let tries = 0; tries < 3 && this.#isChanged; tries++) await this.writeNow("typed");
     this.#isLeaving = false;
     const { editor, opening, settings, texts } = this.studio;
     const old = this.now;
@@ -260,7 +260,7 @@ export class Scenes implements Keeping {
     opening.show(record, isOther, payload);
     editor.isReadOnly = !release;
     this.turns.wait();
-    if (isOther || release) for (const bar of ["reader", "earlier", "deleted"]) this.bars.hide(bar);
+    if (isOther || release) for (const bar of ["reader", "earlier", "deleted"]) this.studio.page.bar(bar, null);
     this.showName();
   }
 
@@ -268,11 +268,11 @@ export class Scenes implements Keeping {
   async #tellEarlier(from: r.Origin): Promise<void> {
     const earlier = await this.shelf.begunAs(from);
     if (!earlier) return;
-    this.bars.show(
+    this.studio.page.bar(
       "earlier",
       earlierText(earlier),
       ["Open it", () => this.studio.opening.goTo(`#scene=${earlier.id}`)],
-      ["Go on with the original", () => this.bars.hide("earlier")],
+      ["Go on with the original", () => this.studio.page.bar("earlier", null)],
     );
   }
 
@@ -281,6 +281,9 @@ export class Scenes implements Keeping {
     if (!now) return;
     this.heading.show(now.record.name, now.isKept || this.isFrame, !now.release);
     document.title = `${now.record.name} · distal`;
+    const { player } = this.studio.picture;
+    const { name } = now.record;
+    if (player && player.payload.name !== name) player.payload = { ...player.payload, name };
   }
 
   // What is done with scenes
@@ -355,9 +358,9 @@ export class Scenes implements Keeping {
   }
 
   #failed(error: Error | null): void {
-    if (!error) return this.bars.hide("storage");
+    if (!error) return this.studio.page.bar("storage", null);
     const { sharing } = this.studio;
-    this.bars.show(
+    this.studio.page.bar(
       "storage",
       failureText(error),
       ["Save a copy", () => sharing.saveSource()],

@@ -59,12 +59,12 @@ export class Turns {
     const { scenes } = this;
     const name = quoted(scenes.name);
     scenes.showName();
-    scenes.bars.show(
+    scenes.studio.page.bar(
       "reader",
       wasTaken
         ? `Another tab edits ${name} now. What you typed here is kept.`
         : `${name} is open in another tab: here you can read it.`,
-      ["Read on", () => scenes.bars.hide("reader")],
+      ["Read on", () => scenes.studio.page.bar("reader", null)],
       ["Edit a copy", () => void scenes.fork()],
       [wasTaken ? "Take it back" : "Edit it here", () => void this.takeOver()],
     );
@@ -128,18 +128,18 @@ export class Turns {
 
   /** Another tab wrote something of the scene that is edited here: its name, or that it is deleted. */
   async #learn(now: Current): Promise<void> {
-    const { bars, shelf, store } = this.scenes;
+    const { shelf, store, studio } = this.scenes;
     const { id } = now.record;
     const { name, deleted } = (await store.scene(id)) ?? now.record;
     now.record.name = name;
     this.scenes.showName();
-    if (deleted === null) return bars.hide("deleted");
+    if (deleted === null) return studio.page.bar("deleted", null);
     const text = `${quoted(name)} was deleted in another tab. Your next change brings it back.`;
     const restore = () => {
-      bars.hide("deleted");
+      studio.page.bar("deleted", null);
       void shelf.change(id, { deleted: null });
     };
-    bars.show("deleted", text, ["Bring it back", restore]);
+    studio.page.bar("deleted", text, ["Bring it back", restore]);
   }
 
   /** Shows what the tab that edits the scene has written. */
