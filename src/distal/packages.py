@@ -80,7 +80,6 @@ PACKAGES: Final = (
     Package("distributed", "cluster", "rendering on more than one machine"),
     Package("cryptography", "cluster", "the keys of --cluster local"),
     Package("websockets", "studio", "the studio in a browser"),
-    Package("platformdirs", "studio", "drafts of the studio"),
 )
 _BY_MODULE: Final = {package.imported_as: package for package in PACKAGES}
 # Texts of errors that loaders and libraries raise when memory runs out; the class varies.

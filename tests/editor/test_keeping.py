@@ -277,7 +277,7 @@ def test_a_module_that_becomes_a_link_out_of_the_folder_is_not_read(folder, tmp_
         (lambda p: p.rename(p.with_name("moved.py")), "was renamed to moved.py", ""),
         (lambda p: (p.unlink(), p.mkdir()), "is a folder", "?"),
         (lambda p: (p.unlink(), os.mkfifo(p)), "cannot be read: it is no ordinary file", "?"),
-        (lambda p: p.write_bytes(b"\xff\xfe\x00x"), "is not UTF-8 text", None),
+        (lambda p: p.write_bytes(b"\xff\xfe\x00x"), "is text in UTF-16; save it as UTF-8", None),
         (lambda p: (p.unlink(), p.symlink_to("no")), "is a link to a file that is not there", "?"),
     ],
 )

@@ -33,6 +33,7 @@ from distal.file_writer import (
     name_beside,
     replacement,
     save,
+    state,
     temporary,
     writing,
 )
@@ -967,6 +968,7 @@ def test_root_makes_no_folder_in_the_home_of_another(shared, monkeypatch):
     os.chown(shared, NOBODY, NOBODY)
     monkeypatch.delenv("XDG_STATE_HOME")
     monkeypatch.setenv("HOME", str(shared))
-    assert locks._state_folder() is None
+    with pytest.raises(PermissionError, match=f"{shared} is another user's"):
+        state.state_folder()
     os.chown(shared, 0, 0)
-    assert locks._state_folder() is not None
+    assert state.state_folder() == shared / ".local/state/distal"

@@ -12,7 +12,6 @@ import hashlib
 import os
 import secrets
 import stat
-import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -20,6 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from distal.file_writer.state import make_private, state_folder
 from distal.forking import new_lock
 
 try:
@@ -185,11 +185,9 @@ def _new_process() -> _Process:
 
 
 def _opened() -> _LockFile | None:
-    folder = _state_folder()
-    if folder is None:
-        return None
     try:
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        folder = state_folder()
+        make_private(folder)
         flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
         handle = os.open(folder / "locks", flags, 0o600)
     except OSError:
@@ -199,29 +197,6 @@ def _opened() -> _LockFile | None:
         os.close(handle)
         return None
     return _LockFile(handle)
-
-
-def _state_folder() -> Path | None:
-    """Return the folder of this user's state; None if there is none that is ours."""
-    try:
-        home = Path.home()
-        chosen = os.environ.get("XDG_STATE_HOME", "")
-        if os.path.isabs(chosen):
-            folder = Path(chosen)
-        elif sys.platform == "darwin":
-            folder = home / "Library" / "Application Support"
-        elif os.name == "nt":
-            folder = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
-        else:
-            folder = home / ".local" / "state"
-        if os.name != "nt" and os.geteuid() == 0:
-            # Root with another user's HOME (sudo) would make folders that the user cannot write.
-            there = next(f for f in (folder, *folder.parents) if f.is_dir())
-            if there.stat().st_uid != 0:
-                return None
-    except (RuntimeError, OSError, ValueError):
-        return None
-    return folder / "distal"
 
 
 def _machine() -> str:

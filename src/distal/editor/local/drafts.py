@@ -20,9 +20,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from distal.editor.local.state_folder import state_folder, write_private
+from distal.editor.local.private_files import write_private
 from distal.editor.local.versions import FileVersions, Why, sweep
 from distal.file_writer.locks import is_over, process_name
+from distal.file_writer.state import state_folder
 from distal.forking import new_lock
 
 # A text that was in the page for a second has been here for almost as long.
@@ -88,12 +89,11 @@ class Drafts:
 
     @classmethod
     def of_user(cls, folder: Path) -> Drafts:
-        """Return the drafts of a folder in the user's state.
-
-        Raises:
-            PackageError: ``platformdirs`` is not installed.
-        """
-        root = state_folder() / "drafts"
+        """Return the drafts of a folder in the user's state."""
+        try:
+            root = state_folder() / "drafts"
+        except OSError as error:  # nothing can be kept: each page says it
+            root = Path(os.devnull) / str(error.strerror)
         # Thousands of files, perhaps: the studio does not wait for them.
         threading.Thread(target=sweep, args=(root,), daemon=True).start()
         return cls(root, folder)

@@ -42,7 +42,7 @@ class StudioServer(LocalServer):
         drafts: Where drafts and versions are kept; None for the user's state.
 
     Raises:
-        PackageError: ``websockets`` or ``platformdirs`` is not installed.
+        PackageError: ``websockets`` is not installed.
         OSError: The port is taken.
     """
 
