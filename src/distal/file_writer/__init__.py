@@ -13,6 +13,7 @@ from distal.file_writer.destinations import (
     check_destination,
     name_beside,
 )
+from distal.file_writer.private_files import write_private
 from distal.file_writer.writing import (
     ANY,
     SavedBytes,
@@ -37,4 +38,5 @@ __all__ = [
     "name_beside",
     "replacement",
     "save",
+    "write_private",
 ]

@@ -1,18 +1,20 @@
 """Temporary files beside the files that they become, and the removal of those left by others.
 
-Input: a folder. Output: names that tell their process, and no file of a process that has ended.
+Input: a folder. Output: files whose names tell their process, and none of a process that has ended.
 """
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import secrets
 import stat
 import time
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Final
+from typing import BinaryIO, Final
 
 from distal.file_writer.locks import is_over, process_name
 
@@ -26,6 +28,8 @@ _LEFTOVER_AGE_S: Final = 7 * 24 * 3600.0
 # one of 50,000 takes 25 ms.
 _PERIOD_S: Final = 60.0
 _MOST_ENTRIES: Final = 50_000
+# A file system that cannot flush says so by one of these; SQLite and git ignore them as well.
+_CANNOT_FLUSH: Final = (errno.EINVAL, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS)
 
 _searched: dict[str, float] = {}
 
@@ -36,9 +40,38 @@ def temporary_path(folder: Path) -> Path:
     return folder / f".distal-{lock_file}-{os.getpid()}-{token}-{secrets.token_hex(4)}.tmp"
 
 
-def is_temporary(name: str) -> bool:
-    """Return whether a file has the name of a temporary file."""
-    return _NAME.match(name) is not None
+@contextmanager
+def temporary_file(folder: Path, mode: int) -> Iterator[tuple[Path, BinaryIO]]:
+    """Create a temporary file in a folder; remove it at the end if it is still there.
+
+    Args:
+        folder: The folder, from which the files of ended processes are removed first.
+        mode: The permissions, of which the umask takes some.
+
+    Raises:
+        OSError: The file system reports an error.
+    """
+    remove_leftovers(folder)
+    path = temporary_path(folder)
+    try:
+        with os.fdopen(create(path, mode), "w+b") as file:
+            yield path, file
+    finally:
+        with suppress(OSError):  # after success it no longer exists
+            path.unlink()
+
+
+def flush(handle: int) -> None:
+    """Flush an open file to the disk, if its file system can.
+
+    Raises:
+        OSError: The file system reports an error.
+    """
+    try:
+        os.fsync(handle)
+    except OSError as error:
+        if error.errno not in _CANNOT_FLUSH:
+            raise
 
 
 def create(path: Path, mode: int) -> int:

@@ -13,7 +13,7 @@ import shutil
 import stat
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -31,10 +31,13 @@ from distal.file_writer.destinations import (
 )
 from distal.file_writer.exchange import exchange
 from distal.file_writer.locks import BusyError, locked
-from distal.file_writer.temporary import create, remove_leftovers, temporary_path
+from distal.file_writer.temporary import (
+    flush,
+    remove_leftovers,
+    temporary_file,
+    temporary_path,
+)
 
-# A file system that cannot flush says so by one of these; SQLite and git ignore them as well.
-_CANNOT_FLUSH: Final = (errno.EINVAL, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS)
 _KEPT_ATTRIBUTES: Final = ("user.", "system.posix_acl_access")
 _LARGEST_COMPARED: Final = 2**28  # bytes; a file that a person edits is far smaller
 
@@ -173,20 +176,10 @@ def _one_line(path: Path) -> Iterator[None]:
         raise SaveError(f"cannot write {path}: {reason(error)}") from error
 
 
-@contextmanager
-def _temporary(target: Path) -> Iterator[tuple[Path, BinaryIO]]:
-    """Create a temporary file beside a target; remove it at the end if it is still there."""
-    folder = target.parent
-    remove_leftovers(folder)
-    path = temporary_path(folder)
-    try:
-        # Nobody else reads the new content of a private file before it has its mode.
-        handle = create(path, 0o666 if state(target) is None else 0o600)
-        with os.fdopen(handle, "w+b") as file:
-            yield path, file
-    finally:
-        with suppress(OSError):  # after success it no longer exists
-            path.unlink()
+def _temporary(target: Path) -> AbstractContextManager[tuple[Path, BinaryIO]]:
+    """Create a temporary file beside a target."""
+    # Nobody else reads the new content of a private file before it has its mode.
+    return temporary_file(target.parent, 0o666 if state(target) is None else 0o600)
 
 
 def _finish(file: BinaryIO, target: Path) -> None:
@@ -199,16 +192,8 @@ def _finish(file: BinaryIO, target: Path) -> None:
     info = state(target)
     if info is not None and os.name != "nt":
         _keep_owner(file.fileno(), target, info)
-    _flush(file.fileno())
+    flush(file.fileno())
     file.close()
-
-
-def _flush(handle: int) -> None:
-    try:
-        os.fsync(handle)
-    except OSError as error:
-        if error.errno not in _CANNOT_FLUSH:
-            raise
 
 
 def _keep_owner(handle: int, target: Path, info: os.stat_result) -> None:
@@ -396,7 +381,7 @@ def _write_into(target: Path, data: bytes) -> None:
             raise
         _write_at(handle, 0, data[:length])
         os.ftruncate(handle, len(data))
-        _flush(handle)
+        flush(handle)
     finally:
         os.close(handle)
 

@@ -20,8 +20,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from distal.editor.local.private_files import write_private
 from distal.editor.local.versions import FileVersions, Why, sweep
+from distal.file_writer import write_private
 from distal.file_writer.locks import is_over, process_name
 from distal.file_writer.state import state_folder
 from distal.forking import new_lock

@@ -17,7 +17,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final, Literal, TypeAlias
 
-from distal.editor.local.private_files import write_private
+from distal.file_writer import write_private
 
 MOST: Final = 50  # of a file
 RECENT: Final = 10  # that are kept however close they are
