@@ -19,20 +19,19 @@ import re
 import stat
 import struct
 import sys
-import threading
 import time
 import zipfile
 import zlib
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, TypeAlias
 
 from distal.diagnostics import LONGEST_MESSAGE, CompileError, LoadError, printable
-from distal.forking import new_lock
 from distal.packages import PackageError
+from distal.read_watch import watched
 
 # A picture of 2^25 pixels at 24 bytes each, which may be a file of some kB if it is of one color.
 BASE_BYTES: Final = 768 * 2**20
@@ -47,7 +46,6 @@ MEMORY_VARIABLE: Final = "DISTAL_MAX_MEMORY"
 Memory: TypeAlias = int | str
 _UNITS: Final = {"B": 1, "kB": 10**3, "MB": 10**6, "GB": 10**9, "TB": 10**12}
 _MEMORY: Final = re.compile(r"\s*([0-9]{1,15}(?:\.[0-9]{1,6})?)\s*([kKMGT]?B)\s*")
-_PERIOD_S: Final = 0.25  # between two attempts to end a reader
 _ENDS_EARLY: Final = (EOFError, struct.error)
 _UNPACKING: Final = (zlib.error, zipfile.BadZipFile)
 
@@ -113,10 +111,6 @@ class TooLargeError(LoadError):
     """A file would take more memory or time than files of its size get; the message is whole."""
 
 
-class _TimeIsUp(BaseException):
-    """Ends a watched reader, which may catch every ``Exception``."""
-
-
 class Budget:
     """What a file may take.
 
@@ -175,14 +169,14 @@ class Budget:
             f"files of this size get; {self._fix(enough)} reads it anyway"
         )
 
-    @property
-    def is_watched(self) -> bool:
-        """Whether a thread ends the reader."""
-        return self.kind.is_watched and not self._is_trusted and sys.platform != "emscripten"
+    def watched(self) -> AbstractContextManager[None]:
+        """Return a context that ends a reader which does not ask, when its time is up."""
+        is_watched = self.kind.is_watched and not self._is_trusted and sys.platform != "emscripten"
+        return watched(self.seconds, self.late) if is_watched else nullcontext()
 
     def _limit(self) -> str:
-        given = f"it may take {shown(self.most)}; "
-        return given if self._is_trusted else f"files of this size get {shown(self.most)}; "
+        who = "it may take" if self._is_trusted else "files of this size get"
+        return f"{who} {shown(self.most)}; "
 
     def _fix(self, enough: str) -> str:
         variable = f"{MEMORY_VARIABLE}={enough.replace(' ', '')}"
@@ -260,7 +254,7 @@ def reading(
         budget = Budget(KINDS[kind], name, size, max_memory, option=option)
     except ValueError as wrong:
         raise error(str(wrong)) from None
-    with _one_line(KINDS[kind].sentence, name, error), _entered(budget), _watched(budget):
+    with _one_line(KINDS[kind].sentence, name, error), _entered(budget), budget.watched():
         yield budget
 
 
@@ -349,92 +343,40 @@ def _content(path: Path, most: int) -> bytes:
         OSError: The file system reports an error.
     """
     try:
-        found = path.stat()
-        if not stat.S_ISREG(found.st_mode):
-            is_folder = stat.S_ISDIR(found.st_mode)
+        info = path.stat()
+        if not stat.S_ISREG(info.st_mode):
+            is_folder = stat.S_ISDIR(info.st_mode)
             raise LoadError("Is a directory" if is_folder else "it is no ordinary file")
         with path.open("rb") as file:
             # Not ``most``: as much is allocated before the first byte comes.
-            data = b"" if found.st_size > most else file.read(found.st_size)
+            data = b"" if info.st_size > most else file.read(info.st_size)
     except ValueError as error:  # a null character in the name
         raise LoadError(str(error)) from None
-    if found.st_size > most:
+    if info.st_size > most:
         raise LoadError(f"it is larger than {most >> 20} MiB")
     if not data:
         raise LoadError("it is empty")
     return data
 
 
-@contextmanager
-def _watched(budget: Budget) -> Iterator[None]:
-    """End what runs in the context when its time is up, where nothing in it asks."""
-    if not budget.is_watched:
-        yield
-        return
-    watch = _ReadWatch(budget.seconds)
-    try:
-        yield
-    except _TimeIsUp:
-        raise budget.late() from None
-    finally:
-        watch.end()
-
-
-class _ReadWatch:
-    """A thread that raises ``_TimeIsUp`` in the thread that made it, until it is ended."""
-
-    def __init__(self, seconds: float) -> None:
-        self._thread = threading.get_ident()
-        self._lock = new_lock()
-        self._ended = threading.Event()
-        self._seconds = seconds
-        threading.Thread(target=self._run, name="distal-read-watch", daemon=True).start()
-
-    def _run(self) -> None:
-        begin = time.monotonic(), time.process_time()
-        while not self._ended.wait(_PERIOD_S):
-            # Of the processor: on a busy machine a file has as much as on any other.
-            passed = min(time.monotonic() - begin[0], time.process_time() - begin[1])
-            if passed > self._seconds:
-                with self._lock:
-                    if not self._ended.is_set():
-                        self._raise(_TimeIsUp)
-
-    def _raise(self, kind: type[BaseException] | None) -> None:
-        import ctypes  # noqa: PLC0415 (only where something hangs)
-
-        thrown = ctypes.py_object() if kind is None else ctypes.py_object(kind)
-        ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(self._thread), thrown)
-
-    def end(self) -> None:
-        """End the watch; nothing is raised afterwards."""
-        while not self._ended.is_set():
-            try:
-                with self._lock:
-                    self._ended.set()
-                    self._raise(None)
-            except _TimeIsUp:  # on its way when the reader ended
-                continue
-
-
-def memory_of(given: Memory | None) -> int | None:
+def memory_of(amount: Memory | None) -> int | None:
     """Return bytes from ``max_memory=``, or else from the variable; None for neither.
 
     Raises:
         ValueError: It is no amount of memory.
     """
     what = "max_memory"
-    if given is None:
-        given, what = os.environ.get(MEMORY_VARIABLE) or None, MEMORY_VARIABLE
-    if given is None:
+    if amount is None:
+        amount, what = os.environ.get(MEMORY_VARIABLE) or None, MEMORY_VARIABLE
+    if amount is None:
         return None
-    parts = _MEMORY.fullmatch(given) if isinstance(given, str) else None
+    parts = _MEMORY.fullmatch(amount) if isinstance(amount, str) else None
     if parts is not None:
         count = int(float(parts[1]) * _UNITS[parts[2].replace("KB", "kB")])
-    elif isinstance(given, bool) or not isinstance(given, int):
-        raise ValueError(f'{what} is an amount of memory as "4 GB", not {printable(given, 40)!r}')
+    elif isinstance(amount, bool) or not isinstance(amount, int):
+        raise ValueError(f'{what} is an amount of memory as "4 GB", not {printable(amount, 40)!r}')
     else:
-        count = given
+        count = amount
     if count <= 0:
         raise ValueError(f"{what} is above 0, not {count}")
     return count

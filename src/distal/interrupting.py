@@ -48,5 +48,18 @@ def interrupt_main() -> None:
         _thread.interrupt_main()
 
 
+def raise_in(thread: int, kind: type[BaseException] | None) -> None:
+    """Raise an exception in a thread at its next step in Python.
+
+    Args:
+        thread: The thread's ``ident``.
+        kind: The exception; None takes back one that was not raised yet.
+    """
+    import ctypes  # noqa: PLC0415 (only where something hangs)
+
+    thrown = ctypes.py_object() if kind is None else ctypes.py_object(kind)
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), thrown)
+
+
 def _end(*_: object) -> None:
     os._exit(INTERRUPTED)

@@ -26,7 +26,7 @@ from distal import loading
 from distal.diagnostics import Diagnostic, Span
 from distal.error_codes import ErrorCode
 from distal.forking import new_lock
-from distal.interrupting import INTERRUPTED, interrupt_main
+from distal.interrupting import INTERRUPTED, interrupt_main, raise_in
 from distal.loading import SceneCode, file_of, load, split_source
 from distal.saved_files import FileWatcher
 
@@ -143,10 +143,7 @@ class LoadWatch:
             if self._is_ended.is_set():
                 return
             if not self._is_main:
-                import ctypes  # noqa: PLC0415 (only where something hangs)
-
-                kind = ctypes.py_object(SavedAgain)
-                ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(self._thread), kind)
+                raise_in(self._thread, SavedAgain)
             else:
                 interrupt_main()
 
