@@ -13,6 +13,7 @@ import typer
 
 from distal.cli.arguments import UsageError
 from distal.cli.base import application, reporting
+from distal.cli.messages import say
 from distal.file_writer import ChangedError, SaveError, save
 
 TEXT: Final = '''\
@@ -45,8 +46,6 @@ def new(
     ] = Path("scene.py"),
 ) -> None:
     """Write a first scene to a new file."""
-    from distal.cli.messages import say
-
     if file.suffix not in ("", ".py"):
         raise UsageError(f"a scene is a Python file: {file.with_suffix('.py')}")
     file = file.with_suffix(".py")

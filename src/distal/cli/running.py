@@ -5,34 +5,34 @@ Input: the arguments of the process. Output: an exit code. It imports the module
 
 from __future__ import annotations
 
+import errno
 import importlib
 import io
 import os
 import sys
 import threading
 import warnings
+from collections.abc import Callable
 from contextlib import suppress
-from typing import NoReturn
+from typing import Final, NoReturn
 
 from distal.cli import COMMANDS, SHORT
-from distal.cli.ending import run_to_its_end
 from distal.cli.exit_codes import ExitCode
+from distal.cli.messages import say
 from distal.cli.terminal import forget_impossible_sizes
 from distal.interrupting import interrupt_main
 from distal.lang.notices import receive_notices
 
+_NOT_WRITTEN: Final = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
+
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
     """Print a warning in one line, without the place in distal's code, which users do not need."""
-    from distal.cli.messages import say
-
     say(f"warning: {message}")
 
 
 def _show_notice(line: str) -> None:
     """Print what the library says of its work in one line."""
-    from distal.cli.messages import say
-
     say(f"note: {line}")
 
 
@@ -75,21 +75,39 @@ def _leave() -> NoReturn:
     os._exit(ExitCode.INTERRUPTED)
 
 
+def _run_to_its_end(application: Callable[[], object]) -> None:
+    """Run the application of typer, with one line where ``--help`` cannot be written.
+
+    Raises:
+        SystemExit: It has ended.
+    """
+    try:
+        application()
+    except SystemExit as end:
+        if isinstance(end.__context__, BrokenPipeError):  # typer and rich make it a 1
+            raise SystemExit(ExitCode.PIPE_CLOSED) from None
+        raise
+    except OSError as error:
+        if error.errno not in _NOT_WRITTEN or error.filename is not None:
+            raise
+        say(f"error: cannot write to stdout: {error.strerror}")
+        raise SystemExit(ExitCode.FAILED) from None
+
+
 def run() -> None:
     """Run the command line of this process."""
     try:
         _open_what_is_closed()
-        wanted = next(iter(sys.argv[1:]), "")
-        if _is_scene(wanted):
-            sys.argv.insert(1, wanted := "render")
-        name = wanted if wanted in COMMANDS and wanted not in SHORT else "application"
+        first = next(iter(sys.argv[1:]), "")
+        if _is_scene(first):
+            sys.argv.insert(1, first := "render")
+        name = first if first in COMMANDS and first not in SHORT else "application"
         forget_impossible_sizes()
         module = importlib.import_module(f"distal.cli.{name}")
-
         sys.unraisablehook = _unraisable
         warnings.showwarning = _show_warning
         receive_notices(_show_notice)
-        run_to_its_end(module.application)
+        _run_to_its_end(module.application)
     except KeyboardInterrupt:  # on the way into a command, or out of it
         _leave()
     except SystemExit as end:
@@ -99,8 +117,8 @@ def run() -> None:
     except Exception as error:
         from distal.packages import explained
 
-        found = explained(error)  # typer, rich or one of their dependencies
-        if found is None:
+        cause = explained(error)  # typer, rich or one of their dependencies
+        if cause is None:
             raise
-        print(f"error: {found}", file=sys.stderr)
+        print(f"error: {cause}", file=sys.stderr)
         sys.exit(ExitCode.FAILED)
