@@ -18,15 +18,9 @@ from typer.models import CommandInfo
 import distal
 from distal.cli import COMMANDS, SHORT
 from distal.cli.arguments import UsageError, check_is_not_scene, read_scene
-from distal.cli.base import (
-    SceneArgument,
-    answer,
-    application,
-    check_cache,
-    load,
-    reporting,
-)
+from distal.cli.base import SceneArgument, answer, application, load, reporting
 from distal.cli.exit_codes import ExitCode
+from distal.cli.surroundings import check_cache
 from distal.compiler.driver import COMPILE_TARGETS, IR_TARGET
 from distal.diagnostics import readable
 from distal.example_files import EXAMPLE_PREFIX, all_examples

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import functools
 import json
-import os
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from enum import StrEnum
@@ -20,7 +18,7 @@ import typer
 from distal.cli.arguments import UsageError, read_assignments, read_scene
 from distal.cli.exit_codes import ExitCode
 from distal.cli.messages import say
-from distal.devices.memory_limit import is_limited, require
+from distal.cli.surroundings import check_processor, check_working_folder, prepare_for_arrays
 from distal.diagnostics import CompileError, DeviceError, LoadError, readable
 from distal.file_writer import SaveError
 from distal.interrupting import CtrlCRaises
@@ -85,18 +83,6 @@ class ProgressKind(StrEnum):
 
 # Commands that do not import NumPy.
 _WITHOUT_ARRAYS: Final = ("compile", "doctor", "examples")
-_NUMPY_BYTES: Final = 96 * 2**20  # measured: 85 with one OpenBLAS thread, 41 per further thread
-
-
-def prepare_for_arrays() -> None:
-    """Refuse a memory limit under which NumPy's BLAS would end the process with its own message.
-
-    Raises:
-        MemoryError: The memory that is left is not enough.
-    """
-    if is_limited() and "numpy" not in sys.modules:
-        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # distal multiplies no large matrices
-        require(_NUMPY_BYTES, "NumPy")
 
 
 def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
@@ -139,18 +125,6 @@ def reporting(command: Callable[Arguments, None]) -> Callable[Arguments, None]:
             raise typer.Exit(ExitCode.FAILED) from None
 
     return run
-
-
-def check_working_folder() -> None:
-    """Check that there is a working folder, which names of files are relative to.
-
-    Raises:
-        SaveError: It was deleted.
-    """
-    try:
-        os.getcwd()
-    except OSError:
-        raise SaveError("the working folder was deleted; change to another one") from None
 
 
 def _line_of(error: Exception) -> str | None:
@@ -375,39 +349,5 @@ def check_view(seen: Viewable, view: str) -> None:
     """
     try:
         seen.image(view)
-    except ValueError as error:
-        raise UsageError(str(error)) from None
-
-
-def check_processor() -> None:
-    """Check that the processor can run the code of the CPU device.
-
-    Raises:
-        UsageError: It cannot, or a variable of the environment has a value that it must not have.
-    """
-    from distal.devices.features import chosen_level
-
-    _checked(chosen_level)
-    check_cache()
-
-
-def check_cache() -> None:
-    """Check the variables of the environment that the cache and readers of files use.
-
-    Raises:
-        UsageError: One has a value that it must not have.
-    """
-    from distal.devices.cache import size_limit
-    from distal.devices.kernel_key import optimization
-    from distal.foreign_files import memory_of
-
-    _checked(size_limit)
-    _checked(optimization)
-    _checked(lambda: memory_of(None))
-
-
-def _checked(read: Callable[[], object]) -> None:
-    try:
-        read()
     except ValueError as error:
         raise UsageError(str(error)) from None

@@ -22,11 +22,11 @@ from distal.cli.base import (
     TimeOption,
     answer,
     application,
-    check_processor,
     load,
     reporting,
 )
 from distal.cli.exit_codes import ExitCode
+from distal.cli.surroundings import check_processor
 from distal.diagnostics import LoadError
 from distal.error_codes import ErrorCode
 

@@ -22,12 +22,12 @@ from distal.cli.base import (
     SetOption,
     TimeOption,
     application,
-    check_processor,
     check_view,
     load_picture,
     reporting,
 )
 from distal.cli.messages import say
+from distal.cli.surroundings import check_processor
 
 if TYPE_CHECKING:
     from distal.lang.presentable import ExportOptions

@@ -29,11 +29,11 @@ from distal.cli.base import (
     UnitOption,
     answer,
     application,
-    check_processor,
     load,
     reporting,
 )
 from distal.cli.exit_codes import ExitCode
+from distal.cli.surroundings import check_processor
 from distal.diagnostics import LoadError
 
 if TYPE_CHECKING:

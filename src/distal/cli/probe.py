@@ -21,10 +21,10 @@ from distal.cli.base import (
     TimeOption,
     answer,
     application,
-    check_processor,
     load,
     reporting,
 )
+from distal.cli.surroundings import check_processor
 from distal.diagnostics import LoadError, excerpt
 from distal.lang.srgb import hex_of
 

@@ -17,11 +17,11 @@ from distal.cli.base import (
     ThreadsOption,
     answer,
     application,
-    check_processor,
     chosen_device,
     reporting,
 )
 from distal.cli.exit_codes import ExitCode
+from distal.cli.surroundings import check_processor
 from distal.diagnostics import printable_lines
 
 if TYPE_CHECKING:

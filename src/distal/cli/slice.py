@@ -28,11 +28,11 @@ from distal.cli.base import (
     UnitOption,
     answer,
     application,
-    check_processor,
     load,
     reporting,
 )
 from distal.cli.messages import say
+from distal.cli.surroundings import check_processor
 from distal.diagnostics import LoadError
 from distal.file_writer import SaveError
 
