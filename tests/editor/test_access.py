@@ -173,7 +173,7 @@ def test_pages_that_are_not_admitted_have_few_places(server, monkeypatch):
     secret = secret_of(server)
     with connected(server, secret) as tab, contextlib.ExitStack() as stack:
         until(tab, "ready")
-        for _ in range(serving.MOST_WAITING):
+        for _ in range(serving.MOST_UNADMITTED):
             stranger = stack.enter_context(opened(server))
         with opened(server) as one_more:
             assert closing_code(one_more) == TRY_LATER
@@ -190,7 +190,7 @@ def test_a_page_that_says_nothing_is_closed(server, monkeypatch):
     with opened(server) as silent, opened(server) as half:
         half.send(json.dumps({"nonce": "0" * 64, "by": "key"}))
         assert closing_code(silent) == serving.REFUSED
-        assert soon(lambda: server._waiting._value == serving.MOST_WAITING)
+        assert soon(lambda: server._waiting._value == serving.MOST_UNADMITTED)
 
 
 def test_connections_are_bounded_and_those_after_them_wait(server, monkeypatch):

@@ -30,6 +30,7 @@ from distal.lessons.document import (
     Try,
 )
 from distal.lessons.mistakes import choice_hint, mistake
+from distal.source_text import with_plain_ends
 
 _RULE: Final = "+++"
 _FENCE_LINE: Final = re.compile(r"^:::\s*(\S*)\s*(.*?)\s*$")
@@ -50,7 +51,7 @@ def read(path: str | Path) -> Lesson:
     file = Path(path)
     with opened("lesson", file) as data:
         try:
-            text = data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+            text = with_plain_ends(data.decode("utf-8-sig"))
         except UnicodeDecodeError:
             raise LoadError("it is not text in UTF-8") from None
         return parse(text, file)

@@ -128,7 +128,7 @@ class StudioServer(LocalServer):
         name = path.removeprefix("/")
         if name in ("studio.js", "studio.css"):
             return HttpReply(200, (APP / name).read_bytes(), _TYPES[Path(name).suffix])
-        return HttpReply(404, b"There is no such page.\n")
+        return HttpReply(NOT_FOUND, b"There is no such page.\n")
 
     def _settings(self) -> Mapping[str, object]:
         return {
@@ -169,7 +169,7 @@ def _of_gallery(file: str) -> HttpReply:
         return HttpReply(200, body, "application/json")
     if poster is not None and kind == "webp":
         return HttpReply(200, poster.read_bytes(), "image/webp")
-    return HttpReply(404, b"There is no such example.\n")
+    return HttpReply(NOT_FOUND, b"There is no such example.\n")
 
 
 def examples() -> list[dict[str, str]]:

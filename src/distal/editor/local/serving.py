@@ -29,15 +29,15 @@ from distal.packages import imported
 
 MOST_TABS: Final = 8
 # Sockets that are not admitted yet, and the time that they have for it: four short messages.
-MOST_WAITING: Final = 16
+MOST_UNADMITTED: Final = 16
 ADMISSION_S: Final = 5.0
 # How long an answer may take: the app's own files, and a large picture to a slow disk.
 FILE_S: Final = 10.0
 RESULT_S: Final = 600.0
 _CLOSING_S: Final = 2.0  # for the end of a socket, and for all of them when the server ends
 
-_PHRASES: Final = {200: "OK", 403: "Forbidden", 404: "Not Found"}
 NOT_FOUND: Final = 404
+_PHRASES: Final = {200: "OK", 403: "Forbidden", NOT_FOUND: "Not Found"}
 
 # The codes of sockets that are closed: by a mistake of the server, because it is busy, and because
 # the page has neither the key nor the secret.
@@ -91,7 +91,7 @@ class LocalServer(ABC):
         self._headers = imported("websockets.datastructures").Headers
         self._closed: type[Exception] = imported("websockets.exceptions").ConnectionClosed
         self._tabs: dict[TabConnection, Any] = {}
-        self._waiting = threading.BoundedSemaphore(MOST_WAITING)
+        self._waiting = threading.BoundedSemaphore(MOST_UNADMITTED)
         self._lock = new_lock()
         self._over = threading.Event()
         self._key_file: KeyFile | None = None

@@ -8,7 +8,6 @@ have room. Knows neither the page nor the scene's folder.
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import re
 import time
 from collections.abc import Callable, Sequence
@@ -17,7 +16,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final, Literal, TypeAlias
 
-from distal.file_writer import write_private
+from distal.file_writer import digest_of, write_private
 
 MOST: Final = 50  # of a file
 RECENT: Final = 10  # that are kept however close they are
@@ -84,7 +83,7 @@ class FileVersions:
         """
         if not data.strip():
             return  # nothing that anybody would miss
-        digest = hashlib.sha256(data).hexdigest()[:16]
+        digest = digest_of(data)
         stamp = datetime.fromtimestamp(self._clock(), UTC).strftime(_STAMP)
         path = self._folder / name / "versions" / f"{stamp}Z-{why}-{digest}.py"
         for number, version in enumerate(self.all(name)):
