@@ -289,26 +289,33 @@ def test_a_killed_server_takes_its_processes_along_and_the_next_one_its_folders(
 
 
 def test_folders_of_killed_studios_are_removed_and_no_others(temporary, tmp_path):
-    alive = ScratchFolder(RENDER)
-    dead, foreign, young = (temporary / f"{RENDER}{name}" for name in ("dead", "foreign", "young"))
-    outside = tmp_path / "kept"
-    outside.write_text("mine")
-    for folder in (dead, foreign, young):
-        folder.mkdir()
-    (dead / ".owner").touch()
-    (young / ".owner").touch()
-    (dead / "link").symlink_to(tmp_path)
-    for folder in (alive.path, dead, foreign):
-        os.utime(folder, (1.0, 1.0))
+    code = (
+        "import os, sys, time; from distal.editor.local.scratch import RENDER, ScratchFolder; "
+        "print(ScratchFolder(RENDER).path, flush=True); time.sleep(600)"
+    )
+    environment = {**os.environ, "TMPDIR": str(temporary)}
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, env=environment
+    ) as other:
+        others = Path(other.stdout.readline().strip())
+        own = ScratchFolder(RENDER)
+        elsewhere = temporary / others.name.replace(others.name[len(RENDER) :][:8], "0123abcd")
+        elsewhere.mkdir()
+        link = temporary / f"{others.name}_link"
+        link.symlink_to(tmp_path)
+        (tmp_path / "kept").write_text("mine")
+        (others / "link").symlink_to(tmp_path)
+        sweep()
+        assert others.exists() and own.path.exists()
+        other.kill()
+        other.wait()
     sweep()
-    assert alive.path.exists() and foreign.exists() and young.exists()
-    assert not dead.exists()
-    assert outside.read_text() == "mine"
-    alive.remove()
-    for folder in (foreign, young):
-        for file in folder.iterdir():
-            file.unlink()
-        folder.rmdir()
+    assert not others.exists()
+    assert own.path.exists() and elsewhere.exists() and link.is_symlink()
+    assert (tmp_path / "kept").read_text() == "mine"
+    own.remove()
+    elsewhere.rmdir()
+    link.unlink()
 
 
 @linux

@@ -1,30 +1,29 @@
 """Temporary folders that do not outlive the studio by more than one start of it.
 
-Input: a prefix. Output: a folder that its owner removes. A file in it is locked while the owner
-lives: what a killed studio has left is found by the next one, which removes it. Needs the standard
-library alone.
+Input: a prefix. Output: a folder that its owner removes. Its name tells the process that owns it:
+the next studio removes the folders of processes that have ended. Needs the standard library alone.
 """
 
 from __future__ import annotations
 
-import contextlib
 import os
+import re
 import shutil
-import sys
+import stat
 import tempfile
-import time
+from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
-if sys.platform != "win32":
-    import fcntl
+from distal.file_writer.locks import is_over, process_name
 
 WORKER: Final = "distal_studio_"
 RENDER: Final = "distal_render_"
 LESSON: Final = "distal_lesson_"
 OPENING: Final = "distal_opening_"
-_LOCK: Final = ".owner"
-_YOUNGEST_S: Final = 60.0  # a younger folder may not be locked yet
+_NAME: Final = re.compile(
+    f"(?:{WORKER}|{RENDER}|{LESSON}|{OPENING})([0-9a-f]{{8}})-([0-9a-f]{{7}})-.+"
+)
 
 
 class ScratchFolder:
@@ -38,44 +37,26 @@ class ScratchFolder:
     """
 
     def __init__(self, prefix: str) -> None:
-        self.path = Path(tempfile.mkdtemp(prefix=prefix))
-        self._lock = -1
-        try:
-            self._lock = os.open(self.path / _LOCK, os.O_CREAT | os.O_RDWR, 0o600)
-            _is_taken(self._lock)
-        except OSError:
-            self.remove()
-            raise
+        lock_file, token = process_name()
+        self.path = Path(tempfile.mkdtemp(prefix=f"{prefix}{lock_file}-{token}-"))
 
     def remove(self) -> None:
         """Remove it with all that is in it; links are not followed."""
         shutil.rmtree(self.path, ignore_errors=True)
-        lock, self._lock = self._lock, -1
-        if lock >= 0:
-            os.close(lock)
-
-
-def _is_taken(lock: int) -> bool:
-    """Take the lock of a folder; return whether it was free."""
-    if sys.platform == "win32":
-        return False  # nothing is swept there
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        return False
-    return True
 
 
 def sweep() -> None:
-    """Remove the folders of studios that were killed."""
-    for prefix in (WORKER, RENDER, LESSON, OPENING):
-        for folder in Path(tempfile.gettempdir()).glob(f"{prefix}*"):
-            with contextlib.suppress(OSError):  # another's, without a lock, or gone in this moment
-                if time.time() - folder.stat().st_mtime < _YOUNGEST_S:
-                    continue
-                lock = os.open(folder / _LOCK, os.O_RDWR | getattr(os, "O_NOFOLLOW", 0))
-                try:
-                    if _is_taken(lock):
-                        shutil.rmtree(folder, ignore_errors=True)
-                finally:
-                    os.close(lock)
+    """Remove the folders of studios that were killed; those of other users and machines stay."""
+    with suppress(OSError), os.scandir(tempfile.gettempdir()) as entries:
+        for entry in entries:
+            name = _NAME.fullmatch(entry.name)
+            if name is not None and _is_own_folder(entry) and is_over(name[1], name[2]):
+                shutil.rmtree(entry.path, ignore_errors=True)
+
+
+def _is_own_folder(entry: os.DirEntry[str]) -> bool:
+    try:
+        info = entry.stat(follow_symlinks=False)
+    except OSError:  # gone in this moment
+        return False
+    return stat.S_ISDIR(info.st_mode) and (os.name == "nt" or info.st_uid == os.geteuid())
