@@ -46,8 +46,6 @@ MEMORY_VARIABLE: Final = "DISTAL_MAX_MEMORY"
 Memory: TypeAlias = int | str
 _UNITS: Final = {"B": 1, "kB": 10**3, "MB": 10**6, "GB": 10**9, "TB": 10**12}
 _MEMORY: Final = re.compile(r"\s*([0-9]{1,15}(?:\.[0-9]{1,6})?)\s*([kKMGT]?B)\s*")
-_ENDS_EARLY: Final = (EOFError, struct.error)
-_UNPACKING: Final = (zlib.error, zipfile.BadZipFile)
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,6 +191,11 @@ def need(count: int | float, what: str) -> None:
         budget.need(count, what)
 
 
+def need_pixels(width: int, height: int, pixel_bytes: int) -> None:
+    """Check the budget for a picture; see ``need``."""
+    need(width * height * pixel_bytes, f"{width:,} x {height:,} pixels")
+
+
 def check_time() -> None:
     """Check the time of the file that is read; see ``Budget.check_time``."""
     budget = _CURRENT.get()
@@ -328,10 +331,10 @@ def reason_of(error: BaseException) -> str:
             return f"it is damaged: a part of it is missing ({printable(error, 60)})"
         case OSError() if error.strerror:
             return error.strerror
-    if isinstance(error, _ENDS_EARLY):
-        return f"it ends early: {error}" if str(error) else "it ends early"
-    if isinstance(error, _UNPACKING):
-        return f"its packed part is damaged: {error}"
+        case EOFError() | struct.error():
+            return f"it ends early: {error}" if str(error) else "it ends early"
+        case zlib.error() | zipfile.BadZipFile():
+            return f"its packed part is damaged: {error}"
     return str(error) or f"it is damaged ({type(error).__name__})"
 
 

@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
-from distal.foreign_files import Memory, need, opened
+from distal.foreign_files import Memory, need_pixels, opened
 from distal.ir.types import Buffer, Kind, Texture, TextureShape, component_count, kind_of
 from distal.lang.resources import AXES
 
 # Bytes that a pixel costs while its file is read: four floats, the decoder's pixel, and what
 # progressive JPEG keeps.
-PIXEL_BYTES: Final = 24
+_PIXEL_BYTES: Final = 24
 _BAND: Final = 256  # rows that are converted at once
 # Formats of pictures that Pillow decodes itself: its others start programs, or read more files.
 PICTURE_FORMATS: Final = (
@@ -130,7 +130,7 @@ def _picture(data: Any, max_memory: Memory | None, step: int = 1) -> NDArray[np.
         _decoder(content, str(data)) as picture,
     ):
         width, height = picture.size
-        need(width * height * PIXEL_BYTES, f"{width:,} x {height:,} pixels")
+        need_pixels(width, height, _PIXEL_BYTES)
         picture.load()
         found = np.empty((height, width, 4), np.float32)
         for top in range(0, height, _BAND):

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.file_writer import SaveError
-from distal.foreign_files import need, opened, reading
+from distal.foreign_files import need_pixels, opened, reading
 from distal.images.metadata import ReadError
 from distal.images.png import quantise
 from distal.lang.lazy_module import LazyModule
@@ -84,6 +84,5 @@ def decode(data: bytes) -> NDArray[np.uint8]:
         reading("JPEG", "the picture", len(data), error=ReadError),
         JpegImagePlugin.JpegImageFile(io.BytesIO(data)) as picture,
     ):
-        width, height = picture.size
-        need(width * height * 16, f"{width:,} x {height:,} pixels")
+        need_pixels(*picture.size, 16)
         return np.asarray(picture.convert("RGB"))

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.devices.levels import levels as fast_levels
-from distal.foreign_files import need, opened, reading
+from distal.foreign_files import need_pixels, opened, reading
 from distal.images.metadata import PREFIX, ReadError
 from distal.lang.lazy_module import LazyModule
 from distal.lang.render_options import LARGEST_SIDE_PX
@@ -143,7 +143,7 @@ def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
         with PngImagePlugin.PngImageFile(io.BytesIO(data)) as image:
             if max(image.size) > LARGEST_SIDE_PX:
                 raise ValueError(f"it claims {image.width}x{image.height} pixels")
-            need(image.width * image.height * 4, f"{image.width:,} x {image.height:,} pixels")
+            need_pixels(*image.size, 4)
             image.load()  # detects missing data, and reads texts after the pixels
             texts = {str(key): str(value) for key, value in image.info.items()}
             size = image.size
@@ -179,7 +179,7 @@ def decode(data: bytes) -> NDArray[Any]:
         if data[24] == 16:
             return _read_deep(data)
         with PngImagePlugin.PngImageFile(io.BytesIO(data)) as image:
-            need(image.width * image.height * 12, f"{image.width:,} x {image.height:,} pixels")
+            need_pixels(*image.size, 12)
             return np.asarray(image.convert("RGBA"))
 
 
@@ -189,7 +189,7 @@ def _read_deep(data: bytes) -> NDArray[np.uint16]:
     if kind not in _CHANNELS or interlaced:
         raise ReadError("it was written by another program, and cannot be compared")
     channels = _CHANNELS[kind]
-    need(width * height * channels * 12, f"{width:,} x {height:,} pixels")
+    need_pixels(width, height, channels * 12)
     packed = b"".join(content for name, content in chunks if name == b"IDAT")
     length = height * (1 + 2 * channels * width)  # a limit, however much the file would unpack to
     unpacked = zlib.decompressobj().decompress(packed, length)

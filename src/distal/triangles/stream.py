@@ -24,7 +24,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.foreign_files import check_time, need
+from distal.foreign_files import check_time, need_pixels
 from distal.triangles.arithmetic import PLACES
 from distal.triangles.lattice import (
     HALVES,
@@ -121,7 +121,7 @@ def read(data: bytes) -> Description:
     _, width, height, step = HEAD.unpack_from(data)
     if not (0 < width <= MOST_SIDE and 0 < height <= MOST_SIDE and step):
         raise CoderError(f"a picture as triangles is not {width}x{height} with step {step}")
-    need(width * height * _PIXEL_BYTES, f"{width:,} x {height:,} pixels")
+    need_pixels(width, height, _PIXEL_BYTES)
     lattice = lattice_of(width, height)
     used = np.zeros(lattice.shape, bool)
     codes = np.zeros((used.size, 3))

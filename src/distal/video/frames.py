@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from PIL.PngImagePlugin import PngImageFile
 
 from distal.file_writer import SaveError, replacement
-from distal.foreign_files import need, opened
+from distal.foreign_files import need_pixels, opened
 from distal.images.picture import Picture
 from distal.images.png import encode
 from distal.video.moving_picture import MovingPicture
@@ -86,8 +86,7 @@ def levels_of(file: Path, mode: str) -> NDArray[np.uint8]:
         SaveError: It cannot be read.
     """
     with opened("frame", file, error=SaveError) as data, PngImageFile(io.BytesIO(data)) as picture:
-        width, height = picture.size
-        need(width * height * 12, f"{width:,} x {height:,} pixels")
+        need_pixels(*picture.size, 12)
         return np.array(picture.convert(mode))
 
 
