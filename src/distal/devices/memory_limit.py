@@ -33,8 +33,8 @@ def available() -> int | None:
     machine = _memory_of_machine()
     most, used = (_number(_CONTAINER / name) for name in ("memory.max", "memory.current"))
     container = None if most is None or used is None else max(most - used, 0)
-    known = [size for size in (machine, container) if size is not None]
-    return min(known, default=None)
+    sizes = [size for size in (machine, container) if size is not None]
+    return min(sizes, default=None)
 
 
 def _memory_of_machine() -> int | None:

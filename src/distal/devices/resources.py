@@ -132,12 +132,12 @@ def _picture(data: Any, max_memory: Memory | None, step: int = 1) -> NDArray[np.
         width, height = picture.size
         need_pixels(width, height, _PIXEL_BYTES)
         picture.load()
-        found = np.empty((height, width, 4), np.float32)
+        pixels = np.empty((height, width, 4), np.float32)
         for top in range(0, height, _BAND):
             band = picture.crop((0, top, width, min(top + _BAND, height)))
-            found[::step][top : top + _BAND] = np.asarray(band.convert("RGBA"))
-        found /= np.float32(255.0)
-        return found
+            pixels[::step][top : top + _BAND] = np.asarray(band.convert("RGBA"))
+        pixels /= np.float32(255.0)
+        return pixels
 
 
 def _decoder(content: bytes, name: str) -> Any:

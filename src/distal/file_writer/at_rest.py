@@ -30,15 +30,15 @@ def wait_until_at_rest(path: Path) -> None:
         OSError: The file cannot be read.
     """
     until = time.monotonic() + _LONGEST_WAIT_S
-    known, since = _state(path), time.monotonic()
+    before, since = _state(path), time.monotonic()
     while time.monotonic() < until:
         is_written = is_being_written(path)
         if is_written is False:
             return
         time.sleep(_PAUSE_S)
         state, now = _state(path), time.monotonic()
-        if state != known:
-            known, since = state, now
+        if state != before:
+            before, since = state, now
         elif is_written is None and now - since > _UNCHANGED_S:
             return
 

@@ -95,18 +95,18 @@ def contents(e: Expr) -> Contents:
 
 def calls_in(e: Expr) -> tuple[str, ...]:
     """Return the name of the function of each distinct Call in an expression."""
-    found = contents(e)
-    if found.called is None:
-        found.called = tuple([n.function for n in _walked(e) if isinstance(n, Call)])
-    return found.called
+    record = contents(e)
+    if record.called is None:
+        record.called = tuple([n.function for n in _walked(e) if isinstance(n, Call)])
+    return record.called
 
 
 def size_of(e: Expr) -> int:
     """Return the number of distinct nodes of an expression, except constants and reads."""
-    found = contents(e)
-    if found.size is None:
-        found.size = _size(_walked(e))
-    return found.size
+    record = contents(e)
+    if record.size is None:
+        record.size = _size(_walked(e))
+    return record.size
 
 
 def _size(nodes: list[Expr]) -> int:

@@ -18,8 +18,8 @@ def folder_of(file: str) -> str:
     """Return the folder of a file of code, also where the code has left the working folder."""
     entry = linecache.cache.get(file)  # ``distal.load`` puts the path of a scene's file there
     folder = os.path.dirname(os.path.abspath(file))
-    known = folder if entry is None or len(entry) < 4 else os.path.dirname(entry[3])
-    return os.path.dirname(file) if known in (folder, "") else known
+    loaded_from = folder if entry is None or len(entry) < 4 else os.path.dirname(entry[3])
+    return os.path.dirname(file) if loaded_from in (folder, "") else loaded_from
 
 
 @dataclass(frozen=True, slots=True)

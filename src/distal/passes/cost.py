@@ -123,11 +123,11 @@ class Costs:
         return self._found[e]
 
     def _cost(self, e: Expr) -> int:
-        known = contents(e)
-        if not known.parts:
+        record = contents(e)
+        if not record.parts:
             return expression_cost(e, self.calls)
-        own = sum([node_cost(n, self.calls) for n in known.own])
-        return min(own + sum([self._found[part] for part in known.parts]), MOST_COST)
+        own = sum([node_cost(n, self.calls) for n in record.own])
+        return min(own + sum([self._found[part] for part in record.parts]), MOST_COST)
 
 
 def expression_cost(root: Expr, calls: Mapping[str, int]) -> int:

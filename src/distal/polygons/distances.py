@@ -261,13 +261,13 @@ def _spread(
                 rows.astype(np.int32),
                 {**buffers, "NEAREST": nearest.reshape(-1), "NODE_STEPS": steps},
             )
-            found = np.sqrt(squared)
-            better = found < values.reshape(-1)[rows]
-            parts.append((rows[better], found[better], np.asarray(which)[better]))
+            distance = np.sqrt(squared)
+            better = distance < values.reshape(-1)[rows]
+            parts.append((rows[better], distance[better], np.asarray(which)[better]))
         changed = np.zeros(nearest.shape, bool)
-        for rows, found, which in parts:  # after all were compared, as if at once
+        for rows, distance, which in parts:  # after all were compared, as if at once
             changed.reshape(-1)[rows] = True
-            values.reshape(-1)[rows], nearest.reshape(-1)[rows] = found, which
+            values.reshape(-1)[rows], nearest.reshape(-1)[rows] = distance, which
         return changed
 
     while True:  # outwards, a layer each time

@@ -61,8 +61,8 @@ class _Meshes:
         """Return the parts of a mesh that have triangles."""
         entry = _entry(self._file.content, "meshes", number)
         if number not in self._parts:
-            found = (self._part(each) for each in _list(entry, "primitives"))
-            parts = self._parts[number] = [part for part in found if part is not None]
+            read = (self._part(each) for each in _list(entry, "primitives"))
+            parts = self._parts[number] = [part for part in read if part is not None]
             size = self._sizes[number] = MeshSize(parts=0)
             for part in parts:
                 size.add(MeshSize(len(part.points), len(part.corners)))
@@ -75,10 +75,10 @@ class _Meshes:
 
     def _part(self, primitive: Any) -> _GlbPart | None:
         check_time()
-        found = _primitive(self._file, primitive, self._all)
-        if found is None or not len(found[1]):
+        shape = _primitive(self._file, primitive, self._all)
+        if shape is None or not len(shape[1]):
             return None
-        points, corners = found
+        points, corners = shape
         count = len(points)
         colors = _colors(self._file, primitive, count) if self._with_colors else None
         return _GlbPart(points, corners, colors)

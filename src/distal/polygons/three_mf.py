@@ -179,15 +179,15 @@ def _color(text: str) -> list[float]:
 
 
 def _colors(
-    found: ModelObject, palettes: dict[str, list[list[float]]]
+    source: ModelObject, palettes: dict[str, list[list[float]]]
 ) -> NDArray[np.float32] | None:
     """Return the colors of the corners of an object's triangles; None if none has one."""
-    group = found.attributes.get("pid", "")
-    index = found.attributes.get("pindex", "0")
-    if group not in palettes and not any(row[0] in palettes for row in found.colors):
+    group = source.attributes.get("pid", "")
+    index = source.attributes.get("pindex", "0")
+    if group not in palettes and not any(row[0] in palettes for row in source.colors):
         return None
-    rows = np.ones((len(found.colors), 3, 3), np.float32)
-    for row, (own, *places) in zip(rows, found.colors, strict=True):
+    rows = np.ones((len(source.colors), 3, 3), np.float32)
+    for row, (own, *places) in zip(rows, source.colors, strict=True):
         shades = palettes.get(group if own is None else own)
         if shades is None:  # a picture or a mixture: white
             continue
@@ -199,20 +199,20 @@ def _colors(
     return rows
 
 
-def _object(found: ModelObject, path: str, palettes: dict[str, list[list[float]]]) -> _Object:
+def _object(source: ModelObject, path: str, palettes: dict[str, list[list[float]]]) -> _Object:
     components = [
         ((_beside(path_of(each), path), each.get("objectid", "")), _matrix(each.get("transform")))
-        for each in found.components
+        for each in source.components
     ]
-    kind = found.attributes.get("type", "model")
-    if not found.is_mesh or kind not in ("model", "solidsupport"):
+    kind = source.attributes.get("type", "model")
+    if not source.is_mesh or kind not in ("model", "solidsupport"):
         return _Object(np.zeros((0, 3)), np.zeros((0, 3), np.int64), components)
-    points = np.frombuffer(found.points, np.float64).reshape(-1, 3)
-    triangles = np.frombuffer(found.corners, np.int64).reshape(-1, 3)
+    points = np.frombuffer(source.points, np.float64).reshape(-1, 3)
+    triangles = np.frombuffer(source.corners, np.int64).reshape(-1, 3)
     if len(triangles) and not 0 <= triangles.min() <= triangles.max() < len(points):
-        name = found.attributes.get("id")
+        name = source.attributes.get("id")
         raise LoadError(f"a triangle of object {name!r:.20} names a missing point")
-    return _Object(points, triangles, components, _colors(found, palettes))
+    return _Object(points, triangles, components, _colors(source, palettes))
 
 
 def _place(whole: _Archive, key: tuple[str, str], matrix: NDArray[np.float64], deep: int) -> None:

@@ -321,10 +321,10 @@ def _samples(raw: Buffer, dtype: np.dtype[Any], sizes: Sequence[int]) -> NDArray
 def _unpacked(file: Any, most: int) -> bytes:
     """Return the next bytes of a packed file, at most so many."""
     try:
-        found: bytes = file.read(most)
+        data: bytes = file.read(most)
     except (OSError, EOFError, zlib.error):
         raise LoadError("its compressed part is damaged") from None
-    return found
+    return data
 
 
 def _numbers(text: str) -> list[float]:

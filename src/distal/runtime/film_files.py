@@ -131,5 +131,5 @@ def _header(archive: zipfile.ZipFile, name: str) -> Header:
 
 def _read(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
     with archive.open(f"{name}.npy") as file:
-        found: NDArray[Any] = np.lib.format.read_array(file, allow_pickle=False)
-    return found
+        array: NDArray[Any] = np.lib.format.read_array(file, allow_pickle=False)
+    return array

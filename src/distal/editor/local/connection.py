@@ -112,8 +112,8 @@ class BoundedListener(socket.socket):
     """
 
     def __init__(self, host: str, port: int) -> None:
-        with socket.create_server((host, port)) as made:
-            super().__init__(made.family, made.type, made.proto, fileno=made.detach())
+        with socket.create_server((host, port)) as server:
+            super().__init__(server.family, server.type, server.proto, fileno=server.detach())
         self._lock = threading.Lock()
         self._accepted: WeakSet[socket.socket] = WeakSet()
 

@@ -66,16 +66,16 @@ class SceneFiles:
         self._lock = new_lock()
         self._order = 0
         self._unsaved = dict(unsaved or {})
-        self._known = {
+        self._entries = {
             name: _FileState.of(SourceFile(text, NO_FILE)) for name, text in self._unsaved.items()
         }
         for name, now in self._seen():
             if now.problem and now.digest != NO_FILE:
                 raise LoadError(f"'{path.with_name(name)}' {now.problem}")
-            if now.problem and name not in self._known:
+            if now.problem and name not in self._entries:
                 raise LoadError(f"'{path.with_name(name)}' cannot be read: {now.problem}")
             if not now.problem:
-                self._known[name] = _FileState.of(now)
+                self._entries[name] = _FileState.of(now)
         self._reported = self._states()
 
     # Reading
@@ -98,28 +98,29 @@ class SceneFiles:
     def all(self) -> Changed:
         """Return all texts."""
         with self._lock:
-            return self._message(list(self._known))
+            return self._message(list(self._entries))
 
     def included(self, names: Iterable[str]) -> Changed | None:
         """Show more files, of which there are drafts; return those that are not known yet."""
         with self._lock:
-            new = [name for name in names if name not in self._known]
+            new = [name for name in names if name not in self._entries]
             for name in new:
                 now = self._file(name)
-                self._known[name] = _FileState(SourceFile("", NO_FILE) if now.problem else now, now)
+                last = SourceFile("", NO_FILE) if now.problem else now
+                self._entries[name] = _FileState(last, now)
                 self._keep(name, now.data, "opened")
-            self._reported.update({name: self._known[name].state for name in new})
+            self._reported.update({name: self._entries[name].state for name in new})
             return self._message(new) if new else None
 
     @property
     def is_new(self) -> bool:
         """Whether the scene's file is not on the disk yet."""
-        return not self._known[self.main].last.digest
+        return not self._entries[self.main].last.digest
 
     def text_of(self, name: str) -> str | None:
         """Return the text that the disk has of a file; None if it has none."""
-        known = self._known.get(name)
-        return None if known is None or not known.now.digest else known.now.text
+        entry = self._entries.get(name)
+        return None if entry is None or not entry.now.digest else entry.now.text
 
     # Keeping
 
@@ -127,14 +128,14 @@ class SceneFiles:
         """Keep from now on what was on the disk, beginning with what is there."""
         with self._lock:
             self.drafts = drafts
-            for name, known in self._known.items():
-                self._keep(name, known.now.data, "opened")
+            for name, entry in self._entries.items():
+                self._keep(name, entry.now.data, "opened")
 
     def taken_unsaved(self) -> dict[str, str]:
         """Return, once, the texts that the files begin with although the disk has others."""
         with self._lock:
             texts, self._unsaved = self._unsaved, {}
-            return {n: text for n, text in texts.items() if self._known[n].last.digest}
+            return {n: text for n, text in texts.items() if self._entries[n].last.digest}
 
     def _keep(self, name: str, data: bytes, why: Why) -> None:
         """Keep a version; that it cannot be kept does not stop what is done."""
@@ -148,19 +149,19 @@ class SceneFiles:
 
     def _observe(self, name: str, now: SourceFile, why: Why = "other") -> None:
         """Note what is on the disk now."""
-        known = self._known.get(name)
-        if known is None:
-            known = _FileState.of(SourceFile("", NO_FILE))
-        if now.digest == NO_FILE and known.last.digest == NO_FILE:
+        entry = self._entries.get(name)
+        if entry is None:
+            entry = _FileState.of(SourceFile("", NO_FILE))
+        if now.digest == NO_FILE and entry.last.digest == NO_FILE:
             return  # a new file, still
         if now.digest == NO_FILE:
-            now = SourceFile("", NO_FILE, problem=self._fate(known.last))
-        changed = _FileState(known.last if now.problem else now, now)
-        if name in self._known and changed.state == known.state:
+            now = SourceFile("", NO_FILE, problem=self._fate(entry.last))
+        changed = _FileState(entry.last if now.problem else now, now)
+        if name in self._entries and changed.state == entry.state:
             return
-        self._known[name] = changed
+        self._entries[name] = changed
         self._order += 1
-        self._keep(name, known.now.data, why)
+        self._keep(name, entry.now.data, why)
         self._keep(name, now.data, why)
 
     def _fate(self, last: SourceFile) -> str:
@@ -207,7 +208,7 @@ class SceneFiles:
                 return self._conflict(name, there, refusal=str(error))
             # Not read again: what another program has written since then would be taken for ours.
             self._observe(name, self._written(path, there, data), "saved")
-            self._reported[name] = self._known[name].state
+            self._reported[name] = self._entries[name].state
             other = written.other
             if other is not None:
                 self._keep(name, other, "other")
@@ -229,8 +230,8 @@ class SceneFiles:
 
     def _conflict(self, name: str, there: SourceFile, refusal: str = "") -> Saved:
         self._observe(name, there)
-        known = self._known.get(name)
-        problem = (known.now.problem if known is not None else "") or there.problem
+        entry = self._entries.get(name)
+        problem = (entry.now.problem if entry is not None else "") or there.problem
         return Saved(
             digest=there.digest,
             is_saved=False,
@@ -258,15 +259,15 @@ class SceneFiles:
             return False
 
     def _seen(self) -> Iterator[tuple[str, SourceFile]]:
-        """Yield what is on the disk: of files that are known, and modules that they import."""
-        waiting = list(dict.fromkeys((self.main, *self._known)))
+        """Yield what is on the disk: of the files shown so far, and modules that they import."""
+        waiting = list(dict.fromkeys((self.main, *self._entries)))
         seen = set(waiting)
         while waiting:
             name = waiting.pop()
             file = self._file(name)
             yield name, file
-            known = self._known.get(name)
-            text = known.last.text if file.problem and known is not None else file.text
+            entry = self._entries.get(name)
+            text = entry.last.text if file.problem and entry is not None else file.text
             for beside in sorted(f"{module}.py" for module in _imported(text)):
                 path = self.folder / beside
                 if beside not in seen and os.path.isfile(path) and self._is_inside(path):
@@ -281,17 +282,17 @@ class SceneFiles:
         return SourceFile.of(path)
 
     def _states(self) -> dict[str, tuple[str, str]]:
-        return {name: known.state for name, known in self._known.items()}
+        return {name: entry.state for name, entry in self._entries.items()}
 
     def _message(self, names: list[str]) -> Changed:
-        known = {name: self._known[name] for name in names}
+        entries = {name: self._entries[name] for name in names}
         return Changed(
-            files={name: one.last.text for name, one in known.items()},
-            digests={name: one.last.digest for name, one in known.items()},
+            files={name: entry.last.text for name, entry in entries.items()},
+            digests={name: entry.last.digest for name, entry in entries.items()},
             problems={
-                name: DiskProblem(digest=one.now.digest, text=one.now.problem)
-                for name, one in known.items()
-                if one.now.problem
+                name: DiskProblem(digest=entry.now.digest, text=entry.now.problem)
+                for name, entry in entries.items()
+                if entry.now.problem
             },
             order=self._order,
         )
