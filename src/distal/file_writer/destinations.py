@@ -162,12 +162,7 @@ def _followed(path: Path) -> Path:
     if os.name == "nt":
         return Path(os.path.realpath(path))
     here, links = "/", 0
-    rest = str(path).split("/")[::-1]
-    if not path.is_absolute():
-        try:
-            rest += os.getcwd().split("/")[::-1]
-        except FileNotFoundError:
-            raise SaveError(f"cannot write {path}: the working folder is gone") from None
+    rest = _whole(path).split("/")[::-1]
     while rest:
         part = rest.pop()
         if part in ("", "."):
@@ -192,6 +187,14 @@ def _followed(path: Path) -> Path:
         rest += text.split("/")[::-1]
         here = "/" if text.startswith("/") else here
     return Path(here)
+
+
+def _whole(path: Path) -> str:
+    """Return an absolute path; ".." stays, because a link may be before it."""
+    try:
+        return str(path if path.is_absolute() else os.path.join(os.getcwd(), path))
+    except FileNotFoundError:
+        raise SaveError(f"cannot write {path}: the working folder is gone") from None
 
 
 def _is_foreign(info: os.stat_result, folder: Path) -> bool:

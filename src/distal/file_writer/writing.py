@@ -271,14 +271,8 @@ def _put(
 ) -> bytes | None:
     """Rename a complete temporary file to its target; return what another program saved meanwhile.
 
-    Args:
-        path: The path, for messages.
-        temporary: The temporary file.
-        target: The target, which is locked.
-        expected: The digest of what it replaces, as for ``save``.
-
     Raises:
-        ChangedError: The target is not what is expected.
+        ChangedError: The target, which is locked, is not what is expected.
         LinkedError: It has several names, and ``expected`` is a digest.
         OSError: The file system reports an error.
     """
