@@ -19,7 +19,7 @@ from typing import Any, Final
 from distal.cluster.errors import ClusterError, address, words
 from distal.cluster.local import LOCAL, local_client
 from distal.cluster.pool import TIMEOUT_S, WorkerPool
-from distal.devices.threads import usable_threads
+from distal.devices.threads import complete, usable_threads
 from distal.packages import imported
 
 _CONNECT_S: Final = 10.0
@@ -143,15 +143,8 @@ def _in_time(connect: Callable[[], Any]) -> Any:
         TimeoutError: The function does not return.
     """
     ended: Future[Any] = Future()
-
-    def run() -> None:
-        try:
-            ended.set_result(connect())
-        except BaseException as error:
-            ended.set_exception(error)
-
     # No pool of threads, which Python would wait for at its end.
-    threading.Thread(target=run, daemon=True).start()
+    threading.Thread(target=complete, args=(ended, connect), daemon=True).start()
     try:
         return ended.result(3.0 * _CONNECT_S)
     except TimeoutError:

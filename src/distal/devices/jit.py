@@ -16,18 +16,17 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future, wait
 from contextlib import suppress
 from functools import cache
-from typing import Any, Final, TypeVar
+from typing import Any, Final
 
 from distal.devices.features import CpuLevel, level_named
 from distal.devices.features import machine as architecture_here
 from distal.devices.kernel_key import optimization
 from distal.devices.memory_limit import is_limited, require
-from distal.devices.threads import start_threads
+from distal.devices.threads import Result, complete, start_threads
 from distal.diagnostics import printable
 from distal.forking import kept_free
 from distal.packages import loading
 
-Result = TypeVar("Result")
 _LOOK_S: Final = 0.1  # until the main thread looks for ctrl-C
 _APART: Final = "from distal.devices.jit import _serve; _serve()"
 _LLVM_BYTES: Final = 32 * 2**20  # for LLVM's tables of targets and a loader, with a margin
@@ -122,10 +121,7 @@ def _compiled_together(texts: Sequence[str], level: CpuLevel, llvm_level: int) -
     made: list[Future[bytes]] = [Future() for _ in texts]
 
     def work(i: int) -> None:
-        try:
-            made[i].set_result(_compiled(texts[i], level, llvm_level, False))
-        except BaseException as error:
-            made[i].set_exception(error)
+        complete(made[i], lambda: _compiled(texts[i], level, llvm_level, False))
 
     workers = [threading.Thread(target=work, args=(i,)) for i in range(1, len(texts))]
     started: list[threading.Thread] = []
@@ -146,15 +142,8 @@ def _beside(work: Callable[[], Result]) -> Result:
     if threading.current_thread() is not threading.main_thread():
         return work()
     ended: Future[Result] = Future()
-
-    def run() -> None:
-        try:
-            ended.set_result(work())
-        except BaseException as error:
-            ended.set_exception(error)
-
     try:
-        start_threads([threading.Thread(target=run)], [])
+        start_threads([threading.Thread(target=complete, args=(ended, work))], [])
     except MemoryError:
         return work()
     while not wait([ended], _LOOK_S).done:  # limited, so that ctrl-C is handled on every platform

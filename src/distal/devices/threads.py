@@ -12,13 +12,15 @@ import os
 import threading
 import time
 from collections.abc import Callable
-from typing import Any, Final
+from concurrent.futures import Future
+from typing import Any, Final, TypeVar
 
 from numpy.typing import NDArray
 
 from distal.devices.base import Cancel, Cancelled, Progress, cancel_test
 from distal.forking import new_lock
 
+Result = TypeVar("Result")
 _WATCH_S: Final = 0.02  # longest delay of a request to stop
 _STACK_BYTES: Final = 16 * 2**20  # twice the LLVM backend's limit for arrays
 _STARTING: Final = new_lock()  # the stack size is a setting of the whole process
@@ -111,6 +113,14 @@ def _checked(threads: int | None) -> int | None:
     if number < 1:
         raise ValueError(f"threads must be at least 1, not {number}")
     return number
+
+
+def complete(future: Future[Result], work: Callable[[], Result]) -> None:
+    """Do some work, and give its result or its exception to a future."""
+    try:
+        future.set_result(work())
+    except BaseException as error:
+        future.set_exception(error)
 
 
 def start_threads(workers: list[threading.Thread], started: list[threading.Thread]) -> None:
