@@ -31,7 +31,7 @@ from distal.packages import imported, loading
 
 LOCAL: Final = "local"
 # How a scheduler or a worker listens.
-AT_HOME: Final[Mapping[str, Any]] = {"host": "127.0.0.1", "protocol": "tls://"}
+LISTENING: Final[Mapping[str, Any]] = {"host": "127.0.0.1", "protocol": "tls://"}
 # How long workers may take to join, in seconds: on a busy machine they import slowly.
 _JOIN_S: Final = 60.0
 _LOOK_S: Final = 0.02
@@ -76,7 +76,7 @@ def local_client(count: int) -> Iterator[Any]:
         security = distributed.Security.temporary()
     silent = imported("distributed.utils").silence_logging_cmgr(logging.CRITICAL)
     with silent, imported("dask").config.set(_SHORT_LOGS), _Workers(security, count) as workers:
-        cluster = _scheduler(security, workers.made_folder())
+        cluster = _scheduler(security, workers.make_folder())
         client = None
         try:
             workers.start(cluster.scheduler.address)
@@ -98,7 +98,7 @@ def _scheduler(security: Any, folder: str) -> Any:
         ClusterError: It does not start, as on a full disk.
     """
     distributed: Any = imported("distributed")
-    options = {**AT_HOME, "port": 0, "security": security, "local_directory": folder}
+    options = {**LISTENING, "port": 0, "security": security, "local_directory": folder}
     try:
         return distributed.SpecCluster(
             workers={},
@@ -152,7 +152,7 @@ class _Workers:
         if self._folder is not None:
             shutil.rmtree(self._folder, ignore_errors=True)
 
-    def made_folder(self) -> str:
+    def make_folder(self) -> str:
         """Make the folder in which Dask writes, and not into one that all users share.
 
         Raises:
@@ -197,7 +197,7 @@ class _Workers:
                 return
             if is_late or self._ends > self._count:
                 what = f"have not joined in {_JOIN_S:g} s" if is_late else "end as they start"
-                raise ClusterError(f"the workers of '{LOCAL}' {what}: {self._last_words()}")
+                raise ClusterError(f"the workers of '{LOCAL}' {what}: {self._last_line()}")
             time.sleep(_LOOK_S)  # not in Dask, where ctrl-C prints a traceback
 
     def end(self) -> None:
@@ -245,7 +245,7 @@ class _Workers:
     def _messages(self, number: int) -> Path:
         return Path(self._settings["folder"]) / f"{number}.txt"
 
-    def _last_words(self) -> str:
+    def _last_line(self) -> str:
         """Return the last line that one of them has written, or why there is none."""
         if self._error:
             return self._error

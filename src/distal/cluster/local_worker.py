@@ -17,7 +17,7 @@ import time
 from collections.abc import Mapping
 from typing import Any, Final
 
-from distal.cluster.local import AT_HOME, without_http
+from distal.cluster.local import LISTENING, without_http
 from distal.packages import imported
 
 _LOOK_S: Final = 0.1
@@ -46,7 +46,7 @@ async def _work(settings: Mapping[str, Any]) -> None:
         memory_limit=settings["memory"],
         local_directory=settings["folder"],
         security=distributed.Security(**settings["security"]),
-        **AT_HOME,
+        **LISTENING,
     )
     async with worker:
         limit = worker.memory_manager.memory_limit

@@ -147,7 +147,7 @@ class Drafts:
             OSError: It cannot be written; the draft before stays.
         """
         with self._lock:
-            before = self._of(tab, name)
+            before = self._texts.get((tab, name))
             if before is not None and (before.text, before.base) == (text, base):
                 return
             now = self._clock()
@@ -157,7 +157,7 @@ class Drafts:
             elif before is not None and now - before.since >= _STANDING_S:
                 self._keep(name, before, "typed")
             draft = Draft(text, base, since)
-            self._say_whose()
+            self._write_folder_name()
             write_private(self._path(tab, name), draft.encoded())
             self._texts[tab, name] = draft
 
@@ -175,7 +175,7 @@ class Drafts:
             OSError: The version cannot be written, or the draft not be removed.
         """
         with self._lock:
-            before = self._of(tab, name)
+            before = self._texts.get((tab, name))
             if before is None:
                 return
             if before.text != saved:
@@ -196,21 +196,21 @@ class Drafts:
         drafts: dict[str, Draft] = {}
         others: list[str] = []
         with self._lock:
-            for name, paths in self._abandoned(tab, is_new=is_new).items():
-                for path, draft in paths:
-                    if name not in drafts:
-                        if self._taken(path, self._path(tab, name)):
-                            drafts[name] = self._texts[tab, name] = draft
-                        continue
-                    if draft.text != drafts[name].text:
-                        self._keep(name, draft, "left")
-                        others.append(name)
-                    path.unlink(missing_ok=True)
+            for path, draft in self._abandoned(tab, is_new=is_new):
+                name = path.parent.name
+                if name not in drafts:
+                    if self._is_taken(path, self._path(tab, name)):
+                        drafts[name] = self._texts[tab, name] = draft
+                    continue
+                if draft.text != drafts[name].text:
+                    self._keep(name, draft, "left")
+                    others.append(name)
+                path.unlink(missing_ok=True)
             return drafts, list(dict.fromkeys(others))
 
-    def _abandoned(self, tab: str, *, is_new: bool) -> dict[str, list[tuple[Path, Draft]]]:
-        """Return the drafts that a tab may have, by file: its own first, then the newest."""
-        candidates: dict[str, list[tuple[bool, float, Path, Draft]]] = {}
+    def _abandoned(self, tab: str, *, is_new: bool) -> list[tuple[Path, Draft]]:
+        """Return the drafts that a tab may have: its own first, then the newest."""
+        candidates: list[tuple[bool, float, Path, Draft]] = []
         for path in self._folder.glob("*/*.json"):
             parts = _NAME.fullmatch(path.name)
             draft = Draft.of(path) if parts else None
@@ -221,15 +221,11 @@ class Drafts:
             is_gone = owner not in self._tabs if is_ours else _is_over(lock_file, token, server)
             is_own = owner == tab and (is_ours or is_gone)
             if is_own or (is_gone and is_new):
-                candidates.setdefault(path.parent.name, []).append(
-                    (is_own, draft.since, path, draft)
-                )
-        return {
-            name: [(path, draft) for _, _, path, draft in sorted(each, key=_order, reverse=True)]
-            for name, each in candidates.items()
-        }
+                candidates.append((is_own, draft.since, path, draft))
+        candidates.sort(key=lambda candidate: candidate[:2], reverse=True)
+        return [(path, draft) for _, _, path, draft in candidates]
 
-    def _taken(self, path: Path, own: Path) -> bool:
+    def _is_taken(self, path: Path, own: Path) -> bool:
         """Make a draft this tab's; return whether no other server was faster."""
         try:
             path.replace(own)
@@ -240,14 +236,11 @@ class Drafts:
     def _keep(self, name: str, draft: Draft, why: Why) -> None:
         self.versions.keep(name, draft.text.encode("utf-8", "replace"), why)
 
-    def _of(self, tab: str, name: str) -> Draft | None:
-        return self._texts.get((tab, name))
-
     def _path(self, tab: str, name: str) -> Path:
         process = "-".join(process_name())
         return self._folder / name / f"{process}-{self._server}.{tab}.json"
 
-    def _say_whose(self) -> None:
+    def _write_folder_name(self) -> None:
         """Write the name of the scene's folder, for people who look for a text."""
         about = self._folder / "folder.txt"
         if not about.exists():
@@ -263,7 +256,3 @@ def _is_over(lock_file: str, token: str, server: str) -> bool:
     if (lock_file, token) == process_name():
         return server not in _servers
     return is_over(lock_file, token) is not False
-
-
-def _order(candidate: tuple[bool, float, Path, Draft]) -> tuple[bool, float]:
-    return candidate[:2]

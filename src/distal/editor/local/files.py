@@ -155,7 +155,7 @@ class SceneFiles:
         if now.digest == NO_FILE and entry.last.digest == NO_FILE:
             return  # a new file, still
         if now.digest == NO_FILE:
-            now = SourceFile("", NO_FILE, problem=self._fate(entry.last))
+            now = SourceFile("", NO_FILE, problem=self._loss(entry.last))
         changed = _FileState(entry.last if now.problem else now, now)
         if name in self._entries and changed.state == entry.state:
             return
@@ -164,7 +164,7 @@ class SceneFiles:
         self._keep(name, entry.now.data, why)
         self._keep(name, now.data, why)
 
-    def _fate(self, last: SourceFile) -> str:
+    def _loss(self, last: SourceFile) -> str:
         """Return what became of a file that is gone."""
         try:
             for entry in os.scandir(self.folder):
