@@ -415,12 +415,12 @@ READING = {
 }
 # What reads files that distal, its author or the system wrote.
 OWN = {
-    "cli/__init__.py": "descriptors of the terminal",
     "cli/doctor.py": "/proc/cpuinfo",
-    "cli/new.py": "writes",
+    "cli/messages.py": "/dev/null",
     "cli/progress_lines.py": "descriptors of the terminal",
-    "cli/studio.py": "a browser",
+    "cli/running.py": "descriptors of the terminal",
     "cluster/connecting.py": "the file of a scheduler that the author started",
+    "cluster/local.py": "messages of its own workers",
     "compiler/kept_texts.py": "the cache",
     "devices/": "the cache, buffers of devices, the system",
     "editor/links.py": "share links: a million characters at most, each error is LinkError",
@@ -428,6 +428,7 @@ OWN = {
     "editor/messages/": "messages of the app",
     "editor/worker.py": "/dev/null",
     "export/": "what distal wrote, and files that were read before",
+    "file_writer/": "writes, and compares what it replaces",
     "images/picture_files.py": "eight bytes; the readers of the formats do the rest",
     "images/metadata.py": "texts of pictures, within the readers of the formats",
     "ir/encoding.py": "programs from distal's own cluster",
