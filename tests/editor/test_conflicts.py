@@ -17,7 +17,8 @@ pytest.importorskip("websockets")
 BAR = "() => document.querySelector('.state-bar')"
 NO_BAR = "() => !document.querySelector('.state-bar')"
 STARTED = "() => window.studio?.editor.name"
-KEPT = "() => !sessionStorage.getItem('distal:unsent')"
+UNSENT = "() => Object.keys(sessionStorage).some((key) => key.startsWith('distal:unsent:'))"
+KEPT = f"() => !({UNSENT})()"
 
 
 def press(app, name):
@@ -203,7 +204,7 @@ def test_unsaved_text_is_there_after_the_server_was_killed(tmp_path, started):
         server.wait()
         page.locator(".state-bar", has_text="The studio's server is away.").wait_for()
         page.keyboard.type("# while it is away\n")
-        page.wait_for_function("() => sessionStorage.getItem('distal:unsent')")
+        page.wait_for_function(UNSENT)
 
         # Another program saves, and another server has another port.
         file.write_text(f"# theirs\n{SCENE}")

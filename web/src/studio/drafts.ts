@@ -14,7 +14,8 @@ const KEY_MS = 250;
 /** Where it could not be kept, so long until the next try. */
 const RETRY_MS = 5000;
 const TAB = "distal:tab";
-const UNSENT = "distal:unsent";
+/** With the folder: another server may have this address later. */
+const UNSENT = "distal:unsent:";
 
 interface Draft {
   text: string;
@@ -28,10 +29,17 @@ export class Drafts implements Keeping {
   /** By name, what the server has not confirmed. */
   #unsent = new Map<string, Draft>();
   /** What the page before could not send. */
-  #before = unsentBefore();
+  #before: Record<string, Draft>;
   #isThere = false;
 
-  constructor(readonly studio: Studio) {}
+  constructor(readonly studio: Studio) {
+    this.#before = unsentBefore(this.#place);
+  }
+
+  /** Where in the tab's storage what is not sent is kept. */
+  get #place(): string {
+    return UNSENT + this.studio.settings.folder;
+  }
 
   changed(): void {
     if (!this.#timer) this.#timer = window.setTimeout(() => this.keep(), KEY_MS);
@@ -59,6 +67,8 @@ export class Drafts implements Keeping {
     this.#greeted(answer.result, isNew);
     files.greeted(isNew ? { ...answer.result.drafts, ...this.#before } : {});
     this.#before = {};
+    // The server has these: what is as on the disk by now is one no longer.
+    for (const name of Object.keys(answer.result.drafts)) this.#sent.set(name, "before");
     this.keep();
   }
 
@@ -113,14 +123,14 @@ export class Drafts implements Keeping {
   /** Keeps what the server does not have in the tab's storage; returns whether that was possible. */
   #store(): boolean {
     const unsent = { ...this.#before, ...Object.fromEntries(this.#unsent) };
-    return remember(UNSENT, Object.keys(unsent).length ? JSON.stringify(unsent) : null);
+    return remember(this.#place, Object.keys(unsent).length ? JSON.stringify(unsent) : null);
   }
 }
 
 /** What a page in this tab could not send before it was loaded again. */
-function unsentBefore(): Record<string, Draft> {
+function unsentBefore(place: string): Record<string, Draft> {
   try {
-    return JSON.parse(recalled(UNSENT) ?? "{}") as Record<string, Draft>;
+    return JSON.parse(recalled(place) ?? "{}") as Record<string, Draft>;
   } catch {
     return {};
   }

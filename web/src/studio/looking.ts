@@ -291,10 +291,9 @@ export class Looking {
   }
 
   connected(isOpen: boolean): void {
-    const { page, turning } = this.studio;
-    if (isOpen) return page.tell(null);
+    if (isOpen) return;
     this.ready = null;
-    turning.drop();
+    this.studio.turning.drop();
   }
 }
 
