@@ -44,6 +44,11 @@ export class Store {
     return this.#memory.scenes.size > 0;
   }
 
+  /** The scenes that are in this page's memory only. */
+  get missing(): SceneRecord[] {
+    return [...this.#memory.scenes.values()];
+  }
+
   async all(): Promise<SceneRecord[]> {
     const stored = await this.#try((database) => database.getAll("scenes"), []);
     const own = this.#memory.scenes;
