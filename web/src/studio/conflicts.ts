@@ -58,7 +58,7 @@ export class Conflicts {
   #take(name: string, digest: string): void {
     const { channel, editor, keeping, looking, page, tabs, texts } = this.studio;
     if (channel.isOpen === false) {
-      const reason = `The text of ${name} stays: while the studio's server is away, nobody keeps the one that you leave.`;
+      const reason = `Nothing is changed: while the studio's server is away, your text of ${name} would be kept nowhere.`;
       return page.tell(reason, ["Close", () => {}]);
     }
     keeping.keep();
