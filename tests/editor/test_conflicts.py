@@ -210,7 +210,10 @@ def test_unsaved_text_is_there_after_the_server_was_killed(tmp_path, started):
         file.write_text(f"# theirs\n{SCENE}")
         _, other = started()
         assert other.split("/")[2] != address.split("/")[2]
+        asked: list[str] = []
+        page.on("dialog", lambda dialog: (asked.append(dialog.type), dialog.accept()))
         page.goto(other)
+        assert asked == ["beforeunload"]  # what was typed since then is in this tab alone
         page.wait_for_function(STARTED, timeout=SLOW_MS)
         page.wait_for_function(BAR, timeout=SLOW_MS)
         text = page.evaluate("() => studio.editor.view.state.doc.toString()")

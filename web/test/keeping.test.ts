@@ -67,7 +67,9 @@ test("what a page could not send belongs to its folder, whichever server has the
   const first = new World(storage, "/one");
   await first.drafts.connected(true);
   first.texts.set("a.py", "mine");
+  assert.equal(first.drafts.isHereOnly, false);
   await first.drafts.connected(false);
+  assert.equal(first.drafts.isHereOnly, true);
   const other = new World(storage, "/two");
   await other.drafts.connected(true);
   assert.deepEqual(other.restored, {});

@@ -31,6 +31,8 @@ export class Drafts implements Keeping {
   /** What the page before could not send. */
   #before: Record<string, Draft>;
   #isThere = false;
+  /** Why the server keeps nothing. */
+  #unkept = "";
 
   constructor(readonly studio: Studio) {
     this.#before = unsentBefore(this.#place);
@@ -39,6 +41,11 @@ export class Drafts implements Keeping {
   /** Where in the tab's storage what is not sent is kept. */
   get #place(): string {
     return UNSENT + this.studio.settings.folder;
+  }
+
+  /** Whether a text goes with the tab. */
+  get isHereOnly(): boolean {
+    return this.#unsent.size > 0 && (!this.#isThere || !!this.#unkept);
   }
 
   changed(): void {
@@ -109,6 +116,7 @@ export class Drafts implements Keeping {
 
   /** Says why nothing can be kept; nothing where it can. */
   #say(reason: string): void {
+    this.#unkept = reason;
     const text = `Unsaved text is not kept on the disk: ${reason}. It is in this page alone until you save it.`;
     this.studio.page.bar("unkept", reason ? text : null);
   }
