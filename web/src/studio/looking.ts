@@ -91,6 +91,7 @@ export class Looking {
     this.key = null;
     this.isStopped = false;
     this.keepsCamera = false;
+    this.studio.turning.drop();
   }
 
   /** Shows another picture of the file. */
