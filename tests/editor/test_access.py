@@ -397,9 +397,9 @@ def page_of(context, address, condition=IDLE):
 
 
 REFUSED_NOTE = "() => document.querySelector('.no-access')?.textContent.includes('Press Enter')"
-REFUSED_NOTICE = "() => document.querySelector('.notice').textContent.includes('Press Enter')"
+REFUSED_BAR = "() => document.querySelector('.state-bars').textContent.includes('Press Enter')"
 ENDED = "() => document.querySelector('.state-bars').textContent.includes('server is away')"
-CONNECTED = "() => document.querySelector('.notice').hidden"
+CONNECTED = "() => !document.querySelector('.state-bars').children.length"
 
 
 class Stranger:
@@ -445,8 +445,10 @@ def test_reload_second_tab_second_browser_and_a_stranger_on_the_port(tmp_path):
         page.evaluate("() => studio.files.replace('scene.py', '# my secret text\\n')")
         stranger = Stranger(port)
         stack.callback(stranger.close)
-        page.wait_for_function(REFUSED_NOTICE)
-        page.evaluate("() => void studio.save()")
+        page.wait_for_function(REFUSED_BAR)
+        page.evaluate("() => studio.save()")
+        assert "not saved: nobody answers" in page.locator(".notice").inner_text()
+        page.wait_for_function(REFUSED_BAR)
         page.evaluate("() => studio.looking.run()")
         page.evaluate("() => studio.opening.open('melting')")
         page.evaluate("(key) => { location.hash = 'key=' + key; }", "another-key")
@@ -462,6 +464,8 @@ def test_reload_second_tab_second_browser_and_a_stranger_on_the_port(tmp_path):
         server = stack.enter_context(running(tmp_path, port))
         page_of(first, server.address, STARTED)
         page.wait_for_function(CONNECTED)
+        page.evaluate("() => studio.save()")
+        assert (tmp_path / "scene.py").read_text() == "# my secret text\n"
 
 
 def test_without_storage_it_works_until_a_reload(tmp_path):

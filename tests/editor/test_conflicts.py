@@ -17,7 +17,8 @@ pytest.importorskip("websockets")
 BAR = "() => document.querySelector('.state-bar')"
 NO_BAR = "() => !document.querySelector('.state-bar')"
 STARTED = "() => window.studio?.editor.name"
-KEPT = "() => !sessionStorage.getItem('distal:unsent')"
+UNSENT = "() => Object.keys(sessionStorage).some((key) => key.startsWith('distal:unsent:'))"
+KEPT = f"() => !({UNSENT})()"
 
 
 def press(app, name):
@@ -203,13 +204,16 @@ def test_unsaved_text_is_there_after_the_server_was_killed(tmp_path, started):
         server.wait()
         page.locator(".state-bar", has_text="The studio's server is away.").wait_for()
         page.keyboard.type("# while it is away\n")
-        page.wait_for_function("() => sessionStorage.getItem('distal:unsent')")
+        page.wait_for_function(UNSENT)
 
         # Another program saves, and another server has another port.
         file.write_text(f"# theirs\n{SCENE}")
         _, other = started()
         assert other.split("/")[2] != address.split("/")[2]
+        asked: list[str] = []
+        page.on("dialog", lambda dialog: (asked.append(dialog.type), dialog.accept()))
         page.goto(other)
+        assert asked == ["beforeunload"]  # what was typed since then is in this tab alone
         page.wait_for_function(STARTED, timeout=SLOW_MS)
         page.wait_for_function(BAR, timeout=SLOW_MS)
         text = page.evaluate("() => studio.editor.view.state.doc.toString()")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import stat
@@ -202,6 +203,27 @@ def test_what_cannot_be_kept_is_said_and_the_save_goes_on(folder):
     saved = files.save("scene.py", "mine\n", DIGEST)
     assert (saved.is_saved, saved.unkept) == (True, reason)
     assert (folder / "scene.py").read_text() == "mine\n"
+
+
+def test_a_full_disk_hides_no_draft(folder, monkeypatch):
+    files = server(folder)
+    tabs = [Tab(files), Tab(files)]
+    for number, tab in enumerate(tabs):
+        tab.draft(f"{number}\n")
+    for tab in tabs:
+        tab.keeping.end()
+
+    def full(self, name, data, why):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(FileVersions, "keep", full)
+        first = Tab(files)
+    first.keeping.end()
+    second = Tab(files)
+    assert first.texts.keys() == {"scene.py"}
+    kept = {second.texts["scene.py"], *version_texts(files)}
+    assert kept == {"0\n", "1\n", SCENE}
 
 
 def test_a_new_file_has_its_draft_before_it_is_there(tmp_path):

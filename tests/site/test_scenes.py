@@ -320,6 +320,36 @@ def test_a_full_storage_is_said_and_tried_again(address):
         assert visit(made, address).evaluate(TEXT).startswith("# two\n# one\n")
 
 
+def test_a_text_that_was_refused_survives_the_next_write_of_something_else(address):
+    with visits(address, FULL) as made:
+        page = visit(made, address)
+        page.evaluate("() => { window.isFull = false; }")
+        edited(page, "# zero\n")
+        page.wait_for_timeout(1300)  # it rests
+        page.evaluate("() => { window.isFull = true; }")
+        edited(page, "# one\n")
+        page.wait_for_timeout(1300)
+        assert page.evaluate("() => studio.scenes.store.isMissing")
+        page.evaluate("() => { window.isFull = false; }")
+        page.evaluate("() => studio.scenes.rename(studio.scenes.id, 'other')")
+        assert page.evaluate("() => studio.scenes.store.isMissing") is False
+        page.close()
+        page = visit(made, address)
+        ((name, text),) = texts(page).items()
+        assert (name, text.startswith("# one\n# zero\n")) == ("other", True)
+        assert any(text.startswith("# one\n") for _, text in versions(page))
+        # Of several scenes that are refused each one is left for the next page.
+        edited(page, "# two\n")
+        page.evaluate("() => studio.opening.goTo('#new')")
+        page.wait_for_function("() => !studio.scenes.isKept")
+        edited(page, "# three\n")
+        page.on("dialog", lambda dialog: dialog.accept())
+        page.goto("about:blank")
+        page = visit(made, address)
+        first, second = sorted(text.split("\n")[0] for text in texts(page).values())
+        assert (first, second) == ("# three", "# two")
+
+
 def test_drafts_of_earlier_versions_become_scenes_once(address):
     with visits(address) as made:
         page = visit(made, address)

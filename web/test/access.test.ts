@@ -154,3 +154,21 @@ test("a server that is away or busy is asked again, and this is told apart", asy
     assert.equal(await world.begin(), reason);
   }
 });
+
+test("a connection that another one replaces has ended: what was asked through it has no answer", async () => {
+  new World("#key=abc", honest("abc", "s3cret"));
+  const access = new Access();
+  const told: string[] = [];
+  const opened = () => new Promise<void>((resolve) => (access.onOpen = () => (told.push("open"), resolve())));
+  access.onClosed = (reason) => told.push(reason);
+  const first = opened();
+  access.start();
+  await first;
+  const second = opened();
+  access.start();
+  await second;
+  assert.deepEqual(told, ["open", "away", "open"]);
+  access.end();
+  access.end();
+  assert.deepEqual(told, ["open", "away", "open", "away"]);
+});

@@ -9,6 +9,7 @@ import {
   merged,
   nameOf,
   newId,
+  renewed,
   thinned,
   uniqueName,
   type Origin,
@@ -137,4 +138,18 @@ test("times and refusals are said in a sentence", () => {
   assert.match(refused("QuotaExceededError"), /^The browser's storage is full\. .*this tab only/);
   assert.match(refused("VersionError"), /newer version/);
   assert.match(refused("SecurityError"), /private window, or storage is blocked/);
+});
+
+test("what the database refused is the newer text there later, with its versions, whatever is written then", () => {
+  const version = { scene: "x", at: 250, main: "a.py", files: { "a.py": "typed" }, why: "typed" } as const;
+  const refused = { scene: record({ name: "new", files: { "a.py": "mine" }, changed: 300 }), versions: [version] };
+  assert.deepEqual(renewed(undefined, refused), refused);
+  const same = renewed(record({ files: { "a.py": "mine" } }), refused);
+  assert.deepEqual([same.scene.name, same.versions], ["new", [version]]);
+  const older = renewed(record(), refused);
+  assert.deepEqual(older.scene, refused.scene);
+  assert.deepEqual(older.versions?.map(({ files }) => files["a.py"]), ["old", "typed"]);
+  const newer = renewed(record({ changed: 400 }), refused);
+  assert.equal(newer.scene.files["a.py"], "old");
+  assert.deepEqual(newer.versions?.map(({ files }) => files["a.py"]), ["typed", "mine"]);
 });

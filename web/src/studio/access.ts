@@ -65,10 +65,13 @@ export class Access {
   }
 
   end(): void {
+    const socket = this.#socket;
     this.#attempt += 1;
     clearTimeout(this.#timer);
-    this.#socket?.close();
     this.#socket = null;
+    if (!socket) return;
+    socket.close();
+    this.onClosed("away"); // What was asked through it has no answer.
   }
 
   get isOpen(): boolean {

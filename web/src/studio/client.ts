@@ -51,6 +51,8 @@ export class Client {
     progress: Waiting["progress"] = () => {},
   ): { id: number; answer: Promise<Response | null> } {
     const id = ++this.#count;
+    // What is not sent has no answer, also not from the server that comes next.
+    if (this.channel.isOpen === false) return { id, answer: Promise.resolve(null) };
     const answer = new Promise<Response | null>((resolve) => {
       this.#waiting.set(id, { resolve, progress });
       this.channel.post({ ...request, id } as Request);

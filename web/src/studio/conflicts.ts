@@ -56,7 +56,11 @@ export class Conflicts {
 
   /** Undo brings the page's text back, and it is kept as a version. */
   #take(name: string, digest: string): void {
-    const { editor, keeping, looking, tabs, texts } = this.studio;
+    const { channel, editor, keeping, looking, page, tabs, texts } = this.studio;
+    if (channel.isOpen === false) {
+      const reason = `Nothing is changed: while the studio's server is away, your text of ${name} would be kept nowhere.`;
+      return page.tell(reason, ["Close", () => {}]);
+    }
     keeping.keep();
     texts.takeTheirs(name, digest);
     editor.replace(name, texts.files[name]!);

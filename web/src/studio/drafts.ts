@@ -14,7 +14,8 @@ const KEY_MS = 250;
 /** Where it could not be kept, so long until the next try. */
 const RETRY_MS = 5000;
 const TAB = "distal:tab";
-const UNSENT = "distal:unsent";
+/** With the folder: another server may have this address later. */
+const UNSENT = "distal:unsent:";
 
 interface Draft {
   text: string;
@@ -28,10 +29,24 @@ export class Drafts implements Keeping {
   /** By name, what the server has not confirmed. */
   #unsent = new Map<string, Draft>();
   /** What the page before could not send. */
-  #before = unsentBefore();
+  #before: Record<string, Draft>;
   #isThere = false;
+  /** Why the server keeps nothing. */
+  #unkept = "";
 
-  constructor(readonly studio: Studio) {}
+  constructor(readonly studio: Studio) {
+    this.#before = unsentBefore(this.#place);
+  }
+
+  /** Where in the tab's storage what is not sent is kept. */
+  get #place(): string {
+    return UNSENT + this.studio.settings.folder;
+  }
+
+  /** Whether a text goes with the tab. */
+  get isHereOnly(): boolean {
+    return this.#unsent.size > 0 && (!this.#isThere || !!this.#unkept);
+  }
 
   changed(): void {
     if (!this.#timer) this.#timer = window.setTimeout(() => this.keep(), KEY_MS);
@@ -59,6 +74,8 @@ export class Drafts implements Keeping {
     this.#greeted(answer.result, isNew);
     files.greeted(isNew ? { ...answer.result.drafts, ...this.#before } : {});
     this.#before = {};
+    // The server has these: what is as on the disk by now is one no longer.
+    for (const name of Object.keys(answer.result.drafts)) this.#sent.set(name, "before");
     this.keep();
   }
 
@@ -99,6 +116,7 @@ export class Drafts implements Keeping {
 
   /** Says why nothing can be kept; nothing where it can. */
   #say(reason: string): void {
+    this.#unkept = reason;
     const text = `Unsaved text is not kept on the disk: ${reason}. It is in this page alone until you save it.`;
     this.studio.page.bar("unkept", reason ? text : null);
   }
@@ -113,14 +131,14 @@ export class Drafts implements Keeping {
   /** Keeps what the server does not have in the tab's storage; returns whether that was possible. */
   #store(): boolean {
     const unsent = { ...this.#before, ...Object.fromEntries(this.#unsent) };
-    return remember(UNSENT, Object.keys(unsent).length ? JSON.stringify(unsent) : null);
+    return remember(this.#place, Object.keys(unsent).length ? JSON.stringify(unsent) : null);
   }
 }
 
 /** What a page in this tab could not send before it was loaded again. */
-function unsentBefore(): Record<string, Draft> {
+function unsentBefore(place: string): Record<string, Draft> {
   try {
-    return JSON.parse(recalled(UNSENT) ?? "{}") as Record<string, Draft>;
+    return JSON.parse(recalled(place) ?? "{}") as Record<string, Draft>;
   } catch {
     return {};
   }

@@ -33,6 +33,7 @@ import { tags } from "@lezer/highlight";
 import type { Edit, Mistake, MistakeLabel, SourceLiteral } from "../generated/messages";
 import { completion } from "./completion";
 import { costs, showFigures, type Figure } from "./costs";
+import { smallest } from "./edits";
 import { literals, setLiterals, type Turning } from "./literals";
 import { names } from "./names";
 import { pairs } from "./pairs";
@@ -238,14 +239,4 @@ export function offsetIn({ excerpt }: Mistake, column: number | null): number {
 /** What a label says, and where. */
 export function labelText({ file, line, text }: MistakeLabel): string {
   return `${file} line ${line}: ${text}`;
-}
-
-/** The smallest change that makes one text of another. */
-function smallest(old: string, text: string): { from: number; to: number; insert: string } {
-  let from = 0;
-  while (from < old.length && from < text.length && old[from] === text[from]) from++;
-  let last = 0;
-  const most = Math.min(old.length, text.length) - from;
-  while (last < most && old[old.length - 1 - last] === text[text.length - 1 - last]) last++;
-  return { from, to: old.length - last, insert: text.slice(from, text.length - last) };
 }

@@ -105,7 +105,8 @@ export class Files {
   save(): Promise<void> {
     const { scenes } = this.studio;
     if (scenes) return scenes.save();
-    this.#saving = this.#saving.then(() => this.#saveAll());
+    const next = () => this.#saveAll();
+    this.#saving = this.#saving.then(next, next);
     return this.#saving;
   }
 
@@ -125,7 +126,7 @@ export class Files {
 
   /** Saves a file; returns whether that is done. */
   async #saveOne(name: string, inPlace = false, tries = MOST_TRIES): Promise<boolean> {
-    const { client, conflicts, page, texts } = this.studio;
+    const { client, conflicts, page, tabs, texts } = this.studio;
     if (texts.isOpen(name)) return conflicts.ask(name), false;
     const { text, base } = texts.state(name);
     const { revision } = texts;
@@ -142,6 +143,7 @@ export class Files {
     }
     if (isSaved) {
       texts.saved(name, text, digest, order);
+      tabs.fill();
       page.announcer.textContent = `${name} is saved`;
       if (other !== null) this.#tellOther(name, other);
       if (unkept) page.tell(`${name} is saved; its versions are not kept: ${unkept}.`, close);

@@ -91,6 +91,7 @@ export class Looking {
     this.key = null;
     this.isStopped = false;
     this.keepsCamera = false;
+    this.studio.turning.drop();
   }
 
   /** Shows another picture of the file. */
@@ -291,10 +292,9 @@ export class Looking {
   }
 
   connected(isOpen: boolean): void {
-    const { page, turning } = this.studio;
-    if (isOpen) return page.tell(null);
+    if (isOpen) return;
     this.ready = null;
-    turning.drop();
+    this.studio.turning.drop();
   }
 }
 

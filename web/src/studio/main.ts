@@ -30,12 +30,13 @@ function beginLocally(): void {
     const file = JSON.stringify([settings.folder, settings.main]);
     if (studio && file !== edited) {
       access.end();
-      return studio.page.tell("The studio at this address edits another file now: reload the page to see it.");
+      return tellOther(studio);
     }
     note.remove();
     const isFirst = !studio;
     studio ??= begin(settings, channel);
     edited = file;
+    studio.page.bar("access", null);
     channel.onState(true);
     if (isFirst && !access.isKept) studio.page.tell(NOT_KEPT, ["Close", () => {}]);
   };
@@ -43,9 +44,17 @@ function beginLocally(): void {
     note.textContent = REASONS[reason];
     if (!studio) return;
     channel.onState(false);
-    if (reason !== "away") studio.page.tell(REASONS[reason]);
+    // The bar of what is kept says that the server is away.
+    studio.page.bar("access", reason === "away" ? null : REASONS[reason]);
   };
   access.start();
+}
+
+/** The page's texts belong to no file of the server that is here now. */
+function tellOther({ page, sharing, texts }: Studio): void {
+  const text = "The studio at this address edits another file now: reload the page to see it.";
+  if (!texts.names.some((name) => texts.isChanged(name))) return page.bar("access", text);
+  page.bar("access", `${text} What is not saved goes with this page.`, ["Save a copy", () => sharing.saveChanged()]);
 }
 
 const own = document.getElementById("settings");

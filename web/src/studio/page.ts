@@ -80,6 +80,8 @@ export class Page {
     const bars = [...this.bars.children] as HTMLElement[];
     const old = bars.find((one) => one.dataset["key"] === key);
     if (text === null) return old?.remove();
+    // What is said again and again is read out once.
+    if (old && !actions.length && old.textContent === text) return;
     const buttons = actions.map(([label, onclick]) => make("button", { type: "button", onclick }, label));
     const bar = make("div", { className: "state-bar", role: "alert" }, make("span", {}, text), ...buttons);
     bar.dataset["key"] = key;

@@ -89,6 +89,12 @@ export class Sharing {
     else download(new Blob([texts.files[main]!]), `${main.replace(/\.py$/, "")}.py`);
   }
 
+  /** Saves a copy of each file that is not as on the disk. */
+  saveChanged(): void {
+    const { texts } = this.studio;
+    for (const name of texts.names.filter((one) => texts.isChanged(one))) download(new Blob([texts.files[name]!]), name);
+  }
+
   /** A file's name, which is that of the scene instead of its main file. */
   #named(name: string): string {
     const { scenes, settings } = this.studio;

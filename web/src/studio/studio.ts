@@ -89,9 +89,12 @@ export class Studio {
     this.page.work.after(this.jobs.chip);
     document.title = `${main} · distal`;
     if (settings.start) void this.opening.begin(settings.start);
-    if (!this.scenes) {
-      for (const end of ["beforeunload", "pagehide"]) addEventListener(end, () => this.keeping.keep());
-    }
+    if (!drafts) return;
+    addEventListener("pagehide", () => drafts.keep());
+    addEventListener("beforeunload", (event) => {
+      drafts.keep();
+      if (drafts.isHereOnly) event.preventDefault();
+    });
   }
 
   save(): Promise<void> {

@@ -202,10 +202,12 @@ class Drafts:
                     if self._is_taken(path, self._path(tab, name)):
                         drafts[name] = self._texts[tab, name] = draft
                     continue
-                if draft.text != drafts[name].text:
-                    self._keep(name, draft, "left")
-                    others.append(name)
-                path.unlink(missing_ok=True)
+                # One that can be no version now, on a full disk, stays where it is.
+                with contextlib.suppress(OSError):
+                    if draft.text != drafts[name].text:
+                        self._keep(name, draft, "left")
+                        others.append(name)
+                    path.unlink(missing_ok=True)
             return drafts, list(dict.fromkeys(others))
 
     def _abandoned(self, tab: str, *, is_new: bool) -> list[tuple[Path, Draft]]:

@@ -115,6 +115,16 @@ export function merged(old: SceneRecord | undefined, last: LastTexts): Change | 
   return { scene: { ...scene, name: old.name, thumb: old.thumb, changed: Math.max(at, old.changed + 1) }, versions };
 }
 
+/** What to write of a scene that the database refused before: the newer text, and the other as a version. */
+export function renewed(old: SceneRecord | undefined, { scene, versions = [] }: Change): Change {
+  if (!old) return { scene, versions };
+  const isSame = sameTexts(old.files, scene.files);
+  if (old.changed <= scene.changed) {
+    return { scene, versions: isSame ? versions : [versionOf(old, "before replace", old.changed), ...versions] };
+  }
+  return { scene: old, versions: isSame ? versions : [...versions, versionOf(scene, "typed", scene.changed)] };
+}
+
 export function versionOf({ id, main, files }: SceneRecord, why: Reason, at: number): Version {
   return { scene: id, at, main, files, why };
 }

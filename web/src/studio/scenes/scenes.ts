@@ -117,8 +117,9 @@ export class Scenes implements Keeping {
   #leave(): void {
     const now = this.now;
     const isStored = !this.#isChanged && !this.store.isMissing;
-    if (!now?.release || isStored) return void this.write();
-    leave({ scene: this.textsNow(now), base: now.record.changed, at: Date.now() });
+    if (now?.release && !isStored) leave({ scene: this.textsNow(now), base: now.record.changed, at: Date.now() });
+    const others = this.store.missing.filter(({ id }) => id !== this.id || !now?.release);
+    for (const scene of others) leave({ scene, base: -1, at: scene.changed });
     void this.write();
   }
 

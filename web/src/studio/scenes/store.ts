@@ -6,7 +6,7 @@
  */
 
 import { openDB, type DBSchema, type IDBPDatabase } from "idb";
-import { DELETED_MS, merged, thinned, type Change, type SceneRecord, type Version } from "./records";
+import { DELETED_MS, renewed, thinned, type Change, type SceneRecord, type Version } from "./records";
 
 interface Schema extends DBSchema {
   scenes: { key: string; value: SceneRecord };
@@ -44,6 +44,11 @@ export class Store {
     return this.#memory.scenes.size > 0;
   }
 
+  /** The scenes that are in this page's memory only. */
+  get missing(): SceneRecord[] {
+    return [...this.#memory.scenes.values()];
+  }
+
   async all(): Promise<SceneRecord[]> {
     const stored = await this.#try((database) => database.getAll("scenes"), []);
     const own = this.#memory.scenes;
@@ -63,14 +68,17 @@ export class Store {
 
   /** Writes a scene; what the database refuses stays in memory. Returns what was written. */
   async write(id: string, making: Making): Promise<SceneRecord | null> {
-    const own = this.#memory.versions.filter(({ scene }) => scene === id);
+    const refused = this.#memory.refused(id);
     const whole: Making = (old, last) => {
-      const change = making(old, last);
-      return change && { ...change, versions: [...own, ...(change.versions ?? [])] };
+      if (!refused) return making(old, last);
+      const base = renewed(old, refused);
+      const { versions = [] } = base;
+      const change = making(base.scene, versions.at(-1) ?? last);
+      return { scene: change?.scene ?? base.scene, versions: [...versions, ...(change?.versions ?? [])] };
     };
     try {
       const scene = await written(await this.#opened(), id, whole);
-      this.#memory.forget(id);
+      if (refused) this.#memory.forget(refused);
       await this.#writeOthers();
       if (!this.isMissing) this.onFailure(null);
       return scene;
@@ -83,10 +91,12 @@ export class Store {
 
   /** The database takes writes again: also of the scenes that it refused before. */
   async #writeOthers(): Promise<void> {
-    for (const scene of [...this.#memory.scenes.values()]) {
+    for (const id of [...this.#memory.scenes.keys()]) {
+      const refused = this.#memory.refused(id);
+      if (!refused) continue;
       await this.#try(async (database) => {
-        await written(database, scene.id, (old) => merged(old, { scene, base: -1, at: scene.changed }));
-        this.#memory.forget(scene.id);
+        await written(database, id, (old) => renewed(old, refused));
+        this.#memory.forget(refused);
       }, undefined);
     }
   }
@@ -128,13 +138,24 @@ export class Store {
 
   /** The database, opened again where the browser has closed it. */
   #opened(): Promise<Database> {
-    this.#database ??= opened(() => (this.#database = null));
+    this.#database ??= this.#begun();
     return this.#database;
+  }
+
+  #begun(): Promise<Database> {
+    const ended = () => (this.#database = null);
+    const opening = opened(ended);
+    // One that opens late is used from then on; one that fails is tried again.
+    opening.then(() => (this.#database = opening), ended);
+    const late = new Promise<never>((_, reject) => {
+      setTimeout(() => reject(new Error("the browser's database does not open")), OPEN_MS);
+    });
+    return Promise.race([opening, late]);
   }
 }
 
 async function opened(ended: () => void): Promise<Database> {
-  const opening = openDB<Schema>(NAME, VERSION, {
+  return openDB<Schema>(NAME, VERSION, {
     upgrade(database) {
       database.createObjectStore("scenes", { keyPath: "id" });
       database.createObjectStore("versions", { keyPath: ["scene", "at"] });
@@ -145,10 +166,6 @@ async function opened(ended: () => void): Promise<Database> {
     },
     terminated: ended,
   });
-  const late = new Promise<never>((_, reject) => {
-    setTimeout(() => reject(new Error("the browser's database does not open")), OPEN_MS);
-  });
-  return Promise.race([opening, late]);
 }
 
 /** One write, in one transaction with what it depends on. */
@@ -202,8 +219,15 @@ class Memory {
     return change.scene;
   }
 
-  forget(id: string): void {
-    this.scenes.delete(id);
-    this.versions = this.versions.filter(({ scene }) => scene !== id);
+  /** What was refused of a scene. */
+  refused(id: string): Change | null {
+    const scene = this.scenes.get(id);
+    return scene ? { scene, versions: this.versions.filter((one) => one.scene === id) } : null;
+  }
+
+  /** Forgets what the database has taken since; what it refused meanwhile stays. */
+  forget({ scene, versions = [] }: Change): void {
+    if (this.scenes.get(scene.id) === scene) this.scenes.delete(scene.id);
+    this.versions = this.versions.filter((one) => !versions.includes(one));
   }
 }

@@ -41,7 +41,8 @@ export async function openVersions(studio: Studio, { id, name, files }: SceneRec
   restore.onclick = async () => {
     for (const open of document.querySelectorAll<HTMLDialogElement>("dialog.sheet[open]")) open.close();
     await studio.opening.goTo(`#scene=${id}`);
-    if (scenes.isReader) return;
+    // Another tab may edit it, or have deleted it: then something else is open.
+    if (scenes.isReader || scenes.id !== id) return;
     await scenes.restoreVersion(chosen);
     studio.page.announcer.textContent = `The version of ${momentOf(chosen.at)} is restored`;
   };
