@@ -972,3 +972,31 @@ def test_root_makes_no_folder_in_the_home_of_another(shared, monkeypatch):
         state.state_folder()
     os.chown(shared, 0, 0)
     assert state.state_folder() == shared / ".local/state/distal"
+
+
+def test_state_folder_is_private(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    folder = state.state_folder()
+    assert stat.S_IMODE(folder.stat().st_mode) == 0o700
+    folder.chmod(0o720)
+    with pytest.raises(PermissionError, match=f"{folder} can be written by others"):
+        state.state_folder()
+
+
+@needs_root
+@pytest.mark.parametrize("way", ["folder", "link", "parent"])
+def test_state_folder_that_another_user_can_fill_is_not_used(shared, tmp_path, monkeypatch, way):
+    """What is in it becomes the text of a scene, which is run."""
+    monkeypatch.setenv("XDG_STATE_HOME", str(shared))
+    folder = shared / "distal"
+    if way == "folder":
+        folder.mkdir(mode=0o700)
+        os.chown(folder, NOBODY, NOBODY)
+    elif way == "link":
+        folder.symlink_to(tmp_path)
+        os.lchown(folder, NOBODY, NOBODY)
+    else:
+        shared.chmod(0o777)  # another user renames the folder and makes a new one
+    reason = f"{shared} can be" if way == "parent" else f"{folder} is another user's"
+    with pytest.raises(PermissionError, match=reason):
+        state.state_folder()

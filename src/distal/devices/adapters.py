@@ -153,7 +153,7 @@ def listed_in_subprocess() -> tuple[list[Adapter], str]:
     """
     try:
         answer = subprocess.run(
-            [sys.executable, "-c", _QUESTION],
+            [sys.executable, "-P", "-c", _QUESTION],
             capture_output=True,
             text=True,
             timeout=_ANSWER_TIMEOUT_S,
