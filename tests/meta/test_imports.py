@@ -140,9 +140,12 @@ def test_every_process_is_started_without_the_working_folder():
     starts = []
     for path in sorted(Path(distal.__file__).parent.rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.List) and node.elts:
-                if ast.unparse(node.elts[0]) == "sys.executable":
-                    starts.append((path.name, ast.unparse(node.elts[1])))
+            if (
+                isinstance(node, ast.List)
+                and node.elts
+                and (ast.unparse(node.elts[0]) == "sys.executable")
+            ):
+                starts.append((path.name, ast.unparse(node.elts[1])))
     others = [start for start in starts if start[1] != "'-P'"]
     assert others == [("local.py", "*_COMMAND")]  # which begins with it
     assert len(starts) >= 7
