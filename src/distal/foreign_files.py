@@ -28,7 +28,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, TypeAlias
+from typing import Final, TypeAlias, TypeVar
 
 from distal.diagnostics import LONGEST_MESSAGE, CompileError, LoadError, printable
 from distal.forking import new_lock
@@ -47,7 +47,8 @@ MEMORY_VARIABLE: Final = "DISTAL_MAX_MEMORY"
 Memory: TypeAlias = int | str
 _UNITS: Final = {"B": 1, "kB": 10**3, "MB": 10**6, "GB": 10**9, "TB": 10**12}
 _MEMORY: Final = re.compile(r"\s*([0-9]{1,15}(?:\.[0-9]{1,6})?)\s*([kKMGT]?B)\s*")
-_PERIOD_S: Final = 0.25  # between two attempts to end a reader
+_PERIOD_S: Final = 0.05  # between two looks at a reader that asks nobody
+_Made = TypeVar("_Made")
 _ENDS_EARLY: Final = (EOFError, struct.error)
 _UNPACKING: Final = (zlib.error, zipfile.BadZipFile)
 
@@ -60,14 +61,11 @@ class FileKind:
         sentence: The message about a damaged file, of {file} and {reason}.
         unreadable: That about a file whose bytes cannot be read.
         largest: The most bytes of such a file.
-        is_watched: Whether it is read by a package whose loops do not ask for the time: a thread
-            then ends them.
     """
 
     sentence: str
     unreadable: str
     largest: int = 2**30
-    is_watched: bool = False
 
 
 _UNREADABLE: Final = "cannot read '{file}': {reason}"
@@ -81,8 +79,8 @@ def _picture(name: str, largest: int = 2**30) -> FileKind:
     return FileKind(f"{{file}} is broken: it is no whole {name}: {{reason}}", _UNREADABLE, largest)
 
 
-def _one(sentence: str, largest: int = 2**30, *, is_watched: bool = False) -> FileKind:
-    return FileKind(sentence, sentence, largest, is_watched)
+def _one(sentence: str, largest: int = 2**30) -> FileKind:
+    return FileKind(sentence, sentence, largest)
 
 
 # All kinds. ``tools/sweep_readers.py`` has files of each to damage.
@@ -96,8 +94,8 @@ KINDS: Final = {
     "volume": _data("volume", 2**31),
     "texture": _one("the texture '{file}' cannot be read: {reason}"),
     "sound": _one("cannot read the sound {file}: {reason}"),
-    "font": _one("the font '{file}' cannot be read: {reason}", 2**28, is_watched=True),
-    "drawing": _one("{file} cannot be read: {reason}", 2**26, is_watched=True),
+    "font": _one("the font '{file}' cannot be read: {reason}", 2**28),
+    "drawing": _one("{file} cannot be read: {reason}", 2**26),
     ".vm": _one(_UNREADABLE, 2**23),
     "film": _one("{file} is not a film: delete it or name another ({reason})", 2**34),
     "frame": _one("cannot read the frame {file}: {reason}"),
@@ -113,7 +111,7 @@ class TooLargeError(LoadError):
     """A file would take more memory or time than files of its size get; the message is whole."""
 
 
-class _TimeIsUp(BaseException):
+class _BudgetIsSpentError(BaseException):
     """Ends a watched reader, which may catch every ``Exception``."""
 
 
@@ -175,10 +173,17 @@ class Budget:
             f"files of this size get; {self._fix(enough)} reads it anyway"
         )
 
+    def over(self) -> TooLargeError:
+        """Return the error of a file that took too much memory."""
+        return TooLargeError(
+            f"'{self.file}' of {shown(self.size)} takes more than {shown(self.most)}, which files "
+            f"of this size get; {self._fix(_rounded_up(2 * self.most))} reads it anyway"
+        )
+
     @property
     def is_watched(self) -> bool:
-        """Whether a thread ends the reader."""
-        return self.kind.is_watched and not self._is_trusted and sys.platform != "emscripten"
+        """Whether a thread ends a reader that asks nobody."""
+        return not self._is_trusted and sys.platform != "emscripten"
 
     def _limit(self) -> str:
         given = f"it may take {shown(self.most)}; "
@@ -260,7 +265,7 @@ def reading(
         budget = Budget(KINDS[kind], name, size, max_memory, option=option)
     except ValueError as wrong:
         raise error(str(wrong)) from None
-    with _one_line(KINDS[kind].sentence, name, error), _entered(budget), _watched(budget):
+    with _one_line(KINDS[kind].sentence, name, error), _entered(budget):
         yield budget
 
 
@@ -365,29 +370,55 @@ def _content(path: Path, most: int) -> bytes:
     return data
 
 
-@contextmanager
-def _watched(budget: Budget) -> Iterator[None]:
-    """End what runs in the context when its time is up, where nothing in it asks."""
-    if not budget.is_watched:
-        yield
-        return
-    watch = _ReadWatch(budget.seconds)
+def watched(work: Callable[[], _Made]) -> _Made:
+    """Return what a package makes of the file that is read; a thread ends it at its limits.
+
+    For packages whose loops ask neither for the time nor for memory. Not a context: where a call of
+    C fails after its time, the thread's exception comes as the next function begins, which would be
+    the end of the context.
+
+    Raises:
+        TooLargeError: It has taken more time, or on Linux more memory, than the file may.
+    """
+    budget = _CURRENT.get()
+    if budget is None or not budget.is_watched:
+        return work()
+    watch = _ReadWatch(budget)
     try:
-        yield
-    except _TimeIsUp:
-        raise budget.late() from None
-    finally:
+        try:
+            return work()
+        finally:
+            watch.end()
+    except _BudgetIsSpentError:
         watch.end()
+        raise (budget.over() if watch.is_memory else budget.late()) from None
+
+
+def _resident() -> int:
+    """Return the bytes of memory that this process has; 0 where the system does not say."""
+    try:
+        with open("/proc/self/statm", "rb") as file:
+            return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except (OSError, ValueError, IndexError, AttributeError):
+        return 0
 
 
 class _ReadWatch:
-    """A thread that raises ``_TimeIsUp`` in the thread that made it, until it is ended."""
+    """A thread that raises an exception in the thread that made it, until it is ended.
 
-    def __init__(self, seconds: float) -> None:
+    Args:
+        budget: What may be spent.
+
+    Attributes:
+        is_memory: Whether memory was spent, and not time.
+    """
+
+    def __init__(self, budget: Budget) -> None:
         self._thread = threading.get_ident()
         self._lock = new_lock()
         self._ended = threading.Event()
-        self._seconds = seconds
+        self._budget, self._memory = budget, _resident()
+        self.is_memory = False
         threading.Thread(target=self._run, name="distal-read-watch", daemon=True).start()
 
     def _run(self) -> None:
@@ -395,10 +426,11 @@ class _ReadWatch:
         while not self._ended.wait(_PERIOD_S):
             # Of the processor: on a busy machine a file has as much as on any other.
             passed = min(time.monotonic() - begin[0], time.process_time() - begin[1])
-            if passed > self._seconds:
+            self.is_memory |= _resident() - self._memory > self._budget.most
+            if self.is_memory or passed > self._budget.seconds:
                 with self._lock:
                     if not self._ended.is_set():
-                        self._raise(_TimeIsUp)
+                        self._raise(_BudgetIsSpentError)
 
     def _raise(self, kind: type[BaseException] | None) -> None:
         import ctypes  # noqa: PLC0415 (only where something hangs)
@@ -413,7 +445,7 @@ class _ReadWatch:
                 with self._lock:
                     self._ended.set()
                     self._raise(None)
-            except _TimeIsUp:  # on its way when the reader ended
+            except _BudgetIsSpentError:  # on its way when the reader ended
                 continue
 
 
