@@ -503,12 +503,9 @@ READING = {
 }
 # What reads files that distal, its author or the system wrote.
 OWN = {
-    "cli/__init__.py": "descriptors of the terminal",
     "cli/doctor.py": "/proc/cpuinfo",
     "cli/messages.py": "/dev/null",
-    "cli/new.py": "writes",
     "cli/progress_lines.py": "descriptors of the terminal",
-    "cli/studio.py": "a browser",
     "cli/running.py": "descriptors of the terminal",
     "cluster/connecting.py": "the file of a scheduler that the author started",
     "cluster/local.py": "what its own workers wrote",

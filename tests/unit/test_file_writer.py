@@ -427,8 +427,10 @@ LINK = "os.symlink(sys.argv[2], sys.argv[1])"
 
 
 @needs_root
+@pytest.mark.parametrize("mode", [0o1777, 0o777])
 @pytest.mark.parametrize("way", sorted(WAYS.keys() - {"save"}))
-def test_link_of_another_user_in_a_shared_folder_is_refused(tmp_path, shared, way):
+def test_link_of_another_user_in_a_shared_folder_is_refused(tmp_path, shared, way, mode):
+    shared.chmod(mode)
     for name, target, below in (("file", tmp_path / "a", ""), ("folder", tmp_path, "a")):
         (tmp_path / "a").write_bytes(b"old")
         as_nobody(LINK, shared / name, target)

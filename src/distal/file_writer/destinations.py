@@ -140,7 +140,7 @@ def _check_file(path: Path, target: Path, info: os.stat_result) -> None:
     if not stat.S_ISREG(info.st_mode):
         kind = "a folder" if stat.S_ISDIR(info.st_mode) else "no ordinary file"
         raise SaveError(f"cannot write {path}: it is {kind}")
-    if _is_foreign(info, target.parent):
+    if _is_foreign(info, target.parent, stat.S_IWOTH | stat.S_ISVTX):
         raise SaveError(
             f"cannot write {path}: it belongs to another user, in a folder that is shared by all"
         )
@@ -153,7 +153,8 @@ def _followed(path: Path) -> Path:
     """Return a path without links.
 
     The kernel's protection of links in shared folders (``fs.protected_symlinks``) is applied here
-    too, because it holds for opening a file, and not for reading a link.
+    too, because it holds for opening a file, and not for reading a link. The
+    sticky bit makes no difference here: all can put links there.
 
     Raises:
         SaveError: There are too many links, or one is another user's in a shared folder.
@@ -183,7 +184,7 @@ def _followed(path: Path) -> Path:
         links += 1
         if links > _MOST_LINKS:
             raise SaveError(f"cannot write {path}: its links lead in a circle")
-        if _is_foreign(info, Path(here)):
+        if _is_foreign(info, Path(here), stat.S_IWOTH):
             raise SaveError(
                 f"cannot write {path}: {there} is a link of another user, in a folder that is "
                 "shared by all"
@@ -194,10 +195,15 @@ def _followed(path: Path) -> Path:
     return Path(here)
 
 
-def _is_foreign(info: os.stat_result, folder: Path) -> bool:
-    """Return whether a file or link is neither ours nor the owner's of a folder shared by all."""
+def _is_foreign(info: os.stat_result, folder: Path, bits: int) -> bool:
+    """Return whether a file or link is neither ours nor the owner's of a folder shared by all.
+
+    Args:
+        info: The file or link.
+        folder: Where it is.
+        bits: The bits in the mode of a shared folder.
+    """
     if os.name == "nt":
         return False
     shared = os.stat(folder)
-    is_shared = shared.st_mode & stat.S_ISVTX and shared.st_mode & stat.S_IWOTH
-    return bool(is_shared) and info.st_uid not in (os.geteuid(), shared.st_uid)
+    return shared.st_mode & bits == bits and info.st_uid not in (os.geteuid(), shared.st_uid)
