@@ -15,7 +15,7 @@ from typing import Any, Final
 import glfw
 from rendercanvas.glfw import RenderCanvas  # type: ignore[import-untyped, unused-ignore]
 
-from distal.devices.adapters import adapters, chosen, opened, wgpu_module
+from distal.devices.adapters import NO_SOCKETS, adapters, chosen, opened, wgpu_module
 from distal.diagnostics import DeviceError
 from distal.packages import loading
 from distal.window.frame_renderers import FrameRenderer, PixelRenderer, TextureRenderer
