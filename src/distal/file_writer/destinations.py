@@ -67,6 +67,23 @@ def check_destination(path: Path) -> None:
     destination(path)
 
 
+def check_ours(path: Path) -> None:
+    """Check that a file or folder beside an output was not put there by another user.
+
+    Raises:
+        SaveError: It was, in a folder where all can do that.
+    """
+    try:
+        info = state(path)
+        is_foreign = info is not None and _is_foreign(info, path.parent, stat.S_IWOTH)
+    except OSError as error:
+        raise SaveError(f"cannot write {path}: {reason(error)}") from None
+    if is_foreign:
+        raise SaveError(
+            f"cannot write {path}: it belongs to another user, in a folder that is shared by all"
+        )
+
+
 def destination(path: Path, *, in_place: bool = False) -> Path:
     """Return the file that is written for a path: absolute, without links.
 
