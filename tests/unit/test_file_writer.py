@@ -981,6 +981,8 @@ def test_state_folder_is_private(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
     folder = state.state_folder()
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
+    folder.parent.chmod(0o775)
+    assert state.state_folder() == folder
     folder.chmod(0o720)
     with pytest.raises(PermissionError, match=f"{folder} can be written by others"):
         state.state_folder()

@@ -12,9 +12,6 @@ import os
 import stat
 import sys
 from pathlib import Path
-from typing import Final
-
-_OTHERS_WRITE: Final = stat.S_IWGRP | stat.S_IWOTH
 
 
 def state_folder() -> Path:
@@ -58,18 +55,18 @@ def _check_ours(folder: Path) -> None:
     """
     if os.name == "nt":
         return
-    own, above = (os.geteuid(),), (os.geteuid(), 0)
-    # The link itself, too: in a shared folder another user may have made it.
-    for path, info, owners in (
-        (folder, os.lstat(folder), own),
-        (folder, os.stat(folder), own),
-        (folder.parent, os.stat(folder.parent), above),
+    own = (os.geteuid(),)
+    # The link itself, too: in a shared folder another user may have made it. The folder above may
+    # be a group's: with some systems' umask all folders of a user are.
+    for path, info, owners, bits in (
+        (folder, os.lstat(folder), own, 0),
+        (folder, os.stat(folder), own, stat.S_IWGRP | stat.S_IWOTH),
+        (folder.parent, os.stat(folder.parent), (*own, 0), stat.S_IWOTH),
     ):
         if info.st_uid not in owners:
             raise PermissionError(errno.EPERM, f"{path} is another user's")
         is_protected = path != folder and info.st_mode & stat.S_ISVTX
-        is_link = stat.S_ISLNK(info.st_mode)  # whose mode says nothing
-        if info.st_mode & _OTHERS_WRITE and not is_protected and not is_link:
+        if info.st_mode & bits and not is_protected:
             raise PermissionError(errno.EPERM, f"{path} can be written by others")
 
 
