@@ -23,15 +23,15 @@ import time
 import zipfile
 import zlib
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, TypeAlias
+from typing import Final, TypeAlias, TypeVar
 
 from distal.diagnostics import LONGEST_MESSAGE, CompileError, LoadError, printable
 from distal.packages import PackageError
-from distal.read_watch import watched
+from distal.read_watch import limited
 
 # A picture of 2^25 pixels at 24 bytes each, which may be a file of some kB if it is of one color.
 BASE_BYTES: Final = 768 * 2**20
@@ -46,6 +46,7 @@ MEMORY_VARIABLE: Final = "DISTAL_MAX_MEMORY"
 Memory: TypeAlias = int | str
 _UNITS: Final = {"B": 1, "kB": 10**3, "MB": 10**6, "GB": 10**9, "TB": 10**12}
 _MEMORY: Final = re.compile(r"\s*([0-9]{1,15}(?:\.[0-9]{1,6})?)\s*([kKMGT]?B)\s*")
+_Result = TypeVar("_Result")
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,14 +57,11 @@ class FileKind:
         sentence: The message about a damaged file, of {file} and {reason}.
         unreadable: That about a file whose bytes cannot be read.
         largest: The most bytes of such a file.
-        is_watched: Whether it is read by a package whose loops do not ask for the time: a thread
-            then ends them.
     """
 
     sentence: str
     unreadable: str
     largest: int = 2**30
-    is_watched: bool = False
 
 
 _UNREADABLE: Final = "cannot read '{file}': {reason}"
@@ -77,8 +75,8 @@ def _picture(name: str, largest: int = 2**30) -> FileKind:
     return FileKind(f"{{file}} is broken: it is no whole {name}: {{reason}}", _UNREADABLE, largest)
 
 
-def _one(sentence: str, largest: int = 2**30, *, is_watched: bool = False) -> FileKind:
-    return FileKind(sentence, sentence, largest, is_watched)
+def _one(sentence: str, largest: int = 2**30) -> FileKind:
+    return FileKind(sentence, sentence, largest)
 
 
 # All kinds. ``tools/sweep_readers.py`` has files of each to damage.
@@ -92,8 +90,8 @@ KINDS: Final = {
     "volume": _data("volume", 2**31),
     "texture": _one("the texture '{file}' cannot be read: {reason}"),
     "sound": _one("cannot read the sound {file}: {reason}"),
-    "font": _one("the font '{file}' cannot be read: {reason}", 2**28, is_watched=True),
-    "drawing": _one("{file} cannot be read: {reason}", 2**26, is_watched=True),
+    "font": _one("the font '{file}' cannot be read: {reason}", 2**28),
+    "drawing": _one("{file} cannot be read: {reason}", 2**26),
     ".vm": _one(_UNREADABLE, 2**23),
     "film": _one("{file} is not a film: delete it or name another ({reason})", 2**34),
     "frame": _one("cannot read the frame {file}: {reason}"),
@@ -167,10 +165,17 @@ class Budget:
             f"files of this size get; {self._fix(enough)} reads it anyway"
         )
 
-    def watched(self) -> AbstractContextManager[None]:
-        """Return a context that ends a reader which does not ask, when its time is up."""
-        is_watched = self.kind.is_watched and not self._is_trusted and sys.platform != "emscripten"
-        return watched(self.seconds, self.late) if is_watched else nullcontext()
+    def over(self) -> TooLargeError:
+        """Return the error of a file that took too much memory."""
+        return TooLargeError(
+            f"'{self.file}' of {shown(self.size)} takes more than {shown(self.most)}, which files "
+            f"of this size get; {self._fix(_rounded_up(2 * self.most))} reads it anyway"
+        )
+
+    @property
+    def is_watched(self) -> bool:
+        """Whether a thread ends a reader that asks nobody."""
+        return not self._is_trusted and sys.platform != "emscripten"
 
     def _limit(self) -> str:
         who = "it may take" if self._is_trusted else "files of this size get"
@@ -257,7 +262,7 @@ def reading(
         budget = Budget(KINDS[kind], name, size, max_memory, option=option)
     except ValueError as wrong:
         raise error(str(wrong)) from None
-    with _one_line(KINDS[kind].sentence, name, error), _entered(budget), budget.watched():
+    with _one_line(KINDS[kind].sentence, name, error), _entered(budget):
         yield budget
 
 
@@ -360,6 +365,20 @@ def _content(path: Path, most: int) -> bytes:
     if not data:
         raise LoadError("it is empty")
     return data
+
+
+def watched(work: Callable[[], _Result]) -> _Result:
+    """Return what a package makes of the file that is read; it is ended at its limits.
+
+    For packages whose loops ask neither for the time nor for memory.
+
+    Raises:
+        TooLargeError: It has taken more time, or on Linux more memory, than the file may.
+    """
+    budget = _CURRENT.get()
+    if budget is None or not budget.is_watched:
+        return work()
+    return limited(work, budget.seconds, budget.most, (budget.late, budget.over))
 
 
 def memory_of(amount: Memory | None) -> int | None:

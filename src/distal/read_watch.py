@@ -1,55 +1,82 @@
-"""End a reader whose time is up, where nothing in it asks for the time.
+"""End a reader at its limits of time and memory, where nothing in it asks for them.
 
-Input: seconds of the processor. Output: a context whose body is ended by an exception in its own
+Input: a call, and what it may take. Output: its result; or it is ended by an exception in its own
 thread. Needs the standard library alone.
 """
 
 from __future__ import annotations
 
+import os
 import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from typing import Final
+from collections.abc import Callable
+from typing import Final, TypeVar
 
 from distal.forking import new_lock
 from distal.interrupting import raise_in
 
-_PERIOD_S: Final = 0.25  # between two attempts to end a reader
+_PERIOD_S: Final = 0.05  # between two looks at a reader
+_Result = TypeVar("_Result")
 
 
-class _TimeIsUp(BaseException):
-    """Ends a watched reader, which may catch every ``Exception``."""
+class _LimitError(BaseException):
+    """Ends a reader, which may catch every ``Exception``."""
 
 
-@contextmanager
-def watched(seconds: float, late: Callable[[], Exception]) -> Iterator[None]:
-    """End what runs in the context when its time is up.
+def limited(
+    work: Callable[[], _Result],
+    seconds: float,
+    most: int,
+    errors: tuple[Callable[[], Exception], Callable[[], Exception]],
+) -> _Result:
+    """Return the result of a call, which is ended at its limits.
+
+    Not a context: where a call of C fails after its time, the thread's exception comes as the next
+    function begins, which would be the end of the context.
 
     Args:
+        work: The call.
         seconds: The processor's time that it may take.
-        late: Returns what is raised then.
+        most: Bytes of memory that it may take, where the system tells (Linux).
+        errors: Return what is raised for the time, and for the memory.
 
     Raises:
-        Exception: As ``late`` says.
+        Exception: One of ``errors``.
     """
-    watch = _ReadWatch(seconds)
+    watch = _ReadWatch(seconds, most)
     try:
-        yield
-    except _TimeIsUp:
-        raise late() from None
-    finally:
+        try:
+            return work()
+        finally:
+            watch.end()
+    except _LimitError:
         watch.end()
+        late, over = errors
+        raise (over() if watch.is_memory else late()) from None
+
+
+def _resident() -> int:
+    """Return the bytes of memory that this process has; 0 where the system does not say."""
+    try:
+        with open("/proc/self/statm", "rb") as file:
+            return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except (OSError, ValueError, IndexError, AttributeError):
+        return 0
 
 
 class _ReadWatch:
-    """A thread that raises ``_TimeIsUp`` in the thread that made it, until it is ended."""
+    """A thread that raises ``_LimitError`` in the thread that made it, until it is ended.
 
-    def __init__(self, seconds: float) -> None:
+    Attributes:
+        is_memory: Whether memory was spent, and not time.
+    """
+
+    def __init__(self, seconds: float, most: int) -> None:
         self._thread = threading.get_ident()
         self._lock = new_lock()
         self._ended = threading.Event()
-        self._seconds = seconds
+        self._seconds, self._most, self._before = seconds, most, _resident()
+        self.is_memory = False
         threading.Thread(target=self._run, name="distal-read-watch", daemon=True).start()
 
     def _run(self) -> None:
@@ -57,10 +84,11 @@ class _ReadWatch:
         while not self._ended.wait(_PERIOD_S):
             # Of the processor: on a busy machine a file has as much as on any other.
             passed = min(time.monotonic() - begin[0], time.process_time() - begin[1])
-            if passed > self._seconds:
+            self.is_memory |= _resident() - self._before > self._most
+            if self.is_memory or passed > self._seconds:
                 with self._lock:
                     if not self._ended.is_set():
-                        raise_in(self._thread, _TimeIsUp)
+                        raise_in(self._thread, _LimitError)
 
     def end(self) -> None:
         """End the watch; nothing is raised afterwards."""
@@ -69,5 +97,5 @@ class _ReadWatch:
                 with self._lock:
                     self._ended.set()
                     raise_in(self._thread, None)
-            except _TimeIsUp:  # on its way when the reader ended
+            except _LimitError:  # on its way when the reader ended
                 continue

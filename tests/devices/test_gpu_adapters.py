@@ -6,8 +6,10 @@ import builtins
 import importlib.util
 import logging
 import os
+import socket
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from typing import Any
 
@@ -168,3 +170,30 @@ def test_nobody_sees_the_drivers_chatter_and_the_environment_stays() -> None:
     )
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     assert logging.getLogger("wgpu").propagate
+
+
+def test_drivers_connect_to_no_socket_of_another_user(
+    listed_again: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Mesa looks for ``wayland-0``: in a folder of all users it would wait for whoever made it."""
+    for name in ("XDG_RUNTIME_DIR", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    with tempfile.TemporaryDirectory() as folder, socket.socket(socket.AF_UNIX) as server:
+        monkeypatch.setenv("TMPDIR", folder)
+        monkeypatch.setattr(tempfile, "tempdir", None)
+        server.bind(f"{folder}/wayland-0")
+        server.listen()
+        server.setblocking(False)
+        monkeypatch.setattr(adapters, "_ANSWER_TIMEOUT_S", 20.0)
+        adapters.listed_in_subprocess()
+        with pytest.raises(BlockingIOError):
+            server.accept()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no such sockets")
+def test_the_folder_of_sockets_is_nobodys(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("XDG_RUNTIME_DIR", raising=False)
+    with adapters._quiet_mesa():
+        folder = os.environ["XDG_RUNTIME_DIR"]
+    info = os.stat(folder)
+    assert info.st_uid == 0 and not info.st_mode & 0o022

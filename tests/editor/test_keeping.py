@@ -442,3 +442,16 @@ def test_all_folders_together_are_bounded(tmp_path):
     sweep(tmp_path, 320)
     left = sorted(path.stat().st_size for path in tmp_path.glob("*/*/versions/*.py"))
     assert left == [103, 104, 105]
+
+
+def test_a_state_folder_that_cannot_be_used_is_said_and_nothing_is_written(tmp_path, monkeypatch):
+    """The reason names a path: nothing is made there."""
+    state = tmp_path / "state"
+    (state / "distal").mkdir(parents=True)
+    (state / "distal").chmod(0o777)
+    monkeypatch.setenv("XDG_STATE_HOME", str(state))
+    drafts = Drafts.of_user(tmp_path)
+    with pytest.raises(OSError, match="Not a directory") as refused:
+        drafts.put("0" * 12, "a.py", "x = 1", "")
+    assert drafts.reason(refused.value) == f"{state / 'distal'} can be written by others"
+    assert sorted(tmp_path.rglob("*")) == [state, state / "distal"]

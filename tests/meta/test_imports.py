@@ -5,13 +5,16 @@ Import-linter reads the source for the same laws (``pyproject.toml``); here they
 
 import ast
 import os
+import queue
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 import distal
 from distal.compiler.driver import COMPILE_TARGETS
+from distal.editor.local.process import WorkerProcess
 
 EXAMPLES = sorted(distal.gallery())
 
@@ -116,3 +119,33 @@ def test_every_target_compiles_on_the_standard_library_alone(target, compiled_al
 def test_the_command_compiles_without_numpy_llvmlite_and_wgpu():
     code = WITHOUT_HEAVY_PACKAGES + "from distal.cli import main; main()"
     assert "fn " in run(code, "compile", "example:raymarcher", "--target", "wgsl")
+
+
+def test_a_process_imports_nothing_from_the_working_folder(tmp_path, monkeypatch):
+    """Else a file ``json.py`` in a folder of all users, where a command is typed, would be run."""
+    for name in ("ast", "json", "numpy", "distal"):
+        (tmp_path / f"{name}.py").write_text("raise SystemExit('imported')\n")
+    (tmp_path / "scenes").mkdir()
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, sys.path)))
+    monkeypatch.chdir(tmp_path)
+    said = queue.SimpleQueue()
+    worker = WorkerProcess(tmp_path / "scenes", said.put, said.put)
+    try:
+        assert said.get(timeout=60.0).startswith('{"kind":"ready"')
+    finally:
+        worker.kill()
+
+
+def test_every_process_is_started_without_the_working_folder():
+    starts = []
+    for path in sorted(Path(distal.__file__).parent.rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if (
+                isinstance(node, ast.List)
+                and node.elts
+                and (ast.unparse(node.elts[0]) == "sys.executable")
+            ):
+                starts.append((path.name, ast.unparse(node.elts[1])))
+    others = [start for start in starts if start[1] != "'-P'"]
+    assert others == [("local.py", "*_COMMAND")]  # which begins with it
+    assert len(starts) >= 7

@@ -9,6 +9,7 @@ import json
 import os
 import re
 import struct
+import time
 import zipfile
 import zlib
 from pathlib import Path
@@ -20,7 +21,8 @@ import distal
 from distal import foreign_files
 from distal.devices.resources import texels
 from distal.diagnostics import LoadError
-from distal.foreign_files import KINDS, memory_of, need, opened, reading, shown
+from distal.foreign_files import KINDS, memory_of, need, opened, reading, shown, watched
+from distal.images import exr_header
 from distal.ir.types import TextureShape
 from distal.polygons.reading import read_mesh
 from distal.polygons.volumes import read_volume
@@ -314,6 +316,92 @@ def test_a_glyph_that_never_ends_is_ended(tmp_path, monkeypatch):
     assert message.endswith(
         "is not read after 0 s, which files of this size get; DISTAL_MAX_MEMORY=2GB reads it anyway"
     )
+
+
+def test_a_package_that_fills_the_memory_is_ended(monkeypatch):
+    """As fontTools does with 60,000 ranges of all glyphs, which are a font of 620 kB."""
+    monkeypatch.setattr(foreign_files, "BASE_BYTES", 2**26)
+    kept = []
+
+    def fill():
+        for _ in range(1000):
+            kept.append(b"x" * 2**20)
+            time.sleep(0.001)
+
+    def read():
+        with reading("font", "x.ttf", 1):
+            watched(fill)
+
+    assert refusal(read) == (
+        "'x.ttf' of 1 B takes more than 67 MB, which files of this size get; "
+        "DISTAL_MAX_MEMORY=1GB reads it anyway"
+    )
+    assert len(kept) < 1000
+
+
+def test_what_fails_after_its_time_is_an_error_too(monkeypatch):
+    """While zlib unpacks, the thread's exception waits; then zlib's own comes first."""
+    monkeypatch.setattr(foreign_files, "BASE_SECONDS", 0.0)
+    packed = zlib.compress(bytes(10**8), 1)[:-1]
+
+    def read():
+        with reading("font", "x.ttf", 1):
+            watched(lambda: [zlib.decompress(packed) for _ in range(3)])
+
+    assert refusal(read).startswith("'x.ttf' of 1 B is not read after 0 s")
+
+
+@pytest.mark.parametrize("mark", [b"wOFF", b"wOF2"])
+def test_a_packed_font_is_refused(tmp_path, mark):
+    """A table of 1 MB would unpack to 1 GB in one call."""
+    path = tmp_path / "x.ttf"
+    path.write_bytes(mark + bytes(100))
+    assert refusal(text_outline, "A", font=path) == (
+        "the font 'x.ttf' cannot be read: it is a packed font of web pages (WOFF): convert it to "
+        ".ttf or .otf"
+    )
+
+
+def test_channels_of_an_exr_are_not_copied_for_each_of_them():
+    copied = 0
+
+    class CountedBytes(bytes):
+        def __getitem__(self, place):
+            nonlocal copied
+            part = super().__getitem__(place)
+            copied += len(part) if isinstance(part, bytes) else 1
+            return CountedBytes(part) if isinstance(part, bytes) else part
+
+    one = struct.pack("<iIii", 1, 0, 1, 1)
+    data = CountedBytes(b"".join(b"%d\0%b" % (i, one) for i in range(1000)) + b"\0")
+    assert len(exr_header._channels({"channels": ("chlist", data)})) == 1000
+    assert copied < len(data)
+
+
+def test_lists_of_different_lengths_are_counted(tmp_path, monkeypatch):
+    """A list of no numbers is one byte of the file, and an array here."""
+    monkeypatch.setattr(foreign_files, "BASE_BYTES", 0)
+    path = tmp_path / "a.ply"
+    head = "element face 60000\nproperty list uchar uchar vertex_indices"
+    ply = f"ply\nformat binary_little_endian 1.0\n{head}\nend_header\n".encode()
+    path.write_bytes(ply + b"\1\0" + bytes(59_999))
+    assert "32,768 rows of lists of different lengths" in refusal(read_mesh, path)
+
+
+@pytest.mark.parametrize(
+    ("vertex", "face", "reason"),
+    [
+        ("float x", "int vertex_indices", "its polygons have no lists vertex_indices"),
+        ("list int float x", "list int int vertex_indices", "its points have no x"),
+    ],
+)
+def test_properties_of_a_ply_that_are_no_lists_or_are(tmp_path, vertex, face, reason):
+    path = tmp_path / "a.ply"
+    path.write_text(
+        f"ply\nformat ascii 1.0\nelement vertex 1\nproperty {vertex}\nproperty float y\n"
+        f"property float z\nelement face 1\nproperty {face}\nend_header\n1 0 0 0\n3 0 0 0\n"
+    )
+    assert refusal(read_mesh, path) == f"'a.ply' is no PLY that can be read: {reason}"
 
 
 def test_empty_lines_of_an_stl_are_read_once(tmp_path):

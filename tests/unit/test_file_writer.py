@@ -428,8 +428,10 @@ LINK = "os.symlink(sys.argv[2], sys.argv[1])"
 
 
 @needs_root
+@pytest.mark.parametrize("mode", [0o1777, 0o777])
 @pytest.mark.parametrize("way", sorted(WAYS.keys() - {"save"}))
-def test_link_of_another_user_in_a_shared_folder_is_refused(tmp_path, shared, way):
+def test_link_of_another_user_in_a_shared_folder_is_refused(tmp_path, shared, way, mode):
+    shared.chmod(mode)
     for name, target, below in (("file", tmp_path / "a", ""), ("folder", tmp_path, "a")):
         (tmp_path / "a").write_bytes(b"old")
         as_nobody(LINK, shared / name, target)
@@ -440,7 +442,8 @@ def test_link_of_another_user_in_a_shared_folder_is_refused(tmp_path, shared, wa
 
 @needs_root
 def test_link_of_another_user_elsewhere_is_followed(tmp_path, shared):
-    shared.chmod(0o777)
+    shared.chmod(0o755)
+    os.chown(shared, NOBODY, NOBODY)
     (tmp_path / "a").write_bytes(b"old")
     as_nobody(LINK, shared / "link", tmp_path / "a")
     write(shared / "link")
@@ -973,3 +976,33 @@ def test_root_makes_no_folder_in_the_home_of_another(shared, monkeypatch):
         state.state_folder()
     os.chown(shared, 0, 0)
     assert state.state_folder() == shared / ".local/state/distal"
+
+
+def test_state_folder_is_private(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    folder = state.state_folder()
+    assert stat.S_IMODE(folder.stat().st_mode) == 0o700
+    folder.parent.chmod(0o775)
+    assert state.state_folder() == folder
+    folder.chmod(0o720)
+    with pytest.raises(PermissionError, match=f"{folder} can be written by others"):
+        state.state_folder()
+
+
+@needs_root
+@pytest.mark.parametrize("way", ["folder", "link", "parent"])
+def test_state_folder_that_another_user_can_fill_is_not_used(shared, tmp_path, monkeypatch, way):
+    """What is in it becomes the text of a scene, which is run."""
+    monkeypatch.setenv("XDG_STATE_HOME", str(shared))
+    folder = shared / "distal"
+    if way == "folder":
+        folder.mkdir(mode=0o700)
+        os.chown(folder, NOBODY, NOBODY)
+    elif way == "link":
+        folder.symlink_to(tmp_path)
+        os.lchown(folder, NOBODY, NOBODY)
+    else:
+        shared.chmod(0o777)  # another user renames the folder and makes a new one
+    reason = f"{shared} can be" if way == "parent" else f"{folder} is another user's"
+    with pytest.raises(PermissionError, match=reason):
+        state.state_folder()

@@ -1,7 +1,11 @@
 """What is kept beside an output: for the same video only, by one process at a time."""
 
+import os
+import stat
 import subprocess
 import sys
+import tempfile
+from pathlib import Path
 
 import pytest
 
@@ -100,3 +104,28 @@ def test_a_folder_that_cannot_be_made(tmp_path):
     (tmp_path / ".out.mp4.distal").write_bytes(b"a file")
     with pytest.raises(SaveError, match=r"cannot write .*: File exists"):
         opened(tmp_path / "out.mp4")
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="needs two users")
+@pytest.mark.parametrize("mode", [0o1777, 0o777])
+def test_a_folder_of_another_user_is_not_used(mode):
+    """FFmpeg would write through links that the other user puts there."""
+    with tempfile.TemporaryDirectory() as folder:
+        os.chmod(folder, mode)
+        store = Store(Path(folder) / "out.mp4")
+        store.folder.mkdir()
+        os.mkfifo(store.folder / "lock")  # opening it would wait for ever
+        os.chown(store.folder, 65534, 65534)
+        with pytest.raises(SaveError, match="it belongs to another user, in a folder that is sha"):
+            store.open({}, False, print)
+        assert os.listdir(store.folder) == ["lock"]
+
+
+def test_nobody_else_enters_the_folder(tmp_path):
+    old = os.umask(0)
+    try:
+        store, _ = opened(tmp_path / "out.mp4")
+        assert stat.S_IMODE(store.folder.stat().st_mode) == 0o700
+        store.close()
+    finally:
+        os.umask(old)

@@ -190,7 +190,7 @@ def _faults(modules: list[str]) -> dict[str, str]:
     while len(found) < len(modules):
         try:
             tried = subprocess.run(
-                [sys.executable, "-c", _TRY, *modules[len(found) :]],
+                [sys.executable, "-P", "-c", _TRY, *modules[len(found) :]],
                 capture_output=True,
                 text=True,
                 timeout=_LOADING_S,

@@ -15,7 +15,6 @@ import logging
 import os
 import subprocess
 import sys
-import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
@@ -45,6 +44,9 @@ NO_ADAPTER: Final = (
     "no GPU adapter: install the GPU's driver, or in software: apt-get install"
     " mesa-vulkan-drivers; or --device cpu"
 )
+# XDG_RUNTIME_DIR for Mesa, which prints a warning without it. It connects to a socket ``wayland-0``
+# there: in a temporary folder that would be any user's, who could let it wait for ever.
+NO_SOCKETS: Final = os.path.abspath(os.sep)
 _QUESTION: Final = """
 import json, wgpu
 print(json.dumps([dict(a.info) for a in wgpu.gpu.enumerate_adapters_sync()], default=str))
@@ -153,12 +155,12 @@ def listed_in_subprocess() -> tuple[list[Adapter], str]:
     """
     try:
         answer = subprocess.run(
-            [sys.executable, "-c", _QUESTION],
+            [sys.executable, "-P", "-c", _QUESTION],
             capture_output=True,
             text=True,
             timeout=_ANSWER_TIMEOUT_S,
             stdin=subprocess.DEVNULL,
-            env={"XDG_RUNTIME_DIR": tempfile.gettempdir(), **os.environ},
+            env={"XDG_RUNTIME_DIR": NO_SOCKETS, **os.environ},
         )
     except subprocess.TimeoutExpired:
         return [], f"the driver did not answer within {_ANSWER_TIMEOUT_S} s"
@@ -266,11 +268,11 @@ def wgpu_module() -> Any:
 
 @contextlib.contextmanager
 def _quiet_mesa() -> Iterator[None]:
-    """Set XDG_RUNTIME_DIR to any folder, which silences Mesa; then restore it for windows."""
+    """Set XDG_RUNTIME_DIR to a folder, which silences Mesa; then restore it for windows."""
     if "XDG_RUNTIME_DIR" in os.environ:
         yield
         return
-    os.environ["XDG_RUNTIME_DIR"] = tempfile.gettempdir()
+    os.environ["XDG_RUNTIME_DIR"] = NO_SOCKETS
     try:
         yield
     finally:

@@ -172,7 +172,7 @@ def compile_apart(
     path = os.pathsep.join(filter(None, sys.path))
     words = (level.name, str(llvm_level), str(int(assembly)), str(niceness), str(os.getpid()))
     made = subprocess.run(
-        [sys.executable, "-c", _APART, *words],
+        [sys.executable, "-P", "-c", _APART, *words],
         input=text.encode(),
         capture_output=True,
         env={**os.environ, "PYTHONPATH": path},

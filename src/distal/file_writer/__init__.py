@@ -11,6 +11,7 @@ from distal.file_writer.destinations import (
     SaveError,
     TakenError,
     check_destination,
+    check_ours,
     name_beside,
 )
 from distal.file_writer.private_files import write_private
@@ -33,6 +34,7 @@ __all__ = [
     "TakenError",
     "Unchecked",
     "check_destination",
+    "check_ours",
     "digest_of",
     "move_into_place",
     "name_beside",

@@ -67,6 +67,23 @@ def check_destination(path: Path) -> None:
     destination(path)
 
 
+def check_ours(path: Path) -> None:
+    """Check that a file or folder beside an output was not put there by another user.
+
+    Raises:
+        SaveError: It was, in a folder where all can do that.
+    """
+    try:
+        info = state(path)
+        is_foreign = info is not None and _is_foreign(info, path.parent, stat.S_IWOTH)
+    except OSError as error:
+        raise SaveError(f"cannot write {path}: {reason(error)}") from None
+    if is_foreign:
+        raise SaveError(
+            f"cannot write {path}: it belongs to another user, in a folder that is shared by all"
+        )
+
+
 def destination(path: Path, *, in_place: bool = False) -> Path:
     """Return the file that is written for a path: absolute, without links.
 
@@ -140,7 +157,7 @@ def _check_file(path: Path, target: Path, info: os.stat_result) -> None:
     if not stat.S_ISREG(info.st_mode):
         kind = "a folder" if stat.S_ISDIR(info.st_mode) else "no ordinary file"
         raise SaveError(f"cannot write {path}: it is {kind}")
-    if _is_foreign(info, target.parent):
+    if _is_foreign(info, target.parent, stat.S_IWOTH | stat.S_ISVTX):
         raise SaveError(
             f"cannot write {path}: it belongs to another user, in a folder that is shared by all"
         )
@@ -153,7 +170,8 @@ def _followed(path: Path) -> Path:
     """Return a path without links.
 
     The kernel's protection of links in shared folders (``fs.protected_symlinks``) is applied here
-    too, because it holds for opening a file, and not for reading a link.
+    too, because it holds for opening a file, and not for reading a link. The
+    sticky bit makes no difference here: all can put links there.
 
     Raises:
         SaveError: There are too many links, or one is another user's in a shared folder.
@@ -178,7 +196,7 @@ def _followed(path: Path) -> Path:
         links += 1
         if links > _MOST_LINKS:
             raise SaveError(f"cannot write {path}: its links lead in a circle")
-        if _is_foreign(info, Path(here)):
+        if _is_foreign(info, Path(here), stat.S_IWOTH):
             raise SaveError(
                 f"cannot write {path}: {there} is a link of another user, in a folder that is "
                 "shared by all"
@@ -197,10 +215,15 @@ def _whole(path: Path) -> str:
         raise SaveError(f"cannot write {path}: the working folder is gone") from None
 
 
-def _is_foreign(info: os.stat_result, folder: Path) -> bool:
-    """Return whether a file or link is neither ours nor the owner's of a folder shared by all."""
+def _is_foreign(info: os.stat_result, folder: Path, bits: int) -> bool:
+    """Return whether a file or link is neither ours nor the owner's of a folder shared by all.
+
+    Args:
+        info: The file or link.
+        folder: Where it is.
+        bits: The bits in the mode of a shared folder.
+    """
     if os.name == "nt":
         return False
     shared = os.stat(folder)
-    is_shared = shared.st_mode & stat.S_ISVTX and shared.st_mode & stat.S_IWOTH
-    return bool(is_shared) and info.st_uid not in (os.geteuid(), shared.st_uid)
+    return shared.st_mode & bits == bits and info.st_uid not in (os.geteuid(), shared.st_uid)

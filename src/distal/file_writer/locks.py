@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from distal.file_writer.state import make_private, state_folder
+from distal.file_writer.state import state_folder
 from distal.forking import new_lock
 
 try:
@@ -187,7 +187,6 @@ def _new_process() -> _Process:
 def _opened() -> _LockFile | None:
     try:
         folder = state_folder()
-        make_private(folder)
         flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
         handle = os.open(folder / "locks", flags, 0o600)
     except OSError:

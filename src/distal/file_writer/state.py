@@ -9,16 +9,20 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import stat
 import sys
 from pathlib import Path
 
 
 def state_folder() -> Path:
-    """Return the folder of this user's state, where the system keeps such; it need not exist.
+    """Return the folder of this user's state, where the system keeps such; make it if necessary.
+
+    Nobody else can write in it, or exchange it: what is read there becomes a text of the studio.
 
     Raises:
         OSError: The user has no home folder, or root has that of another user (``sudo``): root
-            would make folders there that the user cannot write.
+            would make folders there that the user cannot write; or the folder cannot be made, or is
+            not this user's alone.
     """
     try:
         home = Path.home()
@@ -37,7 +41,33 @@ def state_folder() -> Path:
         there = next(f for f in (folder, *folder.parents) if f.is_dir())
         if there.stat().st_uid != 0:
             raise PermissionError(errno.EPERM, f"{there} is another user's")
-    return folder / "distal"
+    folder /= "distal"
+    make_private(folder)
+    _check_ours(folder)
+    return folder
+
+
+def _check_ours(folder: Path) -> None:
+    """Check that a folder is this user's alone.
+
+    Raises:
+        PermissionError: Another user has made it (or the link to it), or can write or exchange it.
+    """
+    if os.name == "nt":
+        return
+    own = (os.geteuid(),)
+    # The link itself, too: in a shared folder another user may have made it. The folder above may
+    # be a group's: with some systems' umask all folders of a user are.
+    for path, info, owners, bits in (
+        (folder, os.lstat(folder), own, 0),
+        (folder, os.stat(folder), own, stat.S_IWGRP | stat.S_IWOTH),
+        (folder.parent, os.stat(folder.parent), (*own, 0), stat.S_IWOTH),
+    ):
+        if info.st_uid not in owners:
+            raise PermissionError(errno.EPERM, f"{path} is another user's")
+        is_protected = path != folder and info.st_mode & stat.S_ISVTX
+        if info.st_mode & bits and not is_protected:
+            raise PermissionError(errno.EPERM, f"{path} can be written by others")
 
 
 def make_private(folder: Path) -> None:

@@ -123,10 +123,11 @@ def _channels(values: dict[str, tuple[str, bytes]]) -> dict[str, int]:
     found: dict[str, int] = {}
     place = 0
     while kind == "chlist" and data[place : place + 1] not in (b"\0", b""):
-        name, end, rest = data[place:].partition(b"\0")
-        if not end or len(rest) < 16:
+        end = data.find(b"\0", place)
+        if not 0 <= end < len(data) - 16:
             raise ValueError("its channels are garbled")
-        number, _, across, down = struct.unpack_from("<iIii", rest)
+        name = data[place:end]
+        number, _, across, down = struct.unpack_from("<iIii", data, end + 1)
         if number not in _BITS or (across, down) != (1, 1):
             raise ValueError("its channels are garbled")
         found[name.decode("utf-8", "replace")] = _BITS[number]

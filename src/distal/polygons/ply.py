@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
+from distal.foreign_files import check_time, need
 from distal.polygons.triangles import SourceTriangles, checked, colored, fans
 
 _TYPES: Final = {
@@ -28,6 +29,8 @@ _ORDERS: Final = {"ascii": "", "binary_little_endian": "<", "binary_big_endian":
 _MOST_ROWS: Final = 100_000_000
 _ORIENTED: Final = ("x", "y", "z", "nx", "ny", "nz")
 _COLORS: Final = ("red", "green", "blue")
+_LOOK: Final = 2**14  # rows between two looks at the budget
+_LIST_BYTES: Final = 200  # of a list, without its numbers
 _INDICES: Final = ("vertex_indices", "vertex_index")
 
 
@@ -71,14 +74,14 @@ def read_ply(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
         if given is not None:
             shades[element.name] = given
         if element.name == "vertex":
-            missing = [axis for axis in "xyz" if axis not in columns]
+            missing = [axis for axis in "xyz" if not _is_plain(element, axis)]
             if missing:
                 raise LoadError(f"its points have no {missing[0]}")
             points = np.stack([columns[axis] for axis in "xyz"], axis=1).astype(np.float64)
         elif element.name == "face":
             name = next((name for name in _INDICES if name in columns), None)
-            if name is None:
-                raise LoadError("its polygons have no vertex_indices")
+            if name is None or _is_plain(element, name):
+                raise LoadError("its polygons have no lists vertex_indices")
             triangles = fans(*columns[name])
             corners = np.maximum(columns[name][0] - 2, 0)
             if given is not None and len(given) == len(corners):
@@ -91,9 +94,14 @@ def read_ply(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
     return colored(mesh, shades["vertex"]) if "vertex" in shades else mesh
 
 
+def _is_plain(element: _Element, name: str) -> bool:
+    """Whether an element has a property of this name that is no list."""
+    return [each.count for each in element.properties if each.name == name] == [""]
+
+
 def _colors(element: _Element, columns: dict[str, Any]) -> NDArray[np.float32] | None:
     """Return the colors of an element's rows, display values from 0 to 1; None without them."""
-    if any(name not in columns for name in _COLORS):
+    if not all(_is_plain(element, name) for name in _COLORS):
         return None
     found = np.stack([columns[name] for name in _COLORS], axis=1).astype(np.float32)
     types = {each.type for each in element.properties if each.name in _COLORS}
@@ -112,7 +120,7 @@ def read_ply_points(data: bytes) -> tuple[NDArray[Any], NDArray[Any]]:
     for element in elements:
         columns = _columns(element, reader)
         if element.name == "vertex":
-            missing = [name for name in _ORIENTED if name not in columns]
+            missing = [name for name in _ORIENTED if not _is_plain(element, name)]
             if missing:
                 raise LoadError(f"its points have no {missing[0]}")
             found = np.stack([columns[name] for name in _ORIENTED], axis=1).astype(np.float64)
@@ -216,7 +224,10 @@ def _row_by_row(element: _Element, reader: _Rest) -> dict[str, Any]:
     found: dict[str, tuple[list[int], list[NDArray[Any]]]] = {
         each.name: ([], []) for each in element.properties if each.count
     }
-    for _ in range(element.rows):
+    for row in range(element.rows):
+        if row % _LOOK == 0:
+            check_time()
+            need(row * len(found) * _LIST_BYTES, f"{row:,} rows of lists of different lengths")
         for each in element.properties:
             if not each.count:
                 reader.at += np.dtype(each.type).itemsize

@@ -18,6 +18,7 @@ from distal.diagnostics import printable
 from distal.file_writer import (
     SaveError,
     check_destination,
+    check_ours,
     move_into_place,
     name_beside,
     replacement,
@@ -51,13 +52,16 @@ class Store:
             tell: Called with the reason if the work starts again.
 
         Raises:
-            SaveError: The folder cannot be made, or another process uses it.
+            SaveError: The folder cannot be made, is another user's in a folder shared by all, or
+            another process uses it.
         """
         check_destination(self.output)
         try:
             if self.folder.is_symlink():
                 raise SaveError(f"cannot write {self.folder}: it is a link")
-            self.folder.mkdir(exist_ok=True)
+            self.folder.mkdir(mode=0o700, exist_ok=True)
+            # Another user could put links there, through which FFmpeg would write.
+            check_ours(self.folder)
             # distal creates no links here; writing or deleting through one would change files
             # elsewhere.
             for path in self.folder.iterdir():

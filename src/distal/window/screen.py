@@ -9,14 +9,13 @@ from __future__ import annotations
 import os
 import re
 import sys
-import tempfile
 import warnings
 from typing import Any, Final
 
 import glfw
 from rendercanvas.glfw import RenderCanvas  # type: ignore[import-untyped, unused-ignore]
 
-from distal.devices.adapters import adapters, chosen, opened, wgpu_module
+from distal.devices.adapters import NO_SOCKETS, adapters, chosen, opened, wgpu_module
 from distal.diagnostics import DeviceError
 from distal.packages import loading
 from distal.window.frame_renderers import FrameRenderer, PixelRenderer, TextureRenderer
@@ -89,9 +88,8 @@ def _on_gpu(canvas: Any, device: str) -> tuple[WindowSurface, FrameRenderer]:
 def _any_device(canvas: Any) -> Any:
     """Return any device that can draw on the window; it is only used to show finished frames."""
     wgpu = wgpu_module()
-    # Without this variable Mesa prints a warning; any existing folder works, because glfw has
-    # already found its display.
-    os.environ.setdefault("XDG_RUNTIME_DIR", tempfile.gettempdir())
+    # Without this variable Mesa prints a warning; glfw has already found its display.
+    os.environ.setdefault("XDG_RUNTIME_DIR", NO_SOCKETS)
     try:
         adapter = wgpu.gpu.request_adapter_sync(canvas=canvas)
         if adapter is None:

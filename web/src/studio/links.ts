@@ -17,6 +17,10 @@ export interface Shared {
 const PREFIX = "#c=";
 /** Characters of a link, and of what is in it. */
 const LONGEST = 1_000_000;
+/** Each file has a tab. */
+const MOST_FILES = 100;
+/** A name that Python's side takes, too: what is not printed could look like another one. */
+const NAME = /^[^/\\\p{C}\p{Zl}\p{Zp}]{1,200}\.py$/u;
 
 export async function linkOf(shared: Shared): Promise<string> {
   const bytes = new TextEncoder().encode(JSON.stringify(shared));
@@ -41,8 +45,8 @@ export async function sharedOf(fragment: string): Promise<Shared | null> {
 function isShared(found: Shared | null): found is Shared {
   if (typeof found?.main !== "string" || typeof found.files !== "object" || !found.files) return false;
   const names = Object.entries(found.files);
-  const areFine = names.every(([name, text]) => /^[^/\\]+\.py$/.test(name) && typeof text === "string");
-  return areFine && Object.hasOwn(found.files, found.main);
+  const areFine = names.every(([name, text]) => NAME.test(name) && typeof text === "string");
+  return areFine && names.length <= MOST_FILES && Object.hasOwn(found.files, found.main);
 }
 
 /** Reads a stream as far as a link may go: a short one can unpack to gigabytes. */

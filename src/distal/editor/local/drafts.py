@@ -74,10 +74,17 @@ class Drafts:
         root: The folder of all drafts.
         folder: The real folder of the scene.
         clock: Gives seconds since 1970.
+        fault: Why nothing can be kept in the folder of all drafts; "" where it can.
     """
 
-    def __init__(self, root: Path, folder: Path, clock: Callable[[], float] = time.time) -> None:
-        self.root = root
+    def __init__(
+        self,
+        root: Path,
+        folder: Path,
+        clock: Callable[[], float] = time.time,
+        fault: str = "",
+    ) -> None:
+        self.root, self._fault = root, fault
         self._folder = root / hashlib.sha256(os.fsencode(folder)).hexdigest()
         self.versions = FileVersions(self._folder, clock)
         self._scene_folder, self._clock = folder, clock
@@ -92,15 +99,15 @@ class Drafts:
         """Return the drafts of a folder in the user's state."""
         try:
             root = state_folder() / "drafts"
-        except OSError as error:  # nothing can be kept: each page says it
-            root = Path(os.devnull) / str(error.strerror)
+        except OSError as error:  # each page says it
+            return cls(Path(os.devnull, "drafts"), folder, fault=_said(error))
         # Thousands of files, perhaps: the studio does not wait for them.
         threading.Thread(target=sweep, args=(root,), daemon=True).start()
         return cls(root, folder)
 
     def reason(self, error: OSError) -> str:
         """Return why something cannot be kept, for people."""
-        return f"{error.strerror or error} in {self.root}"
+        return self._fault or f"{error.strerror or error} in {self.root}"
 
     # Tabs
 
@@ -248,6 +255,11 @@ class Drafts:
         if not about.exists():
             with contextlib.suppress(OSError):
                 write_private(about, os.fsencode(self._scene_folder) + b"\n")
+
+
+def _said(error: OSError) -> str:
+    place = f" ({error.filename})" if error.filename else ""
+    return f"{error.strerror or error}{place}"
 
 
 def _is_over(lock_file: str, token: str, server: str) -> bool:

@@ -102,7 +102,16 @@ class LessonServer(LocalServer):
 
     def _mistake_of_making(self, page: Path) -> str | None:
         """Make the page; return what went wrong, or None."""
-        command = [sys.executable, "-m", "distal.cli", "export", str(self._lesson), "-o", str(page)]
+        command = [
+            sys.executable,
+            "-P",
+            "-m",
+            "distal.cli",
+            "export",
+            str(self._lesson),
+            "-o",
+            str(page),
+        ]
         status: queue.SimpleQueue[tuple[int, str]] = queue.SimpleQueue()
         temporary = page.with_name("temporary")
         temporary.mkdir()

@@ -175,7 +175,7 @@ class WorkerProcess(ChildProcess):
             texts.mkdir()
             temporary.mkdir()
             super().__init__(
-                [sys.executable, "-m", "distal.editor", str(beside), str(texts)],
+                [sys.executable, "-P", "-m", "distal.editor", str(beside), str(texts)],
                 received,
                 lambda code, report: ended(reason_of(code, report)),
                 temporary=temporary,

@@ -187,7 +187,7 @@ class RenderJob:
         Raises:
             LoadError: It was ended, because the author's code or the picture came to no end.
         """
-        command = [sys.executable, "-m", "distal.cli", *arguments, "--progress", "json"]
+        command = [sys.executable, "-P", "-m", "distal.cli", *arguments, "--progress", "json"]
         idle = self._limits.film if format.film else self._limits.picture
         self._ends = time.monotonic() + _START_S
 

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from distal.diagnostics import LoadError, Span
-from distal.foreign_files import need, opened, reading
+from distal.foreign_files import need, opened, reading, watched
 from distal.frontend.problems import did_you_mean
 from distal.lang.source_places import author_place
 from distal.packages import imported
@@ -34,6 +34,7 @@ from distal.scene.tree.conversion import beside
 from distal.scene.tree.errors import refuse, refuse_kind
 
 ALIGNMENTS: Final = {"left": 0.0, "center": 0.5, "right": 1.0}
+_PACKED: Final = (b"wOFF", b"wOF2")
 SUFFIXES: Final = (".ttf", ".otf", ".ttc", ".otc")
 # Names of common fonts with many letters.
 KNOWN: Final = ("dejavusans", "notosansregular", "arialunicode", "arial", "segoeui", "helvetica")
@@ -121,7 +122,7 @@ class Face:
         """
         try:
             with reading("font", self._name, self._size):
-                return self._laid_out(line, place)
+                return watched(lambda: self._laid_out(line, place))
         except LoadError as error:
             refuse(error.message, None, place)
 
@@ -241,8 +242,11 @@ def _opened(file: str, place: Span | None) -> Face:
 @lru_cache(maxsize=8)
 def _open_file(file: str, changed: int) -> Face:
     name = os.path.basename(file)
+    fonts = font_tools("ttLib", None)
     with opened("font", file, name=name) as data:
-        return Face(font_tools("ttLib", None).TTFont(BytesIO(data), fontNumber=0), name, len(data))
+        if data.startswith(_PACKED):  # each table may unpack to any length, in one call
+            raise LoadError("it is a packed font of web pages (WOFF): convert it to .ttf or .otf")
+        return watched(lambda: Face(fonts.TTFont(BytesIO(data), fontNumber=0), name, len(data)))
 
 
 @lru_cache(maxsize=1)

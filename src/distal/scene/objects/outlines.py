@@ -16,7 +16,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 
 from distal.diagnostics import LoadError, Span
-from distal.foreign_files import need, reading
+from distal.foreign_files import need, reading, watched
 from distal.lang.resources import Buffer
 from distal.lang.source_places import author_place
 from distal.packages import PackageError, imported
@@ -79,7 +79,7 @@ def svg_path(path: str, *, size: float | None = None, place: Span | None = None)
     hint = "M, L, Q and A take 2, 2, 4 and 7 numbers"
     try:
         with reading("drawing", "this SVG path", len(path)):
-            parser.parse_path(path, pen)
+            watched(lambda: parser.parse_path(path, pen))
             upright = [tuple(p.conjugate() for p in edge) for edge in pen.finished()]
     except LoadError as error:
         refuse(error.message, hint, place)
