@@ -526,6 +526,7 @@ OWN = {
     "mesh/": "writes",
     "notebook/widget.py": "distal's own script",
     "polygons/": "within read_mesh, read_points and read_volume",
+    "read_watch.py": "/proc",
     "runtime/fingerprints.py": "files that were read before",
     "scene/rerender.py": "passes bytes to the readers of pictures",
     "sounds/reading.py": "within read",
