@@ -48,17 +48,16 @@ def interrupt_main() -> None:
         _thread.interrupt_main()
 
 
-def raise_in(thread: int, kind: type[BaseException] | None) -> None:
+def raise_in(thread: int, kind: type[BaseException]) -> None:
     """Raise an exception in a thread at its next step in Python.
 
     Args:
         thread: The thread's ``ident``.
-        kind: The exception; None takes back one that was not raised yet.
+        kind: The exception. One that has not arrived yet is replaced.
     """
     import ctypes  # noqa: PLC0415 (only where something hangs)
 
-    thrown = ctypes.py_object() if kind is None else ctypes.py_object(kind)
-    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), thrown)
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(kind))
 
 
 def _end(*_: object) -> None:

@@ -64,6 +64,20 @@ def _resident() -> int:
         return 0
 
 
+def _take_back(thread: int) -> None:
+    """Let an exception that may be on its way to this thread arrive here.
+
+    A second one takes its place, and arrives at once. CPython 3.11 does not forget one that is
+    taken back with NULL: the interpreter looks for it at each step, and hangs under a profiler.
+    """
+    try:
+        raise_in(thread, _LimitError)
+        while True:
+            pass
+    except _LimitError:
+        pass
+
+
 class _ReadWatch:
     """A thread that raises ``_LimitError`` in the thread that made it, until it is ended.
 
@@ -76,7 +90,7 @@ class _ReadWatch:
         self._lock = new_lock()
         self._ended = threading.Event()
         self._seconds, self._most, self._before = seconds, most, _resident()
-        self.is_memory = False
+        self.is_memory = self._has_raised = False
         threading.Thread(target=self._run, name="distal-read-watch", daemon=True).start()
 
     def _run(self) -> None:
@@ -88,6 +102,7 @@ class _ReadWatch:
             if self.is_memory or passed > self._seconds:
                 with self._lock:
                     if not self._ended.is_set():
+                        self._has_raised = True
                         raise_in(self._thread, _LimitError)
 
     def end(self) -> None:
@@ -96,6 +111,7 @@ class _ReadWatch:
             try:
                 with self._lock:
                     self._ended.set()
-                    raise_in(self._thread, None)
             except _LimitError:  # on its way when the reader ended
                 continue
+        if self._has_raised:
+            _take_back(self._thread)
