@@ -269,7 +269,7 @@ def test_another_user_learns_nothing_of_a_start(public_folder):
         assert "Enter prints an address" in studio.stdout.readline()
         assert soon(lambda: record.exists() and record.read_text().endswith("\n"))
         place = record.read_text().strip()
-        assert re.fullmatch(rf"file://{temporary}/distal_opening_\w+/studio\.html", place)
+        assert re.fullmatch(rf"file://{temporary}/distal_opening_[\w-]+/studio\.html", place)
         file = Path(place.removeprefix("file://"))
         assert stat.S_IMODE(file.stat().st_mode) == 0o600
         assert stat.S_IMODE(file.parent.stat().st_mode) == 0o700

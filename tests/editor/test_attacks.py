@@ -154,7 +154,7 @@ def test_messages_that_no_app_sends_are_answered(running, secret):
             assert until(socket, "mistakes", 1).mistakes[0].severity == "error"
         socket.send(json.dumps({**save, "file": "new.py", "text": "x = '\ud800'\n"}))
         text = until(socket, "mistakes", 1).mistakes[0].message
-        assert text == "line 1 of 'new.py' has a character that is not Unicode"
+        assert text == "'new.py' has a character in line 1 that is not Unicode"
         socket.send(look(2, SCENE))
         until(socket, "scene", 2)
 

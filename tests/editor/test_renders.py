@@ -335,7 +335,7 @@ def test_printed_lines_are_no_progress(socket):
 
 def test_requests_that_cannot_be_rendered_do_not_stop_the_queue(server, socket, tmp_path):
     attempts = [
-        (rendering(1, "x = '\ud800'\n"), "line 1 of 'scene.py' has a character that is not"),
+        (rendering(1, "x = '\ud800'\n"), "'scene.py' has a character in line 1 that is not"),
         (rendering(1, object="../../x"), "'../../x' is not the name of a scene"),
         (rendering(1, object="x\0"), "is not the name of a scene"),
         (rendering(1, main="../scene.py"), "there is no file '../scene.py' among the texts"),

@@ -27,7 +27,8 @@ def test_no_control_or_format_character_of_unicode_is_left():
         ("\x9b31m\x7f", "\\x9b31m\\x7f"),
         ("gro\u202exet.py", "gro\\u202exet.py"),
         ("a\u200bb\ufeff\u2066\u3164", "a\\u200bb\\ufeff\\u2066\\u3164"),
-        ("\udc80", "\\udc80"),
+        ("\udc80", "\\x80"),  # a byte of a name that is no UTF-8
+        ("\ud800", "\\ud800"),
         ("Größe 测试 🙂 हिन्दी", "Größe 测试 🙂 हिन्दी"),
         (None, "None"),
     ],

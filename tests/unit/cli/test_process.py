@@ -142,7 +142,7 @@ def test_too_little_memory_is_one_line(tmp_path):
     limit = "import resource; resource.setrlimit(resource.RLIMIT_AS, (3 * 2**30, 3 * 2**30))"
     answer = render_small(tmp_path, before=limit, size="16384x16384")
     assert (answer.returncode, answer.stderr.count("\n")) == (1, 1)
-    assert answer.stderr.startswith("error: not enough memory: no 4096 MiB")
+    assert answer.stderr.startswith("error: not enough memory: a picture of 16384x16384 ")
 
 
 def test_a_warning_is_one_line(tmp_path):
