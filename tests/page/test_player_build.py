@@ -45,8 +45,8 @@ POSTER_BYTES = 8_200
 MESH_BYTES = 11_000
 # What a lesson's page has besides: sliders, stills, experiments, goals, presentation.
 LESSON_BYTES = 8_000
-# The studio with its editor, packed; 2 kB of it keep frames (decision 76), 1.3 kB its access (97), 34 kB what one
-# has written: drafts, versions, comparisons, conflicts, scenes (96, 98).
+# The studio with its editor, packed; 2 kB of it keep frames (decision 76), 1.3 kB its access (97),
+# 34 kB what one has written: drafts, versions, comparisons, conflicts, scenes (96, 98).
 APP_BYTES = 268_500
 INSTALL_S = 100
 RUN_S = 60
