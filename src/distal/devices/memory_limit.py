@@ -54,8 +54,10 @@ def _number(path: Path) -> int | None:
         return None
 
 
-def require(size: int, purpose: str) -> None:
-    """Check that some work does not need more memory than is left.
+def require_of_machine(size: int, purpose: str) -> None:
+    """Check that some work does not need more memory than the machine and the limit leave.
+
+    For large work: it reads files of the system, which ``require`` does not.
 
     Args:
         size: Bytes that the work needs.
@@ -68,6 +70,19 @@ def require(size: int, purpose: str) -> None:
     if left is not None and size > left:
         needed, has = f"{size / 2**20:,.0f} MiB", f"{left / 2**20:,.0f} MiB"
         raise MemoryError(f"{purpose} needs {needed}, and {has} are left")
+    require(size, purpose)
+
+
+def require(size: int, purpose: str) -> None:
+    """Check that some work does not need more memory than the limit leaves.
+
+    Args:
+        size: Bytes that the work needs.
+        purpose: The work, in words, for the message.
+
+    Raises:
+        MemoryError: There is not enough memory.
+    """
     if not is_limited():
         return
     try:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.devices.base import Kernel
-from distal.devices.memory_limit import require
+from distal.devices.memory_limit import require_of_machine
 from distal.diagnostics import DeviceError
 from distal.images.picture import Picture, Provenance
 from distal.ir.collection import paused_collection
@@ -93,7 +93,7 @@ def _require_memory(width: int, height: int, bytes_per_pixel: int) -> None:
     """
     if width * height > _MANY_PIXELS:
         purpose = f"a picture of {width}x{height} pixels"
-        require(width * height * bytes_per_pixel, purpose)
+        require_of_machine(width * height * bytes_per_pixel, purpose)
 
 
 class PythonExecutor(TapeExecutor):

@@ -25,7 +25,7 @@ def has_left(folder, mib):
 
 def test_a_machine_without_such_files_says_nothing(machine):
     assert memory_limit.available() is None
-    memory_limit.require(2**20, "nothing much")
+    memory_limit.require_of_machine(2**20, "nothing much")
 
 
 @pytest.mark.parametrize("text", ["", "MemAvailable:\n", "MemAvailable: many kB\nSwapFree: 0 kB"])
