@@ -6,6 +6,8 @@
  * server, its settings first; whether it is there. `distal/editor/local/guard.py` describes the messages.
  */
 
+import { recalled, remember } from "./storage";
+
 const KEPT = "distal:secret";
 const PROOF = /^[0-9a-f]{64}$/;
 const RETRY_MS = 1500;
@@ -111,7 +113,7 @@ export class Access {
   }
 
   #texts(): Shared[] {
-    const kept = recalled();
+    const kept = recalled("localStorage", KEPT);
     const secrets = [...new Set([kept, this.#secret])].filter((text) => text !== null);
     const texts = secrets.map((text): Shared => ({ by: "secret", text }));
     return this.#key ? [{ by: "key", text: this.#key }, ...texts] : texts;
@@ -149,7 +151,7 @@ export class Access {
     if (secret) {
       this.#key = null;
       this.#secret = secret;
-      this.isKept = keep(secret);
+      this.isKept = remember("localStorage", KEPT, secret);
     }
     this.#socket = socket;
     socket.onmessage = ({ data }) => this.onText(String(data));
@@ -187,22 +189,4 @@ function toHex(bytes: Uint8Array): string {
 
 function fromHex(letters: string): Uint8Array<ArrayBuffer> {
   return Uint8Array.from(letters.match(/../g)!, (pair) => parseInt(pair, 16));
-}
-
-/** The secret that this browser has; null where there is none, or no storage. */
-function recalled(): string | null {
-  try {
-    return localStorage.getItem(KEPT);
-  } catch {
-    return null;
-  }
-}
-
-function keep(secret: string): boolean {
-  try {
-    localStorage.setItem(KEPT, secret);
-    return true;
-  } catch {
-    return false;
-  }
 }

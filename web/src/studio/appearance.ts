@@ -1,5 +1,7 @@
 /** Light or dark colors of the app: as the system has them, or as a person chose; kept in the browser. */
 
+import { recalled, remember } from "./storage";
+
 export type Scheme = "light dark" | "light" | "dark";
 
 export const SCHEMES: readonly [Scheme, string][] = [
@@ -15,19 +17,11 @@ export function schemeNow(): Scheme {
 
 export function useScheme(scheme: Scheme): void {
   document.documentElement.style.colorScheme = scheme;
-  try {
-    localStorage.setItem(KEY, scheme);
-  } catch {
-    // Without storage the choice ends with the page.
-  }
+  remember("localStorage", KEY, scheme); // Without storage the choice ends with the page.
 }
 
 /** The colors of the last visit. */
 export function recallScheme(): void {
-  try {
-    const found = localStorage.getItem(KEY);
-    if (SCHEMES.some(([scheme]) => scheme === found)) document.documentElement.style.colorScheme = found!;
-  } catch {
-    // No storage.
-  }
+  const last = recalled("localStorage", KEY);
+  if (SCHEMES.some(([scheme]) => scheme === last)) document.documentElement.style.colorScheme = last!;
 }

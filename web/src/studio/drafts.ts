@@ -7,6 +7,7 @@
 
 import type { Greeted } from "../generated/messages";
 import type { Keeping } from "./keeping";
+import { recalled, remember } from "./storage";
 import type { Studio } from "./studio";
 
 /** After a key, so long until the text is sent. */
@@ -66,7 +67,7 @@ export class Drafts implements Keeping {
     this.#sent.clear();
     if (!isOpen) return this.#away();
     const isNew = !texts.names.length;
-    const asked = { kind: "hello", revision: texts.revision, tab: recalled(TAB) ?? "", is_new: isNew } as const;
+    const asked = { kind: "hello", revision: texts.revision, tab: recalled("sessionStorage", TAB) ?? "", is_new: isNew } as const;
     const answer = await client.ask(asked);
     if (answer?.kind !== "answer" || answer.request !== "hello") return;
     this.#isThere = true;
@@ -81,7 +82,7 @@ export class Drafts implements Keeping {
 
   #greeted({ others, tab, unkept }: Greeted, isNew: boolean): void {
     const { page, versions } = this.studio;
-    remember(TAB, tab);
+    remember("sessionStorage", TAB, tab);
     this.#say(unkept);
     if (!isNew || !others.length) return;
     const close = () => page.bar("others", null);
@@ -131,33 +132,15 @@ export class Drafts implements Keeping {
   /** Keeps what the server does not have in the tab's storage; returns whether that was possible. */
   #store(): boolean {
     const unsent = { ...this.#before, ...Object.fromEntries(this.#unsent) };
-    return remember(this.#place, Object.keys(unsent).length ? JSON.stringify(unsent) : null);
+    return remember("sessionStorage", this.#place, Object.keys(unsent).length ? JSON.stringify(unsent) : null);
   }
 }
 
 /** What a page in this tab could not send before it was loaded again. */
 function unsentBefore(place: string): Record<string, Draft> {
   try {
-    return JSON.parse(recalled(place) ?? "{}") as Record<string, Draft>;
+    return JSON.parse(recalled("sessionStorage", place) ?? "{}") as Record<string, Draft>;
   } catch {
     return {};
-  }
-}
-
-function recalled(key: string): string | null {
-  try {
-    return sessionStorage.getItem(key);
-  } catch {
-    return null;
-  }
-}
-
-function remember(key: string, value: string | null): boolean {
-  try {
-    if (value === null) sessionStorage.removeItem(key);
-    else sessionStorage.setItem(key, value);
-    return true;
-  } catch {
-    return false;
   }
 }
