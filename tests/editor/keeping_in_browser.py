@@ -17,6 +17,7 @@ from typing import Any
 
 from distal.editor.local.drafts import Draft
 from tests.browser import kept_page
+from tests.editor.keeping_sequences import main
 from tests.editor.studio_page import DESK, SLOW_MS, TEXT
 
 STEPS = 14
@@ -162,13 +163,5 @@ def run(seed: int) -> None:
             shutil.rmtree(folder, ignore_errors=True)
 
 
-def main() -> None:
-    """Run as many sequences as the first argument says, from the seed that is the second."""
-    count, first = int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 0
-    for seed in range(first, first + count):
-        run(seed)
-    sys.stdout.write(f"{count} sequences of {STEPS} steps in a browser: nothing was lost\n")
-
-
 if __name__ == "__main__":
-    main()
+    main(run, f"sequences of {STEPS} steps in a browser")

@@ -463,12 +463,12 @@ def run(seed: int) -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def main() -> None:
+def main(run: Callable[[int], None] = run, what: str = f"sequences of {STEPS} steps") -> None:
     """Run as many sequences as the first argument says, from the seed that is the second."""
     count, first = int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 0
     for seed in range(first, first + count):
         run(seed)
-    sys.stdout.write(f"{count} sequences of {STEPS} steps: nothing was lost\n")
+    sys.stdout.write(f"{count} {what}: nothing was lost\n")
 
 
 if __name__ == "__main__":
