@@ -142,14 +142,14 @@ def name_beside(path: Path, suffix: str, prefix: str = "") -> Path:
     except (AttributeError, OSError, ValueError):
         limit = _LONGEST_NAME
     name = os.fsencode(path.name)
-    room = limit - len(os.fsencode(prefix + suffix))
-    if len(name) <= room:
+    longest = limit - len(os.fsencode(prefix + suffix))
+    if len(name) <= longest:
         return path.with_name(prefix + path.name + suffix)
     mark = "~" + hashlib.sha256(name).hexdigest()[:16]
-    kept = path.name
-    while len(os.fsencode(kept)) > room - len(mark):
-        kept = kept[:-1]
-    return path.with_name(prefix + kept + mark + suffix)
+    stem = path.name
+    while len(os.fsencode(stem)) > longest - len(mark):
+        stem = stem[:-1]
+    return path.with_name(prefix + stem + mark + suffix)
 
 
 def _check_file(path: Path, target: Path, info: os.stat_result) -> None:

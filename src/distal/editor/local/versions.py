@@ -2,7 +2,7 @@
 
 Input: bytes, and why they are kept. Output: files beside the drafts, readable by any program. There
 are at most 50 of a file: the last 10, then one an hour, one a day, and as many of the others as
-have room. Knows neither the page nor the scene's folder.
+the limits allow. Knows neither the page nor the scene's folder.
 """
 
 from __future__ import annotations
