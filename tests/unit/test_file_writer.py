@@ -905,10 +905,14 @@ def test_temporary_files_of_the_dead_are_removed_and_no_others(tmp_path, monkeyp
         own = temporary.temporary_path(tmp_path)
         own.touch()
         (tmp_path / dead.replace(dead[8:16], "0123abcd")).touch()  # of another machine
-        (tmp_path / (dead[:-5] + "f.tmp")).symlink_to(tmp_path)
+        link, of_another = (
+            tmp_path / f"{dead[:-5]}{digit}.tmp"
+            for digit in sorted(set("012") - {dead[-5]})[:2]  # a random digit is the last
+        )
+        link.symlink_to(tmp_path)
         if IS_ROOT:
-            (tmp_path / (dead[:-5] + "e.tmp")).touch()
-            os.chown(tmp_path / (dead[:-5] + "e.tmp"), NOBODY, NOBODY)
+            of_another.touch()
+            os.chown(of_another, NOBODY, NOBODY)
         others = set(os.listdir(tmp_path)) - {dead}
         write(tmp_path / "a")
         assert set(os.listdir(tmp_path)) == others | {"a"}
