@@ -278,7 +278,7 @@ def test_an_endless_loop_is_ended_and_the_next_text_is_answered(server):
 
 def test_the_line_of_an_endless_loop_is_told(tmp_path):
     (tmp_path / "scene.py").write_text(SCENE)
-    running = StudioServer(SceneFiles(tmp_path / "scene.py"), limit=4.0)
+    running = StudioServer(SceneFiles(tmp_path / "scene.py"), limit=7.0)
     threading.Thread(target=running.serve, daemon=True).start()
     try:
         with connected(running, secret_of(running)) as socket:
@@ -289,7 +289,7 @@ def test_the_line_of_an_endless_loop_is_told(tmp_path):
                 " 2 | while True:\n   | ^^^^^^^^^^^\n"
             )
             assert until(socket, "restarted").reason == (
-                "the scene's code gave no answer within 4 s; "
+                "the scene's code gave no answer within 7 s; "
                 "it was at line 2 of scene.py: while True:"
             )
     finally:
