@@ -1,15 +1,15 @@
 """Convert Python values to arguments of scene functions, and results to Python values.
 
 Input: the arguments of a call of a ``@func``: numbers, vectors, lists, arrays of points. Output:
-the types of an overload and arrays with one row per point; and the reverse. Does not depend on a
-device.
+the types of an overload and arrays with one row per point; and the reverse. ``float_type`` says in
+which precision a call computes. Does not depend on a device.
 """
 
 from __future__ import annotations
 
 import dataclasses
 from collections import namedtuple
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from operator import itemgetter
 from typing import Any, TypeVar, assert_never
@@ -37,6 +37,8 @@ from distal.ir.types import (
 )
 from distal.lang.values import VALUE_CLASSES, MatrixValue, VectorValue
 
+# What holds numbers of Python, not an array of a type of its own.
+_PLAIN = (int, float, list, tuple, VectorValue, MatrixValue)
 _KINDS = {Kind.FLOAT: "fiub", Kind.INT: "iu", Kind.UINT: "iu", Kind.BOOL: "b"}
 
 
@@ -89,7 +91,7 @@ def bind(
 
 
 def choose_types(
-    header: FunctionSignature, values: Sequence[Any], dtype: np.dtype[Any]
+    header: FunctionSignature, values: Sequence[Any]
 ) -> tuple[tuple[Type, ...], list[Any]] | None:
     """Return parameter types that accept every value, and the converted values; else None.
 
@@ -98,7 +100,6 @@ def choose_types(
     Args:
         header: The signature of the function.
         values: One value per parameter.
-        dtype: The type of floats in the arrays.
     """
     variables: list[TypeVar] = []
     for slot in header.parameters:
@@ -112,21 +113,21 @@ def choose_types(
             types = tuple(to_type(s.annotation, bindings) for s in header.parameters)
         except (AnnotationError, UnboundVariableError):
             return None
-        rows = rows_of(values, types, dtype)
+        rows = rows_of(values, types)
         if rows is not None:
             return types, rows
     return None
 
 
-def rows_of(values: Sequence[Any], types: Sequence[Type], dtype: np.dtype[Any]) -> list[Any] | None:
+def rows_of(values: Sequence[Any], types: Sequence[Type]) -> list[Any] | None:
     """Return the values converted by ``lanes``; None if a value does not have its type.
 
     Args:
         values: One value per type; each may also be an array of values.
         types: The types of the parameters.
-        dtype: The type of floats in the arrays.
     """
     try:
+        dtype = float_type(values, types)
         return [lanes(v, t, dtype) for v, t in zip(values, types, strict=True)]
     except (TypeError, ValueError, OverflowError):
         return None
@@ -169,13 +170,44 @@ def lanes(value: Any, type: Type, dtype: np.dtype[Any]) -> Any:
             assert_never(type)
 
 
-def is_double(value: Any) -> bool:
-    """Return whether a value contains 64-bit NumPy floats, also in a struct."""
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return any(is_double(getattr(value, field.name)) for field in dataclasses.fields(value))
-    if isinstance(value, tuple):
-        return any(map(is_double, value))
-    return getattr(value, "dtype", None) == np.float64
+def float_type(values: Sequence[Any], types: Sequence[Type]) -> np.dtype[Any]:
+    """Return the type in which a call computes: float32 arrays in, float32 out; everything else 64.
+
+    It is float32 if floats come in float32 arrays, and in no array of another type. Beside such
+    arrays, a number or a vector of Python is read as float32, as in NumPy; a list of values for
+    several points has 64 bits. Arrays for ints and bools do not count.
+
+    Args:
+        values: One value per parameter.
+        types: The types of the parameters.
+    """
+    found = {is_single for v, t in zip(values, types, strict=True) for is_single in _arrays(v, t)}
+    return np.dtype(np.float32 if found == {True} else np.float64)
+
+
+def _arrays(value: Any, type: Type) -> Iterator[bool]:
+    """Yield for each array of floats in a value whether it is of 32 bits."""
+    match type:
+        case Scalar(Kind.FLOAT) | Vector(Kind.FLOAT) | Matrix():
+            if isinstance(value, np.generic) or not isinstance(value, _PLAIN):
+                dtype = np.asarray(value).dtype
+                yield dtype.kind == "f" and dtype.itemsize == 4
+            elif is_many(value, type):
+                yield False
+        case Struct(_, fields):
+            parts = value if isinstance(value, tuple) else [getattr(value, n, 0) for n, _ in fields]
+            for part, (_, field) in zip(parts, fields, strict=True):
+                yield from _arrays(part, field)
+        case Array(element) if isinstance(value, list | tuple):
+            if isinstance(element, Scalar | Vector) and is_many(value, type):
+                yield False
+            else:
+                for part in value:
+                    yield from _arrays(part, element)
+        case Array(Scalar(kind) | Vector(kind)) if kind is Kind.FLOAT:
+            yield from _arrays(value, FLOAT)
+        case _:
+            pass
 
 
 def _numbers(value: Any, shape: tuple[int, ...], kind: Kind, dtype: np.dtype[Any]) -> NDArray[Any]:
