@@ -158,7 +158,7 @@ def lanes(value: Any, type: Type, dtype: np.dtype[Any]) -> Any:
                 value = np.array([tuple(c) for c in value]).T
             return _numbers(value, (size, size), Kind.FLOAT, dtype)
         case Array(element, length):
-            return _array(value, element, length, dtype)
+            return _elements(value, element, length, dtype)
         case Struct(_, fields):
             if not dataclasses.is_dataclass(value) and not isinstance(value, tuple):
                 raise TypeError(f"{value!r} is no {type}")
@@ -188,26 +188,26 @@ def float_type(values: Sequence[Any], types: Sequence[Type]) -> np.dtype[Any]:
 def _arrays(value: Any, type: Type) -> Iterator[bool]:
     """Yield for each array of floats in a value whether it is of 32 bits."""
     match type:
-        case Scalar(Kind.FLOAT) | Vector(Kind.FLOAT) | Matrix():
-            if isinstance(value, np.generic) or not isinstance(value, _PLAIN):
-                dtype = np.asarray(value).dtype
-                yield dtype.kind == "f" and dtype.itemsize == 4
-            elif is_many(value, type):
-                yield False
         case Struct(_, fields):
             parts = value if isinstance(value, tuple) else [getattr(value, n, 0) for n, _ in fields]
-            for part, (_, field) in zip(parts, fields, strict=True):
-                yield from _arrays(part, field)
-        case Array(element) if isinstance(value, list | tuple):
-            if isinstance(element, Scalar | Vector) and is_many(value, type):
-                yield False
-            else:
-                for part in value:
-                    yield from _arrays(part, element)
-        case Array(Scalar(kind) | Vector(kind)) if kind is Kind.FLOAT:
-            yield from _arrays(value, FLOAT)
+            for part, (_, of_part) in zip(parts, fields, strict=True):
+                yield from _arrays(part, of_part)
+        case Array(element) if _is_of_values(value, element):
+            for part in value:
+                yield from _arrays(part, element)
+        case Scalar(kind) | Vector(kind) | Array(Scalar(kind) | Vector(kind)):
+            if kind is Kind.FLOAT:
+                yield from _array(value, type)
         case _:
-            pass
+            yield from _array(value, type)
+
+
+def _array(value: Any, type: Type) -> Iterator[bool]:
+    if isinstance(value, np.generic) or not isinstance(value, _PLAIN):
+        dtype = np.asarray(value).dtype
+        yield dtype.kind == "f" and dtype.itemsize == 4
+    elif is_many(value, type):
+        yield False
 
 
 def _numbers(value: Any, shape: tuple[int, ...], kind: Kind, dtype: np.dtype[Any]) -> NDArray[Any]:
@@ -245,8 +245,14 @@ def _converted(array: NDArray[Any], kind: Kind, dtype: np.dtype[Any]) -> NDArray
             assert_never(kind)
 
 
-def _array(value: Any, element: Type, length: int, dtype: np.dtype[Any]) -> Any:
-    if isinstance(element, Scalar | Vector) and not isinstance(value, Collected):
+def _is_of_values(value: Any, element: Type) -> bool:
+    """Return whether an array of scene code is given as one value for each element."""
+    return isinstance(value, Collected) or not isinstance(element, Scalar | Vector)
+
+
+def _elements(value: Any, element: Type, length: int, dtype: np.dtype[Any]) -> Any:
+    if not _is_of_values(value, element):
+        assert isinstance(element, Scalar | Vector)
         shape = (length,) if isinstance(element, Scalar) else (length, element.size)
         if isinstance(value, list | tuple):
             value = [tuple(v) if isinstance(v, VectorValue) else v for v in value]
@@ -296,11 +302,11 @@ def is_many(value: Any, type: Type) -> bool:
     """Return whether the caller passed one value per point (even if there is one point only)."""
     match type:
         case Scalar():
-            return np.ndim(value) == 1
+            return _depth(value) == 1
         case Vector():
-            return not isinstance(value, VectorValue) and np.ndim(value) == 2
+            return not isinstance(value, VectorValue) and _depth(value) == 2
         case Matrix():
-            return not isinstance(value, MatrixValue) and np.ndim(value) == 3
+            return not isinstance(value, MatrixValue) and _depth(value) == 3
         case Struct(_, fields):
             if isinstance(value, tuple):
                 parts = list(value)
@@ -310,13 +316,19 @@ def is_many(value: Any, type: Type) -> bool:
         case Array(element, _) if isinstance(value, Collected):
             return any(is_many(v, element) for v in value)
         case Array(Scalar() | Vector() as element, _):
-            if isinstance(value, list | tuple):
-                value = [tuple(v) if isinstance(v, VectorValue) else v for v in value]
-            return np.ndim(value) == (2 if isinstance(element, Scalar) else 3)
+            return _depth(value) == (2 if isinstance(element, Scalar) else 3)
         case Array(element, _):
             return any(is_many(v, element) for v in value)
         case _:
             return False
+
+
+def _depth(value: Any) -> int:
+    """Return the number of axes of a value, without a look at all parts of a list."""
+    depth = 0
+    while isinstance(value, list | tuple | VectorValue) and len(value):
+        value, depth = value[0], depth + 1
+    return depth + int(np.ndim(value))
 
 
 def single(result: Any, type: Type) -> Any:
