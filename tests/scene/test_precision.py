@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from distal import Polygon, Polyline, Sphere, SvgPath
+from distal import Polygon, Polyline, Shape, Sphere, SvgPath
 from distal.lang import Buffer, Texture2D, func, sample, sin, vec2, vec3
 
 EPS = float(np.finfo(np.float64).eps)
@@ -150,8 +150,8 @@ def test_polygons_lines_and_outlines(offset):
     edges = " L ".join(f"{x!r} {-y!r}" for x, y in corners.tolist())
     middle = 0.5 * (corners.min(0) + corners.max(0))
     assert ulps(SvgPath(f"M {edges} Z")(corners - middle), 0.0, 1.0 + offset) <= 2.0
-    line = Polyline(corners, thickness=0.0)
-    assert ulps(line(corners[0] - (3.0, 4.0)), 5.0, 5.0 + offset) <= 2.0
+    line = Polyline(corners, radius=0.125)
+    assert ulps(line(corners[0] - (3.0, 4.0)), 4.875, 5.0 + offset) <= 2.0
 
 
 NUMBERS = np.array([0.1, 1000.1, 3.3e7])
@@ -213,3 +213,18 @@ def test_a_minimizer_moves(read):
     assert np.abs(found.x - target).max() < 1e-8
     slid = minimize(lambda p: shape(read(p)) ** 2, (target[0] + 1.0, 0.5, 0.5), tol=1e-12)
     assert slid.nit > 0 and slid.fun < 1e-12
+
+
+@pytest.mark.parametrize("count", [12, 97])  # as a grid, and in bricks
+def test_volumes(count):
+    step = 1.0 / 64.0
+    z, y, x = np.mgrid[0:count, 0:count, 0:count] * step
+    tilt = np.array([0.3, -0.4, np.sqrt(0.75)])
+    middle = 0.5 * (count - 1) * step
+    plane = tilt[0] * (x - middle) + tilt[1] * (y - middle) + tilt[2] * (z - middle)
+    points = np.random.default_rng(5).uniform(-0.02, 0.02, (50, 3))
+    wide, single = (
+        Shape.from_volume(plane.astype(dtype), spacing=step) for dtype in (np.float64, np.float32)
+    )
+    assert np.abs(wide(points) - points @ tilt).max() < 4e-16
+    assert 1e-10 < np.abs(single(points) - points @ tilt).max() < 1e-7

@@ -3,7 +3,8 @@
 Input: a declared resource (a file's path, an array, nested lists) and its type. Output: texels as
 (height, width, 4), depth or face first for volumes and cubes, in the order of their indices;
 buffers as (n,) or (n, size). Values of pictures are scaled to 0 to 1 and otherwise unchanged.
-Floats have 32 bits where the source has (``float_type``). Does not depend on devices.
+Floats have 32 bits if these hold the source's numbers exactly (``float_type``). Does not depend on
+devices.
 """
 
 from __future__ import annotations
@@ -181,7 +182,7 @@ def _with_channels(array: NDArray[Any], axes: int) -> NDArray[Any]:
     if array.ndim != axes + 1 or array.shape[-1] not in (3, 4) or array.size == 0:
         names = ("height, width", "depth, height, width")[axes - 2]
         raise LoadError(f"a texture is ({names}), with 3 or 4 channels; not {array.shape}")
-    values = array.astype(np.float32 if array.dtype == np.uint8 else float_type(array), order="C")
+    values = array.astype(float_type(array), order="C")
     if array.dtype == np.uint8:
         values /= np.float32(255.0)
     if values.shape[-1] == 3:
@@ -204,9 +205,8 @@ def _buffer(data: Any, type: Buffer) -> NDArray[Any]:
 
 
 def float_type(array: NDArray[Any]) -> np.dtype[Any]:
-    """Return the type in which the floats of data are held: float32 as float32, others in 64 bits.
+    """Return the type in which the floats of data are held: float32 if it holds them exactly.
 
-    A device whose floats have 32 bits rounds them when they are uploaded.
+    Where a kernel computes in 32 bits, its device rounds what has 64.
     """
-    is_single = array.dtype.kind == "f" and array.dtype.itemsize <= 4
-    return np.dtype(np.float32 if is_single else np.float64)
+    return np.dtype(np.float32 if np.can_cast(array.dtype, np.float32) else np.float64)
