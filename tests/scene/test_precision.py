@@ -51,6 +51,7 @@ ROWS = {
     "vectors": ([vec3(*POINT), vec3(*POINT)], np.float64),
     "grid": (np.array([[POINT, POINT]]), np.float64),
     "no points": (np.zeros((0, 3)), np.float64),
+    "array of integers, no points": (np.zeros((0, 3), int), np.float64),
     "integers": (np.array([[2, 0, 0], [0, 3, 0]]), np.float64),
     "whole numbers": ([(2, 0, 0), (0, 3, 0)], np.float64),
     "float16": (np.array([[2, 0, 0]], np.float16), np.float64),
@@ -68,6 +69,17 @@ def test_many_points(points, dtype):
     wide = np.asarray(points, np.float64)
     assert (found.shape, slope.shape) == (wide.shape[:-1], wide.shape)
     np.testing.assert_array_equal(found, np.sqrt((wide * wide).sum(-1)).astype(dtype) - dtype(1))
+
+
+def test_an_empty_list_is_no_points():
+    assert (Sphere(1.0)([]).shape, Sphere(1.0).gradient([]).shape) == ((0,), (0, 3))
+    assert scaled([], [], []).shape == (0,)
+
+
+@pytest.mark.parametrize("strange", ["complex128", "bool", "object"])
+def test_arrays_that_are_no_numbers(strange):
+    with pytest.raises(TypeError, match=rf"not take \(an array of shape \(1, 3\) of {strange}\)"):
+        Sphere(1.0)(np.ones((1, 3), strange))
 
 
 @func

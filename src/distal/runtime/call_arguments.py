@@ -105,5 +105,6 @@ def _described(value: Any) -> str:
     except ValueError:
         return f"a {type(value).__name__} whose parts differ in length"
     if shape:
-        return f"an array of shape {shape}"
+        dtype = np.asarray(value).dtype
+        return f"an array of shape {shape}" + ("" if dtype.kind in "fiu" else f" of {dtype}")
     return repr(value) if isinstance(value, int | float | str) else type(value).__name__

@@ -216,6 +216,8 @@ def _numbers(value: Any, shape: tuple[int, ...], kind: Kind, dtype: np.dtype[Any
         raise TypeError(f"{value!r} is a vector")
     if isinstance(value, VectorValue):
         value = tuple(value)
+    if isinstance(value, list) and not value:  # no points
+        return np.empty((0, *shape), _dtype(kind, dtype))
     array = np.asarray(value)
     if array.dtype.kind not in _KINDS[kind]:
         raise TypeError(f"{array.dtype} is not {kind.value}")
