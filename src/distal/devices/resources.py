@@ -1,9 +1,10 @@
 """Load the data of textures and buffers into arrays for a device.
 
 Input: a declared resource (a file's path, an array, nested lists) and its type. Output: texels as
-float32 (height, width, 4), depth or face first for volumes and cubes, in the order of their
-indices; buffers as (n,) or (n, size). Values of pictures are scaled to 0 to 1 and otherwise
-unchanged. Does not depend on devices.
+(height, width, 4), depth or face first for volumes and cubes, in the order of their indices;
+buffers as (n,) or (n, size). Values of pictures are scaled to 0 to 1 and otherwise unchanged.
+Floats have 32 bits if these hold the source's numbers exactly (``float_type``). Does not depend on
+devices.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ PICTURE_FORMATS: Final = (
     "SGI",
 )
 
-_COMPONENT: dict[Kind, Any] = {Kind.FLOAT: np.float32, Kind.INT: np.int32, Kind.UINT: np.uint32}
+_COMPONENT: dict[Kind, Any] = {Kind.INT: np.int32, Kind.UINT: np.uint32}
 
 
 class LoadedData:
@@ -121,7 +122,7 @@ def _parts(data: Any) -> list[Any]:
     return parts
 
 
-def _picture(data: Any, max_memory: Memory | None, step: int = 1) -> NDArray[np.float32]:
+def _picture(data: Any, max_memory: Memory | None, step: int = 1) -> NDArray[Any]:
     """Return a picture: (height, width, 4), top row first; the last one with a step of -1."""
     if not isinstance(data, str | Path):
         return _with_channels(_numbers(data)[::step], 2)
@@ -174,18 +175,18 @@ def _numbers(data: Any) -> NDArray[Any]:
     return array
 
 
-def _with_channels(array: NDArray[Any], axes: int) -> NDArray[np.float32]:
+def _with_channels(array: NDArray[Any], axes: int) -> NDArray[Any]:
     """Return RGBA from grey, RGB or RGBA; bytes are scaled to 0 to 1."""
     if array.ndim == axes:
         array = np.repeat(array[..., None], 3, axis=-1)
     if array.ndim != axes + 1 or array.shape[-1] not in (3, 4) or array.size == 0:
         names = ("height, width", "depth, height, width")[axes - 2]
         raise LoadError(f"a texture is ({names}), with 3 or 4 channels; not {array.shape}")
-    values = array.astype(np.float32, order="C")
+    values = array.astype(float_type(array), order="C")
     if array.dtype == np.uint8:
         values /= np.float32(255.0)
     if values.shape[-1] == 3:
-        opaque = np.ones((*values.shape[:-1], 1), np.float32)
+        opaque = np.ones((*values.shape[:-1], 1), values.dtype)
         values = np.concatenate([values, opaque], axis=-1)
     return np.ascontiguousarray(values)
 
@@ -200,4 +201,12 @@ def _buffer(data: Any, type: Buffer) -> NDArray[Any]:
         limits = np.iinfo(_COMPONENT[kind])
         if array.min() < limits.min or array.max() > limits.max:
             raise LoadError(f"a value of the buffer does not fit {kind.value}")
-    return np.ascontiguousarray(array, _COMPONENT[kind])
+    return np.ascontiguousarray(array, _COMPONENT.get(kind) or float_type(array))
+
+
+def float_type(array: NDArray[Any]) -> np.dtype[Any]:
+    """Return the type in which the floats of data are held: float32 if it holds them exactly.
+
+    Where a kernel computes in 32 bits, its device rounds what has 64.
+    """
+    return np.dtype(np.float32 if np.can_cast(array.dtype, np.float32) else np.float64)

@@ -29,6 +29,8 @@ def resource(source: Any, type: Texture | Buffer) -> dict[str, Any]:
         LoadError: A file cannot be read, or the data has the wrong shape for the resource.
     """
     data = load(source, type)
+    if data.dtype == np.float64:
+        data = data.astype(np.float32)  # a page's numbers have 32 bits
     return _buffer(data) if isinstance(type, Buffer) else _texture(data, type)
 
 

@@ -95,7 +95,10 @@ class Func:
         return self
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
-        """Evaluate the function for numbers, vectors, or arrays of points (n, 3)."""
+        """Evaluate the function for numbers, vectors, or arrays of points (n, 3).
+
+        Float32 arrays in, float32 out; everything else is computed in 64 bits.
+        """
         return executor().call(self, args, kwargs)
 
     def parameters(self) -> list[Parameter]:

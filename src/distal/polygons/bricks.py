@@ -11,7 +11,7 @@ import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,13 +38,13 @@ class BrickSamples:
     """The samples of a grid in bricks.
 
     Attributes:
-        numbers: float32: ``values`` of ``fields.solids.bricks.brick_field``.
+        numbers: Of the samples' type: ``values`` of ``fields.solids.bricks.brick_field``.
         samples: The number of samples along x, y and z.
         reach: Its ``reach``.
         stored: The number of bricks that are stored.
     """
 
-    numbers: NDArray[np.float32]
+    numbers: NDArray[Any]
     samples: tuple[int, int, int]
     reach: float
     stored: int
@@ -62,8 +62,8 @@ class KnownBricks:
     """
 
     places: NDArray[np.int64]
-    values: NDArray[np.float32]
-    corners: NDArray[np.float32]
+    values: NDArray[Any]
+    corners: NDArray[Any]
     margin: float
 
 
@@ -81,7 +81,7 @@ def numbers_of(bricks: tuple[int, ...], stored: int) -> int:
 
 
 def from_grid(
-    values: NDArray[np.float32], steps: Steps, margin: float | None = None
+    values: NDArray[Any], steps: Steps, margin: float | None = None
 ) -> BrickSamples | None:
     """Return the bricks of a grid of samples; None if the grid is small and they save little.
 
@@ -143,22 +143,23 @@ def assembled(
     nearest = np.abs(known.values).reshape(len(known.values), -1).min(axis=1, initial=np.inf)
     places, values = known.places[nearest < reach], known.values[nearest < reach]
     count = tuple(n - 1 for n in known.corners.shape)
-    index = np.where(known.corners[:-1, :-1, :-1] < 0.0, np.float32(-1), np.float32(0))
+    number = values.dtype.type
+    index = np.where(known.corners[:-1, :-1, :-1] < 0.0, number(-1), number(0))
     z, y, x = places.T
     index[z, y, x] = np.arange(1, len(places) + 1)
     is_stored = np.zeros(tuple(n + 2 for n in count), bool)
     is_stored[z + 1, y + 1, x + 1] = True
-    away = np.abs(known.corners) - np.float32(known.margin)
+    away = np.abs(known.corners) - number(known.margin)
     for step in itertools.product((0, 1), repeat=3):
         at = tuple(places[:, axis] + step[axis] for axis in range(3))
-        away[at] = np.minimum(away[at], np.float32(reach))
+        away[at] = np.minimum(away[at], number(reach))
     _lower(away, steps)
     _cap(values, is_stored, places, steps, reach)
     numbers = np.concatenate([index.reshape(-1), away.reshape(-1), values.reshape(-1)])
-    return BrickSamples(numbers.astype(np.float32, copy=False), samples, reach, len(places))
+    return BrickSamples(numbers.astype(number, copy=False), samples, reach, len(places))
 
 
-def _lower(away: NDArray[np.float32], steps: Steps) -> None:
+def _lower(away: NDArray[Any], steps: Steps) -> None:
     """Lower values at corners until neighbors differ by at most their distance.
 
     What is interpolated between them is then no steeper than between samples.
@@ -166,14 +167,14 @@ def _lower(away: NDArray[np.float32], steps: Steps) -> None:
     total = np.inf
     while total > (total := float(away.sum(dtype=np.float64))):
         for axis in range(3):
-            along, far = np.moveaxis(away, axis, 0), np.float32(CELLS * steps[axis])
+            along, far = np.moveaxis(away, axis, 0), away.dtype.type(CELLS * steps[axis])
             for each in (along, along[::-1]):
                 for before, here in itertools.pairwise(each):
                     np.minimum(here, before + far, out=here)
 
 
 def _cap(
-    values: NDArray[np.float32],
+    values: NDArray[Any],
     is_stored: NDArray[np.bool_],
     places: NDArray[np.int64],
     steps: Steps,
@@ -196,29 +197,30 @@ def _cap(
     for axis in range(3):
         border = np.moveaxis(is_missing, axis, 0)
         border[0] = border[-1] = False
-    away = {step: _distances_from(step, steps) for step in ABOUT}
-    farthest = np.float32(reach + CELLS * min(steps))
+    number = values.dtype.type
+    away = {step: _distances_from(step, steps).astype(number) for step in ABOUT}
+    farthest = number(reach + CELLS * min(steps))
     for start in range(0, len(places), _AT_ONCE):
         part = values[start : start + _AT_ONCE]
         z, y, x = places[start : start + _AT_ONCE].T + 1
         cap = np.full(part.shape, farthest)
         for step, distance in away.items():
             asked = is_missing[z + step[0], y + step[1], x + step[2]]
-            cap[asked] = np.minimum(cap[asked], np.float32(reach) + distance)
+            cap[asked] = np.minimum(cap[asked], number(reach) + distance)
         np.clip(part, -cap, cap, out=part)
 
 
-def _distances_from(step: tuple[int, ...], steps: Steps) -> NDArray[np.float32]:
+def _distances_from(step: tuple[int, ...], steps: Steps) -> NDArray[np.float64]:
     """Return the distances of a brick's samples from the brick that is a step away, (9, 9, 9)."""
     at = np.arange(SIDE)
     along = {-1: at, 0: np.zeros(SIDE), 1: CELLS - at}
     z, y, x = (along[step[axis]] * steps[axis] for axis in range(3))
     squared = (z * z)[:, None, None] + (y * y)[:, None] + x * x
-    found: NDArray[np.float32] = np.sqrt(squared).astype(np.float32)
+    found: NDArray[np.float64] = np.sqrt(squared)
     return found
 
 
-def _least(values: NDArray[np.float32]) -> NDArray[np.float32]:
+def _least(values: NDArray[Any]) -> NDArray[Any]:
     """Return the least of the samples of each brick."""
     for axis in range(3):
         along = np.moveaxis(values, axis, 0)
@@ -229,9 +231,9 @@ def _least(values: NDArray[np.float32]) -> NDArray[np.float32]:
     return values
 
 
-def _gathered(values: NDArray[np.float32], places: NDArray[np.int64]) -> NDArray[np.float32]:
+def _gathered(values: NDArray[Any], places: NDArray[np.int64]) -> NDArray[Any]:
     """Return the samples of bricks, (n, 9, 9, 9)."""
-    found = np.empty((len(places), SIDE, SIDE, SIDE), np.float32)
+    found = np.empty((len(places), SIDE, SIDE, SIDE), values.dtype)
     for part in _parts(len(places)):
         z, y, x = places[part].T * CELLS
         rows = np.arange(SIDE)

@@ -22,6 +22,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.devices.resources import float_type
 from distal.diagnostics import LoadError, printable
 from distal.foreign_files import Memory, need, opened
 from distal.lang.resources import AXES
@@ -66,11 +67,11 @@ class VolumeSamples:
     """The samples of a volume.
 
     Attributes:
-        values: float32, (z, y, x).
+        values: float32, (z, y, x); float64 if 32 bits do not hold what the array has.
         spacing: The distance of two samples along x, y and z; None if the file does not say it.
     """
 
-    values: NDArray[np.float32]
+    values: NDArray[Any]
     spacing: tuple[float, float, float] | None
 
 
@@ -94,8 +95,8 @@ def read_volume(path: Path, max_memory: Memory | None = None) -> VolumeSamples:
         return read(data)
 
 
-def checked_samples(values: Any) -> NDArray[np.float32]:
-    """Return samples as float32.
+def checked_samples(values: Any) -> NDArray[Any]:
+    """Return samples as floats of 32 bits, or of 64 if 32 do not hold them exactly.
 
     Raises:
         LoadError: They are no numbers (z, y, x), too many, or not finite.
@@ -108,15 +109,16 @@ def checked_samples(values: Any) -> NDArray[np.float32]:
         raise LoadError(
             f"samples are numbers (z, y, x), 2 or more along each, not {array.dtype} {array.shape}"
         )
-    _check_count(array.shape)
+    type = float_type(array)
+    _check_count(array.shape, SAMPLE_BYTES * type.itemsize // 4)
     with np.errstate(over="ignore"):
-        samples = array.astype(np.float32)
+        samples = array.astype(type)
     if not np.isfinite(samples).all():
         raise LoadError("a sample is not finite")
     return np.ascontiguousarray(samples)
 
 
-def _check_count(sizes: Sequence[int]) -> int:
+def _check_count(sizes: Sequence[int], each: int = SAMPLE_BYTES) -> int:
     """Return the number of samples.
 
     Raises:
@@ -125,7 +127,7 @@ def _check_count(sizes: Sequence[int]) -> int:
     count = math.prod(sizes)
     if count > MOST_SAMPLES:
         raise LoadError(f"{count:,} samples are more than {MOST_SAMPLES:,}: leave some out")
-    need(count * SAMPLE_BYTES, f"{' x '.join(f'{size:,}' for size in sizes)} samples")
+    need(count * each, f"{' x '.join(f'{size:,}' for size in sizes)} samples")
     return count
 
 
@@ -134,19 +136,19 @@ class FieldSamples:
     """Samples as ``VolumeField`` takes them.
 
     Attributes:
-        values: float32, (z, y, x), negative inside.
+        values: Of the samples' type, (z, y, x), negative inside.
         size: The size of the cells of all samples together.
         scale: By what the values are multiplied, so that neighbors differ by at most their
             distance; 1 or less for distances.
     """
 
-    values: NDArray[np.float32]
+    values: NDArray[Any]
     size: tuple[float, float, float]
     scale: float
 
 
 def field_of(
-    samples: NDArray[np.float32],
+    samples: NDArray[Any],
     axes: str,
     spacing: tuple[float, float, float],
     level: float | None,
@@ -165,7 +167,7 @@ def field_of(
     """
     values = samples.transpose([axes.index(axis) for axis in AXES])
     if level is not None:
-        values = np.float32(level) - values
+        values = samples.dtype.type(level) - values
     if not (values < 0.0).any():
         low, high = float(samples.min()), float(samples.max())
         fix = "give level=" if level is None else "give another level"
@@ -182,7 +184,7 @@ def field_of(
     return FieldSamples(np.ascontiguousarray(values), size, 1.0 if is_fair else 1.0 / steepest)
 
 
-def _largest_step(values: NDArray[np.float32], axis: int) -> float:
+def _largest_step(values: NDArray[Any], axis: int) -> float:
     """Return the largest difference of neighbors along an axis, a slice at a time."""
     if axis == 0:
         pairs = itertools.pairwise(values)

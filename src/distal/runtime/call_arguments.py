@@ -25,7 +25,6 @@ def call_arguments(
     function: Func | Composed | LangFunction,
     args: Sequence[Any],
     kwargs: Mapping[str, Any],
-    dtype: np.dtype[Any],
 ) -> tuple[tuple[Type, ...], list[Any], list[Any]]:
     """Select the overload that accepts the arguments.
 
@@ -33,7 +32,6 @@ def call_arguments(
         function: The function to call.
         args: Values by position.
         kwargs: Values by name.
-        dtype: float32 or float64, to which the points are converted.
 
     Returns:
         The parameter types, the values in parameter order, and the values as arrays with one row
@@ -48,14 +46,14 @@ def call_arguments(
             raise TypeError(f"{function.row.name}() takes no keyword arguments")
         for signature in function.row.signatures:
             for types, _ in signature.instances():
-                rows = rows_of(args, types, dtype) if len(types) == len(args) else None
+                rows = rows_of(args, types) if len(types) == len(args) else None
                 if rows is not None:
                     return types, list(args), rows
     elif isinstance(function, Composed):
         types = tuple(type for _, type in function.signature)
         names = dict.fromkeys((name for name, _ in function.signature), MISSING)
         values = bind(function.name, names, args, kwargs)
-        rows = rows_of(values, types, dtype)
+        rows = rows_of(values, types)
         if rows is not None:
             return types, values, rows
     else:
@@ -70,7 +68,7 @@ def call_arguments(
             except TypeError as error:
                 mistake = error
                 continue
-            found = choose_types(declared, values, dtype)
+            found = choose_types(declared, values)
             if found is not None:
                 types, rows = found
                 return types, values, rows
@@ -107,5 +105,6 @@ def _described(value: Any) -> str:
     except ValueError:
         return f"a {type(value).__name__} whose parts differ in length"
     if shape:
-        return f"an array of shape {shape}"
+        dtype = np.asarray(value).dtype
+        return f"an array of shape {shape}" + ("" if dtype.kind in "fiu" else f" of {dtype}")
     return repr(value) if isinstance(value, int | float | str) else type(value).__name__

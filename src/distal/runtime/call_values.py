@@ -1,15 +1,15 @@
 """Convert Python values to arguments of scene functions, and results to Python values.
 
 Input: the arguments of a call of a ``@func``: numbers, vectors, lists, arrays of points. Output:
-the types of an overload and arrays with one row per point; and the reverse. Does not depend on a
-device.
+the types of an overload and arrays with one row per point; and the reverse. ``float_type`` says in
+which precision a call computes. Does not depend on a device.
 """
 
 from __future__ import annotations
 
 import dataclasses
 from collections import namedtuple
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from operator import itemgetter
 from typing import Any, TypeVar, assert_never
@@ -37,6 +37,8 @@ from distal.ir.types import (
 )
 from distal.lang.values import VALUE_CLASSES, MatrixValue, VectorValue
 
+# What holds numbers of Python, not an array of a type of its own.
+_PLAIN = (int, float, list, tuple, VectorValue, MatrixValue)
 _KINDS = {Kind.FLOAT: "fiub", Kind.INT: "iu", Kind.UINT: "iu", Kind.BOOL: "b"}
 
 
@@ -89,7 +91,7 @@ def bind(
 
 
 def choose_types(
-    header: FunctionSignature, values: Sequence[Any], dtype: np.dtype[Any]
+    header: FunctionSignature, values: Sequence[Any]
 ) -> tuple[tuple[Type, ...], list[Any]] | None:
     """Return parameter types that accept every value, and the converted values; else None.
 
@@ -98,7 +100,6 @@ def choose_types(
     Args:
         header: The signature of the function.
         values: One value per parameter.
-        dtype: The type of floats in the arrays.
     """
     variables: list[TypeVar] = []
     for slot in header.parameters:
@@ -112,21 +113,21 @@ def choose_types(
             types = tuple(to_type(s.annotation, bindings) for s in header.parameters)
         except (AnnotationError, UnboundVariableError):
             return None
-        rows = rows_of(values, types, dtype)
+        rows = rows_of(values, types)
         if rows is not None:
             return types, rows
     return None
 
 
-def rows_of(values: Sequence[Any], types: Sequence[Type], dtype: np.dtype[Any]) -> list[Any] | None:
+def rows_of(values: Sequence[Any], types: Sequence[Type]) -> list[Any] | None:
     """Return the values converted by ``lanes``; None if a value does not have its type.
 
     Args:
         values: One value per type; each may also be an array of values.
         types: The types of the parameters.
-        dtype: The type of floats in the arrays.
     """
     try:
+        dtype = float_type(values, types)
         return [lanes(v, t, dtype) for v, t in zip(values, types, strict=True)]
     except (TypeError, ValueError, OverflowError):
         return None
@@ -157,7 +158,7 @@ def lanes(value: Any, type: Type, dtype: np.dtype[Any]) -> Any:
                 value = np.array([tuple(c) for c in value]).T
             return _numbers(value, (size, size), Kind.FLOAT, dtype)
         case Array(element, length):
-            return _array(value, element, length, dtype)
+            return _elements(value, element, length, dtype)
         case Struct(_, fields):
             if not dataclasses.is_dataclass(value) and not isinstance(value, tuple):
                 raise TypeError(f"{value!r} is no {type}")
@@ -169,13 +170,44 @@ def lanes(value: Any, type: Type, dtype: np.dtype[Any]) -> Any:
             assert_never(type)
 
 
-def is_double(value: Any) -> bool:
-    """Return whether a value contains 64-bit NumPy floats, also in a struct."""
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return any(is_double(getattr(value, field.name)) for field in dataclasses.fields(value))
-    if isinstance(value, tuple):
-        return any(map(is_double, value))
-    return getattr(value, "dtype", None) == np.float64
+def float_type(values: Sequence[Any], types: Sequence[Type]) -> np.dtype[Any]:
+    """Return the type in which a call computes: float32 arrays in, float32 out; everything else 64.
+
+    It is float32 if floats come in float32 arrays, and in no array of another type. Beside such
+    arrays, a number or a vector of Python is read as float32, as in NumPy; a list of values for
+    several points has 64 bits. Arrays for ints and bools do not count.
+
+    Args:
+        values: One value per parameter.
+        types: The types of the parameters.
+    """
+    found = {is_single for v, t in zip(values, types, strict=True) for is_single in _arrays(v, t)}
+    return np.dtype(np.float32 if found == {True} else np.float64)
+
+
+def _arrays(value: Any, type: Type) -> Iterator[bool]:
+    """Yield for each array of floats in a value whether it is of 32 bits."""
+    match type:
+        case Struct(_, fields):
+            parts = value if isinstance(value, tuple) else [getattr(value, n, 0) for n, _ in fields]
+            for part, (_, of_part) in zip(parts, fields, strict=True):
+                yield from _arrays(part, of_part)
+        case Array(element) if _is_of_values(value, element):
+            for part in value:
+                yield from _arrays(part, element)
+        case Scalar(kind) | Vector(kind) | Array(Scalar(kind) | Vector(kind)):
+            if kind is Kind.FLOAT:
+                yield from _array(value, type)
+        case _:
+            yield from _array(value, type)
+
+
+def _array(value: Any, type: Type) -> Iterator[bool]:
+    if isinstance(value, np.generic) or not isinstance(value, _PLAIN):
+        dtype = np.asarray(value).dtype
+        yield dtype.kind == "f" and dtype.itemsize == 4
+    elif is_many(value, type):
+        yield False
 
 
 def _numbers(value: Any, shape: tuple[int, ...], kind: Kind, dtype: np.dtype[Any]) -> NDArray[Any]:
@@ -184,6 +216,8 @@ def _numbers(value: Any, shape: tuple[int, ...], kind: Kind, dtype: np.dtype[Any
         raise TypeError(f"{value!r} is a vector")
     if isinstance(value, VectorValue):
         value = tuple(value)
+    if isinstance(value, list) and not value:  # no points
+        return np.empty((0, *shape), _dtype(kind, dtype))
     array = np.asarray(value)
     if array.dtype.kind not in _KINDS[kind]:
         raise TypeError(f"{array.dtype} is not {kind.value}")
@@ -213,8 +247,14 @@ def _converted(array: NDArray[Any], kind: Kind, dtype: np.dtype[Any]) -> NDArray
             assert_never(kind)
 
 
-def _array(value: Any, element: Type, length: int, dtype: np.dtype[Any]) -> Any:
-    if isinstance(element, Scalar | Vector) and not isinstance(value, Collected):
+def _is_of_values(value: Any, element: Type) -> bool:
+    """Return whether an array of scene code is given as one value for each element."""
+    return isinstance(value, Collected) or not isinstance(element, Scalar | Vector)
+
+
+def _elements(value: Any, element: Type, length: int, dtype: np.dtype[Any]) -> Any:
+    if not _is_of_values(value, element):
+        assert isinstance(element, Scalar | Vector)
         shape = (length,) if isinstance(element, Scalar) else (length, element.size)
         if isinstance(value, list | tuple):
             value = [tuple(v) if isinstance(v, VectorValue) else v for v in value]
@@ -264,11 +304,11 @@ def is_many(value: Any, type: Type) -> bool:
     """Return whether the caller passed one value per point (even if there is one point only)."""
     match type:
         case Scalar():
-            return np.ndim(value) == 1
+            return _depth(value) == 1
         case Vector():
-            return not isinstance(value, VectorValue) and np.ndim(value) == 2
+            return not isinstance(value, VectorValue) and _depth(value) == 2
         case Matrix():
-            return not isinstance(value, MatrixValue) and np.ndim(value) == 3
+            return not isinstance(value, MatrixValue) and _depth(value) == 3
         case Struct(_, fields):
             if isinstance(value, tuple):
                 parts = list(value)
@@ -278,13 +318,19 @@ def is_many(value: Any, type: Type) -> bool:
         case Array(element, _) if isinstance(value, Collected):
             return any(is_many(v, element) for v in value)
         case Array(Scalar() | Vector() as element, _):
-            if isinstance(value, list | tuple):
-                value = [tuple(v) if isinstance(v, VectorValue) else v for v in value]
-            return np.ndim(value) == (2 if isinstance(element, Scalar) else 3)
+            return _depth(value) == (2 if isinstance(element, Scalar) else 3)
         case Array(element, _):
             return any(is_many(v, element) for v in value)
         case _:
             return False
+
+
+def _depth(value: Any) -> int:
+    """Return the number of axes of a value, without a look at all parts of a list."""
+    depth = 0
+    while isinstance(value, list | tuple | VectorValue) and len(value):
+        value, depth = value[0], depth + 1
+    return depth + int(np.ndim(value))
 
 
 def single(result: Any, type: Type) -> Any:

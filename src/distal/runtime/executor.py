@@ -37,7 +37,7 @@ from distal.loading import loaded_from
 from distal.render import film
 from distal.runtime import accumulation, glow, sampling
 from distal.runtime.call_arguments import call_arguments
-from distal.runtime.call_values import count, empty, is_double, is_many, single, with_names
+from distal.runtime.call_values import count, empty, float_type, is_many, single, with_names
 from distal.runtime.device_names import AUTO, CPU, GPU_FRAGMENT, REFERENCE
 from distal.runtime.earlier_frames import EarlierFrames
 from distal.runtime.frame_history import LiveFrames
@@ -375,9 +375,8 @@ class PythonExecutor(TapeExecutor):
             TypeError: No overload accepts the values.
         """
         seconds = checked_time(time)
-        double = any(map(is_double, [*args, *kwargs.values()]))
-        dtype = np.dtype(np.float64 if double else np.float32)
-        types, values, rows = call_arguments(function, args, kwargs, dtype)
+        types, values, rows = call_arguments(function, args, kwargs)
+        dtype = float_type(values, types)
         many = any(is_many(v, t) for v, t in zip(values, types, strict=True))
         points = count(rows)
         lowered = self.lower(function, types)
@@ -388,7 +387,7 @@ class PythonExecutor(TapeExecutor):
             return with_names(empty(result_type, dtype), result_type)
         kernel: Kernel
         if rows:
-            kernel = self.kernels.kernel(lowered, device, 64 if double else 32)
+            kernel = self.kernels.kernel(lowered, device, 8 * dtype.itemsize)
         else:  # compiling for a single value would take longer than the reference needs
             kernel = self.kernels.kernel(lowered, REFERENCE, 64)
         if here and rows and device == CPU:

@@ -132,7 +132,8 @@ class PhotonPasses:
         if time not in self.plans:
             self.plans[time] = self.plan.run(np.zeros((1, 2), np.float32), {}, time)
         low, high, widest = (np.asarray(part, np.float64)[0].tolist() for part in self.plans[time])
-        radius = executor().call(photons.shrunk, (widest, first), {}, device=REFERENCE)
+        given = (np.float32(widest), first)  # a picture's numbers have 32 bits
+        radius = executor().call(photons.shrunk, given, {}, device=REFERENCE)
         of_sample = photons.OF_A_SAMPLE * pixels
         of_map = int(min(max(of_sample, photons.FEWEST / count), photons.MOST / count))
         slots = 1 << max(of_map.bit_length() - 1, 4)

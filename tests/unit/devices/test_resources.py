@@ -87,7 +87,7 @@ def test_a_file_that_is_no_picture(tmp_path: Path) -> None:
 
 
 def test_buffers() -> None:
-    assert load(DeclaredBuffer([1.0, 2.5]), Buffer(FLOAT)).dtype == np.float32
+    assert load(DeclaredBuffer([1.0, 2.5]), Buffer(FLOAT)).dtype == np.float64
     assert load(DeclaredBuffer([1, -2]), Buffer(INT)).tolist() == [1, -2]
     assert load(DeclaredBuffer(np.array([4294967295], np.uint32)), Buffer(UINT)).tolist() == [
         4294967295

@@ -6,6 +6,7 @@ by a small program that calls the scene's functions and the same march as the pi
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -113,9 +114,9 @@ def probe(
     Raises:
         ValueError: The picture has no such pixel.
     """
-    place = place_of_pixel(pixel, size)
+    place = array("f", place_of_pixel(pixel, size))  # a picture's numbers have 32 bits
     program = _Program(scene, steered=steering is not None)
-    resolution = (float(size[0]), float(size[1]))
+    resolution = array("f", size)
     settings = steering.settings if steering is not None else None
     seen = executor().call(
         program, (place, resolution), {}, params=params, time=time, settings=settings

@@ -156,13 +156,14 @@ class BaseShape(Composed, Presentable):
         """Return the signed distance at points, negative inside.
 
         Args:
-            points: One array (n, 3), or (n, 2) for a flat shape; float32 or float64. A grid (an
-                array with more dimensions) is allowed too.
+            points: A point, or one array (n, 3), or (n, 2) for a flat shape. A grid (an array with
+                more dimensions) is allowed too.
             params: Values of parameters by name; the others have their defaults.
             time: Time in seconds.
 
         Returns:
-            An array of the shape of ``points`` without the last axis, of the same type.
+            A number; or an array of the shape of ``points`` without the last axis. Float32 arrays
+            in, float32 out; everything else is computed in 64 bits.
         """
         return self._asked(self, points, params, time)
 

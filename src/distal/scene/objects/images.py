@@ -80,7 +80,8 @@ def texture_light(texture: Texture2D, what: str, place: Span | None) -> NDArray[
         place: The author's line.
     """
     try:
-        return texels(texture.data, TextureShape.FLAT, max_memory=texture.max_memory)[::-1]
+        found = texels(texture.data, TextureShape.FLAT, max_memory=texture.max_memory)
+        return found.astype(np.float32, copy=False)[::-1]
     except LoadError as error:
         message = str(error)
         refuse(f"{what}: {message}", place=place)

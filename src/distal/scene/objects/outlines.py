@@ -185,8 +185,8 @@ def made_of(edges: Iterable[Edge], what: str, place: Span | None) -> DrawnOutlin
 
 
 def _numbers(edges: Sequence[Edge]) -> Any:
-    """Return two floats for each point; equal points are rounded in the same way."""
-    return np.array(edges, np.complex128).view(np.float64).astype(np.float32)
+    """Return two floats for each point."""
+    return np.array(edges, np.complex128).view(np.float64)
 
 
 def _corners(edges: Sequence[Edge], what: str, place: Span | None) -> tuple[complex, complex]:

@@ -121,17 +121,17 @@ def _chosen(kind: PartKind, chosen: NDArray[np.bool_]) -> PartKind:
 
 def row_data(
     kinds: Sequence[PartKind], factors: Sequence[Floats]
-) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+) -> tuple[Floats, NDArray[np.int64]]:
     """Return the rows of all parts, and the number of each part's first vec4.
 
     ``factors`` are the numbers that make distances of the parts' values, by kind.
     """
-    rows: list[NDArray[np.float32]] = []
+    rows: list[Floats] = []
     places: list[NDArray[np.int64]] = []
     begin = 0
     for k, kind in enumerate(kinds):
         count = len(kind.members)
-        made = np.zeros((count, 4 * kind.stride), np.float32)
+        made = np.zeros((count, 4 * kind.stride))
         made[:, 0] = k
         made[:, 1] = np.arange(count)
         for column, values in zip(kind.columns, columns_of(kind), strict=True):

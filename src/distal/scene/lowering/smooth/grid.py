@@ -76,7 +76,7 @@ class Members:
     kind: Whole
     ordinal: Whole
     places: Whole
-    rows: NDArray[np.float32]
+    rows: Floats
 
     def distances(self, points: Floats, which: NDArray[np.int32]) -> Floats:
         """Return the distances of points (n, 3) to members (n,)."""
