@@ -1,8 +1,8 @@
 """The solid between a triangle of a mesh and the surface, as scene code.
 
-Input: a field and the corners of a triangle. Output: integrals. Columns stand on the triangle, along
-its normal, and end at the surface: the triangle with its columns has the integrals of the solid to
-a higher order than the triangle alone. One row for each triangle.
+Input: a field and the corners of a triangle. Output: integrals. Columns stand on the triangle,
+along its normal, and end at the surface: the triangle with its columns has the integrals of the
+solid to a higher order than the triangle alone. One row for each triangle.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ from distal.mesh.arithmetic import OFF_SURFACE
 LONGEST = 0.5
 # How far beside a point the sign is looked at, in cells.
 CROSSED = 1e-3
-# Below this cosine between the normal of the triangle and that of the surface, they do not face each
-# other: the foot of the column is at a crease.
+# Below this cosine between the normal of the triangle and that of the surface, they do not face
+# each other: the foot of the column is at a crease.
 LEAST_COSINE = 0.3
 
 

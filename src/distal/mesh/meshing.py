@@ -271,6 +271,16 @@ def _endless_hint(node: Node, request: MeshRequest) -> str:
 
 
 def refuse_problem(node: Node, extent: Extent, problem: MeshProblem) -> NoReturn:
+    """Refuse a shape that cannot be meshed, with what to write instead.
+
+    Args:
+        node: The shape.
+        extent: Its box.
+        problem: What prevents a mesh.
+
+    Raises:
+        SceneValueError: Always.
+    """
     where = "" if problem.place is None else f" at {shown_place(problem.place)}"
     match problem.kind:
         case "no number":
@@ -311,6 +321,16 @@ def _refuse_too_fine(node: Node, found: TooFine, wanted: Wanted) -> NoReturn:
 
 
 def refuse_nothing(node: Node, found: Nothing, request: MeshRequest) -> NoReturn:
+    """Refuse a shape without a mesh, with what to write instead.
+
+    Args:
+        node: The shape.
+        found: What was looked at.
+        request: What was asked.
+
+    Raises:
+        SceneValueError: Always.
+    """
     if not len(found.lost):
         refuse(f"'{node.name}' has no inside: its values are positive everywhere", None, node.place)
     part = part_at(node, found.lost[0], request.params, request.time)

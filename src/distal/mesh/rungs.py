@@ -23,12 +23,11 @@ from distal.mesh.problems import MeshProblem
 from distal.mesh.solid import Floats
 from distal.mesh.spacing import MOST_BRICKS
 
-# The first meshes have this many cells along the largest side of the box.
-_FIRST: Final = 32.0
 _FINER: Final = 1.6
 # Without a tolerance the cells become finer until there are so many along the largest side, and so
 # many triangles: small parts in a wide box have few of them.
 _CELLS: Final = 128.0
+_FIRST: Final = _CELLS / _FINER**3  # of the first mesh
 _TRIANGLES: Final = 40_000
 _EXACT: Final = 1e-7  # or until the error of the volume is this share
 # No mesh has more bricks than these: without a tolerance, and with one of the volume.
@@ -49,6 +48,7 @@ _THICK: Final = 0.02
 _ORDER: Final = _FINER**2
 _LAST_AREA: Final = 2.5
 _BEFORE_AREA: Final = 1.2
+_SAME: Final = 1.0 + 1e-9  # of powers of the ratio
 _ROUNDING: Final = 1e-12
 
 
@@ -119,7 +119,7 @@ def climbed(
     smallest = extent.size / _CELLS if step is None else min(step, extent.size / _CELLS)
     while cells < _MOST_CELLS:
         spacing = extent.size / cells
-        must = spacing * _FINER > smallest
+        must = spacing * _FINER > smallest * _SAME
         if sampled * _ORDER > (MOST_BRICKS if must else most) and found.last is not None:
             break
         lines = _LINES * extent.size * (_CELLS / cells) ** 2
@@ -146,9 +146,9 @@ def climbed(
                 # Coarser meshes did not show them either.
                 found.estimate = None
             _take(found, rungs, extent)
-        if spacing <= smallest and _enough(found, volume_tolerance):
+        if spacing <= smallest * _SAME and _enough(found, volume_tolerance):
             break
-        if isinstance(made, Nothing) and not len(found.lost) and spacing <= smallest:
+        if isinstance(made, Nothing) and not len(found.lost) and spacing <= smallest * _SAME:
             break
         cells *= _FINER
     error = None if found.estimate is None else found.estimate.volume
