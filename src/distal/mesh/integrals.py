@@ -35,7 +35,6 @@ class Integrals:
         inertia: The inertia tensor about the center of mass, for density 1.
         columns: The volume between mesh and surface, without signs.
         rough: How far the columns may be off, since the surface bends sharply in some.
-        lost: Whether the mesh misses parts.
         triangles: How many triangles the mesh has.
     """
 
@@ -46,7 +45,6 @@ class Integrals:
     inertia: Floats
     columns: float
     rough: float
-    lost: bool
     triangles: int
 
 
@@ -96,6 +94,5 @@ def integrals_of(kernels: FieldKernels, found: Extracted, extent: Extent) -> Int
         inertia=inertia,
         columns=float(added[:, 2].sum()),
         rough=float(np.sqrt((added[:, 1] ** 2).sum())),
-        lost=len(found.lost) > 0,
         triangles=len(triangles),
     )

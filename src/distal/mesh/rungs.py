@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from distal.ir.types import FLOAT, VEC3
+from distal.ir.types import FLOAT, VEC3, Type
 from distal.mesh import column_arithmetic
 from distal.mesh.extract import Extent, Extracted, Nothing, extracted
 from distal.mesh.integrals import Integrals, integrals_of
@@ -46,8 +46,8 @@ _COLUMNS: Final = 2e-4
 _THICK: Final = 0.02
 # Of an area: its error is of the second order on smooth faces.
 _ORDER: Final = _FINER**2
-_LAST_AREA: Final = 2.5
-_BEFORE_AREA: Final = 1.2
+_LAST_AREA: Final = 3.0
+_SMOOTH: Final = 1e-3
 _SAME: Final = 1.0 + 1e-9  # of powers of the ratio
 _ROUNDING: Final = 1e-12
 
@@ -164,7 +164,7 @@ def _missed(kernels: FieldKernels, made: Extracted | Nothing, step: float) -> Fl
     lost = made.lost
     if not len(lost):
         return lost
-    types = [("p", VEC3), ("step", FLOAT)]
+    types: list[tuple[str, Type]] = [("p", VEC3), ("step", FLOAT)]
     crosses = kernels.call(
         column_arithmetic.crosses_surface, lost, np.full(len(lost), step), types=types
     )
@@ -189,8 +189,8 @@ def _enough(found: Climbed, volume_tolerance: float | None) -> bool:
     """Return whether no finer mesh is needed."""
     if found.estimate is None or found.last is None or len(found.lost):
         return False
-    if volume_tolerance is not None:
-        return found.estimate.volume <= volume_tolerance
+    if volume_tolerance is not None and found.estimate.volume > volume_tolerance:
+        return False
     exact = found.estimate.volume <= _EXACT * abs(found.estimate.integrals.volume)
     return exact or found.last.triangles >= _TRIANGLES
 
@@ -210,7 +210,7 @@ def estimated(rungs: Sequence[Integrals], extent: Extent) -> Estimate:
         _ROUNDING * size,
         DIGIT * far * fine.area,
     )
-    area, area_error = _area(coarse.area, middle.area, fine.area)
+    area, area_error = _area(rungs)
     half = 0.5 * extent.size
     share = volume / size if size else 1.0
     return Estimate(
@@ -245,13 +245,17 @@ def _spread(coarse: float | Floats, middle: float | Floats, fine: float | Floats
     return float(max(last, _BEFORE * np.abs(np.subtract(middle, coarse)).max()))
 
 
-def _area(coarse: float, middle: float, fine: float) -> tuple[float, float]:
+def _area(rungs: Sequence[Integrals]) -> tuple[float, float]:
     """Return an area and its error: extrapolated where three meshes show the second order."""
+    coarse, middle, fine = (rung.area for rung in rungs)
     last, before = fine - middle, middle - coarse
-    order = before / last if last else 0.0
     least = _ROUNDING * abs(fine)
-    if not 0.75 * _ORDER < order < 1.33 * _ORDER:
-        return fine, max(_LAST_AREA * abs(last), _BEFORE_AREA * abs(before), least)
+    order = before / last if last else 0.0
+    # At creases, areas can show an order by chance.
+    smooth = rungs[-1].rough <= _SMOOTH * rungs[-1].columns
+    if not smooth or not 0.75 * _ORDER < order < 1.33 * _ORDER:
+        spread = max(abs(last) * _LAST_AREA, 2.0 * abs(before), 2.0 * abs(last + before))
+        return fine, max(spread, least)
     step = last / (_ORDER - 1.0)
     # The more the order differs, the less it is trusted.
     doubt = min(1.0, 0.05 + 6.0 * abs(order / _ORDER - 1.0))
