@@ -20,7 +20,7 @@ SMALL_BALLS = union(
 )
 
 
-@pytest.mark.parametrize("number", [0, 5, 7, 12, 16, 18, 24, 47])
+@pytest.mark.parametrize("number", [7, 16, 24, 47])
 def test_closed_volumes_are_within_their_errors(number):
     closed = solid(number, 1)
     found = closed.shape.measure()

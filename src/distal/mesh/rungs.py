@@ -29,7 +29,8 @@ _FINER: Final = 1.6
 _CELLS: Final = 128.0
 _FIRST: Final = _CELLS / _FINER**3  # of the first mesh
 _TRIANGLES: Final = 40_000
-_EXACT: Final = 1e-7  # or until the error of the volume is this share
+_USUAL: Final = 1e-3  # and the error of the volume is this share,
+_EXACT: Final = 1e-7  # or until it is this one
 # No mesh has more bricks than these: without a tolerance, and with one of the volume.
 _BRICKS: Final = 12_000
 _BRICKS_OF_TOLERANCE: Final = 40_000
@@ -191,8 +192,8 @@ def _enough(found: Climbed, volume_tolerance: float | None) -> bool:
         return False
     if volume_tolerance is not None and found.estimate.volume > volume_tolerance:
         return False
-    exact = found.estimate.volume <= _EXACT * abs(found.estimate.integrals.volume)
-    return exact or found.last.triangles >= _TRIANGLES
+    share = found.estimate.volume / max(abs(found.estimate.integrals.volume), 1e-300)
+    return share <= _EXACT or (share <= _USUAL and found.last.triangles >= _TRIANGLES)
 
 
 def estimated(rungs: Sequence[Integrals], extent: Extent) -> Estimate:
