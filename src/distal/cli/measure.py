@@ -39,6 +39,13 @@ def measure(
     density: Annotated[float, typer.Option(help="The mass of a unit of volume.")] = 1.0,
     tolerance: ToleranceOption = None,
     feature: FeatureOption = None,
+    volume_tolerance: Annotated[
+        float | None,
+        typer.Option(
+            metavar="VOLUME",
+            help="Cells become finer until the error of the volume is at most this.",
+        ),
+    ] = None,
     overhang: Annotated[
         float,
         typer.Option(
@@ -76,6 +83,8 @@ def measure(
         raise UsageError(f"--density is a number above 0, not {density:g}")
     if not 0.0 <= overhang <= 90.0:
         raise UsageError(f"--overhang is an angle from 0 to 90 degrees, not {overhang:g}")
+    if volume_tolerance is not None and not 0.0 < volume_tolerance < float("inf"):
+        raise UsageError(f"--volume-tolerance is a number above 0, not {volume_tolerance:g}")
     _check_effort(width, work, proved=proved)
     shape, values, seconds = load_solid(scene, assignments, at)
     with ProgressBar("measuring") as progress:
@@ -90,6 +99,7 @@ def measure(
             proved=proved,
             width=width,
             work=work,
+            volume_tolerance=volume_tolerance,
         )
     if as_json:
         answer(json.dumps({**found.as_json(), "name": shape.name}))
@@ -127,6 +137,8 @@ def report_lines(found: Measures) -> Iterator[str]:
     yield f"gap      {_width(found.gap)}"
     yield f"overhang {_overhang(found.overhang)}"
     yield f"errors   {found.how}"
+    for warning in found.warnings:
+        yield f"warning  {warning}"
     if found.brackets is not None:
         yield from _bracket_lines(found.brackets)
 

@@ -25,7 +25,7 @@ from distal.mesh.bricks import Slopes, SurfaceBricks, surface_bricks
 from distal.mesh.cell_tree import CornerValues, balanced
 from distal.mesh.joining import JOINED_LEVELS
 from distal.mesh.kernels import FieldKernels
-from distal.mesh.lattice import BRICK, Lattice, cells_of_keys, keys_of
+from distal.mesh.lattice import BRICK, DIGIT_OF_FILES, Lattice, cells_of_keys, keys_of
 from distal.mesh.places import cell_points, margin_of, move_beyond, roots_of
 from distal.mesh.problems import MeshProblem
 from distal.mesh.reach import reached
@@ -181,6 +181,7 @@ def extracted(
     most: int,
     watch: Callable[[float], None],
     joined: float | None = None,
+    digit: float = DIGIT_OF_FILES,
 ) -> Extracted | Nothing:
     """Return the mesh at one spacing.
 
@@ -193,11 +194,12 @@ def extracted(
         watch: Called with the share of the work that is done.
         joined: Cells are joined where the surface moves by less, in scene units; None for equal
             cells.
+        digit: The rounding of places, as a share.
 
     Raises:
         MeshProblem: The shape cannot be meshed.
     """
-    lattice = Lattice.over(extent.low, extent.high, step)
+    lattice = Lattice.over(extent.low, extent.high, step, digit)
     if margin_of(lattice) > MOST_MARGIN:
         raise MeshProblem("too far", tuple(extent.low))
     found = surface_bricks(

@@ -14,6 +14,8 @@ import numpy.typing as npt
 
 from distal.mesh.solid import Bools, Floats, Integers
 
+DIGIT_OF_FILES: Final = 2.0**-23
+DIGIT: Final = 2.0**-52
 BRICK: Final = 8  # cells along each side of a brick
 # A key has 21 bits for each coordinate, which may be negative for cells beside the lattice.
 _SHIFT: Final = 8
@@ -32,24 +34,27 @@ class Lattice:
         origin: The lowest lattice point.
         step: The length of a cell, in scene units.
         extent: How many bricks there are along each axis.
+        digit: The rounding of its places, as a share: that of 32 bits, which files have, or of 64.
     """
 
     origin: Floats
     step: float
     extent: Integers
+    digit: float = DIGIT_OF_FILES
 
     @staticmethod
-    def over(low: Floats, high: Floats, step: float) -> Lattice:
+    def over(low: Floats, high: Floats, step: float, digit: float = DIGIT_OF_FILES) -> Lattice:
         """Return the lattice over a box.
 
         Args:
             low: The lowest corner of the box.
             high: Its highest corner.
             step: The length of a cell.
+            digit: The rounding of its places, as a share.
         """
         origin = low - BEFORE * step
         cells = (high + BEYOND * step - origin) / step
-        return Lattice(origin, step, np.ceil(cells / BRICK).astype(np.int64))
+        return Lattice(origin, step, np.ceil(cells / BRICK).astype(np.int64), digit)
 
     def places(self, points: npt.NDArray[Any]) -> Floats:
         """Return the places of lattice points; shares of a cell are allowed."""

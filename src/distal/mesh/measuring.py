@@ -1,15 +1,14 @@
 """Measures of a solid: volume, area, center of mass, inertia, box, walls, gaps and overhang.
 
-Input: a shape and a density. Output: numbers with errors. They are integrals over the triangles of
-two meshes (divergence theorem); the error of the finer mesh is taken from the difference.
-
-Source: Brian Mirtich, "Fast and Accurate Computation of Polyhedral Mass Properties" (1996), for the
-    integrals; here as sums over tetrahedra.
+Input: a shape and a density. Output: numbers with errors. They are integrals over meshes of ever
+finer cells, whose differences give the errors (``rungs``); the volume and its error are held within
+bounds that intervals prove (``brackets``).
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
@@ -18,25 +17,36 @@ import numpy as np
 from distal.mesh import triangle_arithmetic
 from distal.mesh.brackets import Brackets, brackets_of
 from distal.mesh.certain_boxes import MOST_BOXES, Effort
-from distal.mesh.extract import Extent, Extracted, Nothing, extracted
+from distal.mesh.extract import Extent, Extracted
 from distal.mesh.kernels import FieldKernels, rows_of
-from distal.mesh.meshing import MeshRequest, extent_of, found_mesh
+from distal.mesh.meshing import (
+    MeshRequest,
+    above,
+    extent_of,
+    found_mesh,
+    refuse_nothing,
+    refuse_problem,
+    shown_place,
+)
 from distal.mesh.overhangs import Overhang, overhang_of
+from distal.mesh.problems import MeshProblem
 from distal.mesh.requests import watch_of
-from distal.mesh.solid import Floats
-from distal.mesh.spacing import MOST_BRICKS
+from distal.mesh.rungs import Climbed, climbed, unconfirmed
+from distal.mesh.spacing import BALL_CELLS
 from distal.mesh.widths import Width, WidthSearch
 from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.node import Node
 
 if TYPE_CHECKING:
     from distal.scene.objects.meshable import Meshable
 
-# At least so many cells along the largest side of the box.
-_CELLS: Final = 128
 OVERHANG_DEG: Final = 45.0
-# The coarser mesh has cells this much longer.
-_COARSER: Final = 1.6
-_HOW: Final = "meshes with cells of {:.4g} and {:.4g}: the difference is the error"
+# How many boxes the proof of the volume looks at, if no proof is asked for.
+_BOXES: Final = 10_000
+# A box is computed in 32 bits: so much wider is one far from the origin.
+_BOX_ROUNDING: Final = 2.0**-22
+_HOW: Final = "meshes with cells down to {:.4g}: their differences are the errors"
+_PROVED: Final = "; the volume is within the bounds that are proved"
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +85,7 @@ class Measures:
         brackets: Proved bounds; None if they were not asked for.
         density: The mass of a unit of volume.
         how: How the numbers and their errors were found.
+        warnings: What is missing or not certain, with its place.
     """
 
     volume: Quantity
@@ -91,6 +102,7 @@ class Measures:
     brackets: Brackets | None
     density: float
     how: str
+    warnings: tuple[str, ...] = ()
 
     @property
     def feature(self) -> Width | None:
@@ -115,19 +127,8 @@ class Measures:
             "proved": self.brackets and self.brackets.as_json(),
             "density": self.density,
             "how": self.how,
+            "warnings": list(self.warnings),
         }
-
-
-@dataclass(frozen=True, slots=True)
-class _Integrals:
-    """Integrals over a mesh."""
-
-    volume: float
-    area: float
-    center: Floats
-    inertia: Floats
-    low: Floats
-    high: Floats
 
 
 def measures_of(
@@ -136,42 +137,60 @@ def measures_of(
     request: MeshRequest,
     overhang_deg: Any = OVERHANG_DEG,
     effort: Effort | None = None,
+    volume_tolerance: Any = None,
 ) -> Measures:
     """Return the measures of a solid; see ``Shape.measure``.
 
     Args:
         shape: The solid.
         density: The mass of a unit of volume.
-        request: The tolerance of the finer mesh.
+        request: The tolerance of a mesh whose cells are reached at least.
         overhang_deg: The angle to the horizontal, in degrees, up to which faces need support.
-        effort: How long to look for proved bounds; None for none.
+        effort: How long to look for proved bounds; None if they are not asked for.
+        volume_tolerance: How large the error of the volume may be, in scene units cubed.
 
     Raises:
-        SceneValueError: The density is no number above 0, the angle is not one from 0 to 90, or the
-            shape has no mesh.
+        SceneValueError: A number is out of range, the shape has no mesh, or the tolerance of the
+            volume is not reached.
     """
     node = shape.node
-    valid = isinstance(density, int | float) and not isinstance(density, bool)
-    if not valid or not 0.0 < density < math.inf:
-        refuse(f"a density is a number above 0, not {density!r:.40}", "density=1.24e-3")
+    for name, value, hint in (
+        ("density", density, "1.24e-3"),
+        ("volume_tolerance", 1.0 if volume_tolerance is None else volume_tolerance, "0.01"),
+    ):
+        valid = isinstance(value, int | float) and not isinstance(value, bool)
+        if not valid or not 0.0 < value < math.inf:
+            refuse(f"a {name} is a number above 0, not {value!r:.40}", f"{name}={hint}")
     if not is_angle(overhang_deg):
         words = f"an overhang is an angle from 0 to 90 degrees, not {overhang_deg!r:.40}"
         refuse(words, "overhang_deg=45")
     if node.flat:
         refuse_kind(f"'{node.name}' is flat, and has no volume", ".extrude(height)", node.place)
-    found, wanted, kernels = found_mesh(node, request)
-    extent = extent_of(node, request)
-    found = _finer(kernels, extent, found, wanted.tolerance, request)
-    rough = _rough(kernels, extent, found, wanted.tolerance, request)
-    fine = _integrals(found, extent)
-    coarse = _integrals(rough, extent)
-    printed = _printed(kernels, extent, found, float(overhang_deg))
-    measures = _measures(extent, found, rough, (fine, coarse), printed, float(density))
-    if effort is None:
-        return measures
+    extent = _widened(extent_of(node, request))
+    step = None
+    if request.tolerance is not None or request.feature is not None:
+        step = found_mesh(node, replace(request, progress=None))[0].step
+    kernels = FieldKernels(node, request.params, request.time)
+    try:
+        found = climbed(kernels, extent, watch_of(request), volume_tolerance, step)
+    except MeshProblem as problem:
+        refuse_problem(node, extent, problem)
+    if found.finest is None:
+        assert found.nothing is not None
+        refuse_nothing(node, replace(found.nothing, lost=found.lost), request)
     watch = watch_of(replace(request, progress=None))
-    brackets = brackets_of(kernels, extent, watch, effort, float(density))
-    return replace(measures, brackets=brackets)
+    brackets = brackets_of(kernels, extent, watch, effort or Effort(0.0, _BOXES), float(density))
+    measures = _measures(kernels, extent, found, brackets, float(density), float(overhang_deg))
+    if volume_tolerance is not None and measures.volume.error > volume_tolerance:
+        error = measures.volume.error
+        refuse(
+            f"the volume of '{node.name}' is {measures.volume.value:.10g} with an error of "
+            f"{error:.2g}, more than its tolerance, {volume_tolerance:g}: finer cells than "
+            f"{found.finest.step:.2g} are too many",
+            f"volume_tolerance={above(error):.2g}",
+            node.place,
+        )
+    return replace(measures, brackets=None) if effort is None else measures
 
 
 def effort_of(width: Any, work: Any, *, proved: bool) -> Effort | None:
@@ -198,131 +217,117 @@ def is_angle(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value <= 90
 
 
+def _widened(extent: Extent) -> Extent:
+    """Return a box that holds the shape where 32 bits round the corners of its box."""
+    margin = _BOX_ROUNDING * np.maximum(np.abs(extent.low), np.abs(extent.high)).max()
+    if margin < _BOX_ROUNDING * 64.0 * extent.size:
+        return extent
+    return replace(extent, low=extent.low - margin, high=extent.high + margin)
+
+
 def _printed(
-    kernels: FieldKernels, extent: Extent, found: Extracted, overhang_deg: float
+    kernels: FieldKernels, extent: Extent, finest: Extracted, overhang_deg: float
 ) -> tuple[Width | None, Width | None, Overhang]:
     """Return the thinnest wall, the narrowest gap, and what hangs over."""
-    made = found.made
+    made = finest.made
     middles = rows_of(
         triangle_arithmetic.middle, *(made.points[made.triangles[:, i]] for i in range(3))
     )
     search = WidthSearch(kernels, extent.slopes.slope, extent.size)
-    wall, gap = (search.smallest(middles, found.step, side) for side in (-1, 1))
-    bed = max(found.accuracy.largest, 1e-6 * extent.size)
+    wall, gap = (search.smallest(middles, finest.step, side) for side in (-1, 1))
+    bed = max(finest.accuracy.largest, 1e-6 * extent.size)
     return wall, gap, overhang_of(kernels, made.points, made.triangles, overhang_deg, bed)
 
 
-def _finer(
-    kernels: FieldKernels,
-    extent: Extent,
-    found: Extracted,
-    tolerance: float,
-    request: MeshRequest,
-) -> Extracted:
-    """Return a mesh of equal cells if it is finer: integrals need more than a tolerance does.
+def _within(value: float, error: float, brackets: Brackets) -> tuple[float, float, bool]:
+    """Return a volume and an error that agree with what is proved, and whether they did before.
 
     Args:
-        kernels: The shape.
-        extent: Its box.
-        found: The mesh.
-        tolerance: How far lines may be from the surface.
-        request: What was asked.
+        value: The volume that meshes give.
+        error: Its error.
+        brackets: What is proved of it.
     """
-    step = extent.size / _CELLS
-    if found.step <= step:
-        return found
-    watch = watch_of(replace(request, progress=None))
-    made = extracted(kernels, extent, step, tolerance, MOST_BRICKS, watch)
-    return found if isinstance(made, Nothing) else made
-
-
-def _rough(
-    kernels: FieldKernels,
-    extent: Extent,
-    found: Extracted,
-    tolerance: float,
-    request: MeshRequest,
-) -> Extracted:
-    """Return a coarser mesh of the same shape; a finer one if the coarser one has nothing.
-
-    Args:
-        kernels: The shape.
-        extent: Its box.
-        found: The mesh.
-        tolerance: How far lines may be from the surface.
-        request: What was asked.
-    """
-    watch = watch_of(replace(request, progress=None))
-    for factor in (_COARSER, 1.0 / _COARSER):
-        # Errors are quadratic in the spacing: with the same share of fans, they can be compared.
-        allowed = tolerance * factor**2
-        made = extracted(kernels, extent, found.step * factor, allowed, MOST_BRICKS, watch)
-        if not isinstance(made, Nothing):
-            return made
-    return found
-
-
-def _integrals(found: Extracted, extent: Extent) -> _Integrals:
-    """Return the integrals over a mesh."""
-    origin = (extent.low + extent.high) / 2.0
-    points = found.made.points - origin
-    corners = [points[found.made.triangles[:, i]] for i in range(3)]
-    volumes, areas, first, squares, products = rows_of(triangle_arithmetic.moments, *corners)
-    volume = float(volumes.sum())
-    moment, square, product = first.sum(axis=0), squares.sum(axis=0), products.sum(axis=0)
-    center = moment / volume
-    second = np.diag(square)
-    second[[0, 1, 2], [1, 2, 0]] = second[[1, 2, 0], [0, 1, 2]] = product
-    about = second - volume * np.outer(center, center)
-    inertia = np.trace(about) * np.eye(3) - about
-    low, high = points.min(axis=0) + origin, points.max(axis=0) + origin
-    return _Integrals(volume, float(areas.sum()), center + origin, inertia, low, high)
+    if brackets.slope is not None:
+        return value, error, True
+    lower, upper = brackets.volume
+    agrees = value + error >= lower and value - error <= upper
+    inside = min(max(value, lower), upper)
+    farthest = max(upper - inside, inside - lower)
+    # A volume that is moved keeps what its error held.
+    error = min(error + abs(inside - value), farthest) if agrees else farthest
+    return inside, max(error, 1e-15 * abs(inside)), agrees
 
 
 def _measures(
+    kernels: FieldKernels,
     extent: Extent,
-    found: Extracted,
-    rough: Extracted,
-    integrals: tuple[_Integrals, _Integrals],
-    printed: tuple[Width | None, Width | None, Overhang],
+    found: Climbed,
+    brackets: Brackets,
     density: float,
+    overhang_deg: float,
 ) -> Measures:
-    """Return the measures from two meshes.
+    """Return the measures from meshes.
 
     Args:
+        kernels: The shape.
         extent: The conservative box.
-        found: The finer mesh.
-        rough: The coarser one.
-        integrals: Those over the finer and the coarser mesh.
-        printed: The thinnest wall, the narrowest gap, and what hangs over.
+        found: What the meshes give.
+        brackets: What is proved.
         density: The mass of a unit of volume.
+        overhang_deg: The angle up to which faces need support.
     """
-    fine, coarse = integrals
-    wall, gap, overhang = printed
-    # To first order, the volume between mesh and surface is at most this.
-    between = found.accuracy.mean * fine.area
-    distance = max(found.accuracy.largest, found.accuracy.from_surface)
-
-    def number(name: str, factor: float = 1.0, least: float = 0.0) -> Quantity:
-        value, other = np.asarray(getattr(fine, name)), np.asarray(getattr(coarse, name))
-        # Two meshes may agree by chance; sums of 64 bits are no better than this.
-        least = max(least, 1e-12 * float(np.abs(value).max()))
-        error = max(float(np.abs(value - other).max()), least)
-        return Quantity((value * factor).tolist(), error * factor)
-
+    finest, last = found.finest, found.last
+    assert finest is not None and last is not None
+    estimate = found.estimate or unconfirmed(last, extent)
+    whole = estimate.integrals
+    volume, error, agrees = _within(whole.volume, estimate.volume, brackets)
+    points = finest.made.points
+    low, high = points.min(axis=0), points.max(axis=0)
+    distance = max(finest.accuracy.largest, finest.accuracy.from_surface)
+    complete = agrees and found.estimate is not None
+    if not complete:
+        # Missing parts may be anywhere in the box.
+        distance = float(max(distance, (low - extent.low).max(), (extent.high - high).max()))
+        if not agrees:
+            estimate = unconfirmed(whole, extent)
+    wall, gap, overhang = _printed(kernels, extent, finest, overhang_deg)
     return Measures(
-        volume=number("volume", least=between),
-        area=number("area"),
-        mass=number("volume", density, between),
-        center=number("center"),
-        inertia=number("inertia", density),
-        low=Quantity(fine.low.tolist(), distance),
-        high=Quantity(fine.high.tolist(), distance),
+        volume=Quantity(volume, error),
+        area=Quantity(estimate.area_value, estimate.area),
+        mass=Quantity(volume * density, error * density),
+        center=Quantity(whole.center.tolist(), estimate.center),
+        inertia=Quantity((whole.inertia * density).tolist(), estimate.inertia * density),
+        low=Quantity(low.tolist(), distance),
+        high=Quantity(high.tolist(), distance),
         bounds=(tuple(extent.low.tolist()), tuple(extent.high.tolist())),
         wall=wall,
         gap=gap,
         overhang=overhang,
-        brackets=None,
+        brackets=brackets,
         density=density,
-        how=_HOW.format(found.step, rough.step),
+        how=_HOW.format(whole.step) + (_PROVED if brackets.slope is None else ""),
+        warnings=tuple(_warnings(kernels.node, found, brackets, agrees=agrees)),
     )
+
+
+def _warnings(node: Node, found: Climbed, brackets: Brackets, *, agrees: bool) -> Iterator[str]:
+    """Yield what is missing or not certain."""
+    finest = found.finest
+    assert finest is not None
+    thin = BALL_CELLS * finest.step
+    if len(found.lost):
+        yield (
+            f"'{node.name}' is thinner than {thin:.3g} at {shown_place(found.lost[0])}: parts of "
+            f"it are missing; give a smaller feature=, such as {thin / 4.0:.2g}"
+        )
+    elif not agrees:
+        lower, upper = brackets.volume
+        yield (
+            f"the meshes miss parts of '{node.name}': its volume is proved to be {lower:.6g} to "
+            f"{upper:.6g}; give a smaller feature=, such as {thin / 4.0:.2g}"
+        )
+    elif found.estimate is None:
+        yield (
+            f"fewer than three meshes show all parts of '{node.name}': errors are as large as the "
+            f"values, or what is proved; give a smaller feature=, such as {thin / 4.0:.2g}"
+        )

@@ -221,13 +221,13 @@ def found_mesh(node: Node, request: MeshRequest) -> tuple[Extracted, Wanted, Fie
     try:
         found = meshed(kernels, extent, first, watch_of(request))
     except MeshProblem as problem:
-        _refuse_problem(node, extent, problem)
+        refuse_problem(node, extent, problem)
     if isinstance(found, TooFine):
         if found.tolerance is not None:
             found = replace(found, tolerance=found.tolerance / share)
         _refuse_too_fine(node, found, wanted)
     if isinstance(found, Nothing):
-        _refuse_nothing(node, found, request)
+        refuse_nothing(node, found, request)
     return found, wanted, kernels
 
 
@@ -270,7 +270,17 @@ def _endless_hint(node: Node, request: MeshRequest) -> str:
     return "intersect it with a box: shape & Box(…); an own function takes bounds=(low, high)"
 
 
-def _refuse_problem(node: Node, extent: Extent, problem: MeshProblem) -> NoReturn:
+def refuse_problem(node: Node, extent: Extent, problem: MeshProblem) -> NoReturn:
+    """Refuse a shape that cannot be meshed, with what to write instead.
+
+    Args:
+        node: The shape.
+        extent: Its box.
+        problem: What prevents a mesh.
+
+    Raises:
+        SceneValueError: Always.
+    """
     where = "" if problem.place is None else f" at {shown_place(problem.place)}"
     match problem.kind:
         case "no number":
@@ -310,7 +320,17 @@ def _refuse_too_fine(node: Node, found: TooFine, wanted: Wanted) -> NoReturn:
     refuse(f"{many} tolerance, {wanted.tolerance:g}, {about}", hint, node.place)
 
 
-def _refuse_nothing(node: Node, found: Nothing, request: MeshRequest) -> NoReturn:
+def refuse_nothing(node: Node, found: Nothing, request: MeshRequest) -> NoReturn:
+    """Refuse a shape without a mesh, with what to write instead.
+
+    Args:
+        node: The shape.
+        found: What was looked at.
+        request: What was asked.
+
+    Raises:
+        SceneValueError: Always.
+    """
     if not len(found.lost):
         refuse(f"'{node.name}' has no inside: its values are positive everywhere", None, node.place)
     part = part_at(node, found.lost[0], request.params, request.time)

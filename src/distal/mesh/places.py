@@ -15,7 +15,7 @@ import numpy as np
 from distal.ir.types import FLOAT, VEC3, Array, Type
 from distal.mesh import arithmetic, face_arithmetic
 from distal.mesh.kernels import FieldKernels, rows_of
-from distal.mesh.lattice import BRICK, Lattice
+from distal.mesh.lattice import BRICK, DIGIT_OF_FILES, Lattice
 from distal.mesh.parallel import parallel_map, pieces, slices_of
 from distal.mesh.solid import Bools, Floats, Integers
 from distal.mesh.tables import cell_tables
@@ -23,7 +23,7 @@ from distal.mesh.topology import Topology
 
 SMALLEST_MARGIN: Final = 1e-4
 # Points are kept this far away from sides of cells: 8 units in the last place of 32 bits.
-SIDE_MARGIN: Final = 8.0 * 2.0**-23
+SIDE_MARGIN: Final = 8.0 * DIGIT_OF_FILES
 # The share of the way that is kept free in front of the planes around a region.
 REGION_MARGIN: Final = 0.02
 _MOST_ROOTS: Final = 12  # of one point at a crease
@@ -55,7 +55,8 @@ def margins_of(lattice: Lattice, size: Integers) -> Floats:
     """
     far = lattice.places(lattice.extent * BRICK)
     largest = float(max(np.abs(lattice.origin).max(), np.abs(far).max()))
-    found: Floats = np.maximum(SMALLEST_MARGIN, SIDE_MARGIN * largest / (lattice.step * size))
+    rounding = SIDE_MARGIN * (lattice.digit / DIGIT_OF_FILES) * largest
+    found: Floats = np.maximum(SMALLEST_MARGIN, rounding / (lattice.step * size))
     return found
 
 

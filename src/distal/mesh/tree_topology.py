@@ -50,7 +50,8 @@ def levels_of(lattice: Lattice) -> int:
 
 def of_units(lattice: Lattice, levels: int) -> Lattice:
     """Return the lattice of cells that are halved some times."""
-    return Lattice(lattice.origin, lattice.step / 2.0**levels, lattice.extent << levels)
+    step, extent = lattice.step / 2.0**levels, lattice.extent << levels
+    return Lattice(lattice.origin, step, extent, lattice.digit)
 
 
 @dataclass(frozen=True, slots=True)

@@ -86,15 +86,19 @@ class Meshable(Placed):
         proved: bool = False,
         width: float | None = None,
         work: int | None = None,
+        volume_tolerance: float | None = None,
     ) -> Measures:
         """Return volume, area, mass, center of mass, inertia and box, each with its error.
 
-        They are those of meshes of two spacings, whose difference gives the error. The thinnest
-        wall, the narrowest gap and what hangs over are there too, with place, shape and line.
+        They are those of meshes of ever finer cells, whose differences give the errors. The volume
+        is never outside the bounds that intervals prove; parts that the meshes miss are named in
+        ``warnings``. The thinnest wall, the narrowest gap and what hangs over are there too, with
+        place, shape and line.
 
         Args:
             density: Mass of a unit of volume.
-            tolerance: How far the finer mesh may be from the surface, as for ``mesh``.
+            tolerance: Cells are at least as fine as those of ``mesh`` with this tolerance. A finer
+                one never enlarges the error of the volume.
             params: Values of parameters by name; the others have their defaults.
             time: Time in seconds.
             progress: Called with the finished share, from 0 to 1.
@@ -107,10 +111,13 @@ class Meshable(Placed):
                 (``brackets`` of the result).
             width: With ``proved``: stop when the bounds of the volume are this close, as a share.
             work: With ``proved``: how many boxes are looked at, at most; None: a million.
+            volume_tolerance: How large the error of the volume may be, in scene units cubed; cells
+                become finer until it is reached. None: the usual work.
 
         Raises:
             CompileError: The shape's scene code has mistakes.
-            SceneValueError: The shape has no mesh, or a number is out of range.
+            SceneValueError: The shape has no mesh, a number is out of range, or the tolerance of
+                the volume needs too many cells; the message says which error is reached.
         """
         request = meshing.MeshRequest(
             tolerance=tolerance,
@@ -122,4 +129,4 @@ class Meshable(Placed):
             colors=False,
         )
         effort = measuring.effort_of(width, work, proved=proved)
-        return measuring.measures_of(self, density, request, overhang_deg, effort)
+        return measuring.measures_of(self, density, request, overhang_deg, effort, volume_tolerance)

@@ -1,0 +1,263 @@
+"""Meshes of ever finer cells, and what they say together of a solid's integrals.
+
+Input: a shape's kernels and box, and how exact the volume must be. Output: integrals with errors,
+and the finest mesh. The spacings are always the same, whatever is asked, and the result is the one
+of the smallest error: to ask for more never makes an error larger.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+
+from distal.ir.types import FLOAT, VEC3, Type
+from distal.mesh import column_arithmetic
+from distal.mesh.extract import Extent, Extracted, Nothing, extracted
+from distal.mesh.integrals import Integrals, integrals_of
+from distal.mesh.kernels import FieldKernels
+from distal.mesh.lattice import DIGIT
+from distal.mesh.problems import MeshProblem
+from distal.mesh.solid import Floats
+from distal.mesh.spacing import MOST_BRICKS
+
+_FINER: Final = 1.6
+# Without a tolerance the cells become finer until there are so many along the largest side, and so
+# many triangles: small parts in a wide box have few of them.
+_CELLS: Final = 128.0
+_FIRST: Final = _CELLS / _FINER**3  # of the first mesh
+_TRIANGLES: Final = 40_000
+_USUAL: Final = 1e-3  # and the error of the volume is this share,
+_EXACT: Final = 1e-7  # or until it is this one
+# No mesh has more bricks than these: without a tolerance, and with one of the volume.
+_BRICKS: Final = 12_000
+_BRICKS_OF_TOLERANCE: Final = 40_000
+# At 128 cells along a side, lines may be this far from the surface, as a share of that side.
+_LINES: Final = 2e-3
+_MOST_CELLS: Final = 1 << 20  # along a side: a key has 21 bits
+_SHOWN: Final = 3  # meshes that show an order
+# How errors follow from differences and from the volume between mesh and surface; measured on
+# random solids with closed volumes (tests/mesh/closed_volumes.py).
+_LAST: Final = 2.0
+_BEFORE: Final = 1.0
+_ROUGH: Final = 8.0
+_COLUMNS: Final = 2e-4
+_THICK: Final = 0.02
+# Of an area: its error is of the second order on smooth faces.
+_ORDER: Final = _FINER**2
+_LAST_AREA: Final = 3.0
+_SMOOTH: Final = 1e-3
+_SAME: Final = 1.0 + 1e-9  # of powers of the ratio
+_ROUNDING: Final = 1e-12
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """The integrals that three meshes give.
+
+    Attributes:
+        integrals: Those of the finest; its area is extrapolated if the three show its order.
+        volume: The error of the volume.
+        area: That of the area.
+        center: That of the center of mass.
+        inertia: That of the inertia.
+    """
+
+    integrals: Integrals
+    area_value: float
+    volume: float
+    area: float
+    center: float
+    inertia: float
+
+
+@dataclass(slots=True)
+class Climbed:
+    """What meshes of ever finer cells give.
+
+    Attributes:
+        finest: The finest mesh.
+        estimate: The estimate of the smallest error; None if no three meshes have all parts.
+        last: The integrals of the finest mesh.
+        lost: Places of parts that the finest mesh misses.
+        reached: Whether the error of the volume is as small as was asked.
+        nothing: The finest spacing at which there was no mesh, if there was no mesh at all.
+    """
+
+    finest: Extracted | None = None
+    estimate: Estimate | None = None
+    last: Integrals | None = None
+    lost: Floats = field(default_factory=lambda: np.zeros((0, 3)))
+    reached: bool = True
+    nothing: Nothing | None = None
+
+
+def climbed(
+    kernels: FieldKernels,
+    extent: Extent,
+    watch: Callable[[float], None],
+    volume_tolerance: float | None = None,
+    step: float | None = None,
+) -> Climbed:
+    """Return what meshes of ever finer cells give.
+
+    Args:
+        kernels: The shape.
+        extent: Its box.
+        watch: Called with the share of the work that is done.
+        volume_tolerance: How large the error of the volume may be; None for the usual work.
+        step: The length of a cell that must be reached; None for the usual one.
+
+    Raises:
+        MeshProblem: The shape has no mesh.
+    """
+    found = Climbed()
+    rungs: list[Integrals] = []
+    cells, sampled, done = _FIRST, 0, 0.0
+    most = _BRICKS if volume_tolerance is None else _BRICKS_OF_TOLERANCE
+    smallest = extent.size / _CELLS if step is None else min(step, extent.size / _CELLS)
+    while cells < _MOST_CELLS:
+        spacing = extent.size / cells
+        must = spacing * _FINER > smallest * _SAME
+        if sampled * _ORDER > (MOST_BRICKS if must else most) and found.last is not None:
+            break
+        lines = _LINES * extent.size * (_CELLS / cells) ** 2
+
+        def inner(share: float, base: float = done) -> None:
+            watch(base + 0.5 * share * (1.0 - base))
+
+        try:
+            made = extracted(kernels, extent, spacing, lines, MOST_BRICKS, inner, digit=DIGIT)
+        except MeshProblem as problem:
+            if problem.kind == "too many" and found.last is not None:
+                break
+            raise
+        done += 0.5 * (1.0 - done)
+        sampled = made.sampled
+        found.lost = _missed(kernels, made, spacing)
+        if isinstance(made, Nothing):
+            found.nothing = made
+        else:
+            found.finest = made
+            found.last = integrals_of(kernels, made, extent)
+            rungs = [] if len(found.lost) else [*rungs, found.last]
+            if len(found.lost):
+                # Coarser meshes did not show them either.
+                found.estimate = None
+            _take(found, rungs, extent)
+        if spacing <= smallest * _SAME and _enough(found, volume_tolerance):
+            break
+        if isinstance(made, Nothing) and not len(found.lost) and spacing <= smallest * _SAME:
+            break
+        cells *= _FINER
+    error = None if found.estimate is None else found.estimate.volume
+    found.reached = volume_tolerance is None or (error is not None and error <= volume_tolerance)
+    return found
+
+
+def _missed(kernels: FieldKernels, made: Extracted | Nothing, step: float) -> Floats:
+    """Return the places of the parts that a mesh misses.
+
+    Where two members of a union touch, the value is 0 inside the solid: that is no surface.
+    """
+    lost = made.lost
+    if not len(lost):
+        return lost
+    types: list[tuple[str, Type]] = [("p", VEC3), ("step", FLOAT)]
+    crosses = kernels.call(
+        column_arithmetic.crosses_surface, lost, np.full(len(lost), step), types=types
+    )
+    return np.asarray(lost[np.asarray(crosses, bool)])
+
+
+def _take(found: Climbed, rungs: Sequence[Integrals], extent: Extent) -> None:
+    """Take the estimate of the last three meshes if its error is the smallest."""
+    if len(rungs) < _SHOWN:
+        return
+    estimate = estimated(rungs[-_SHOWN:], extent)
+    best = found.estimate
+    # An earlier one that excludes what the finer meshes say was wrong.
+    if best is not None:
+        off = abs(best.integrals.volume - estimate.integrals.volume)
+        if off <= best.volume + estimate.volume and best.volume < estimate.volume:
+            return
+    found.estimate = estimate
+
+
+def _enough(found: Climbed, volume_tolerance: float | None) -> bool:
+    """Return whether no finer mesh is needed."""
+    if found.estimate is None or found.last is None or len(found.lost):
+        return False
+    if volume_tolerance is not None and found.estimate.volume > volume_tolerance:
+        return False
+    share = found.estimate.volume / max(abs(found.estimate.integrals.volume), 1e-300)
+    return share <= _EXACT or (share <= _USUAL and found.last.triangles >= _TRIANGLES)
+
+
+def estimated(rungs: Sequence[Integrals], extent: Extent) -> Estimate:
+    """Return the integrals of three meshes, from coarse to fine, with errors."""
+    coarse, middle, fine = rungs
+    far = max(float(np.abs(extent.low).max()), float(np.abs(extent.high).max()))
+    size = abs(fine.volume)
+    # Thick columns say that the mesh does not see the shape.
+    thick = min(1.0, fine.columns / (_THICK * size)) if size else 1.0
+    volume = max(
+        _spread(coarse.volume, middle.volume, fine.volume),
+        _ROUGH * fine.rough,
+        _COLUMNS * fine.columns,
+        2.0 * fine.columns * thick**2,
+        _ROUNDING * size,
+        DIGIT * far * fine.area,
+    )
+    area, area_error = _area(rungs)
+    half = 0.5 * extent.size
+    share = volume / size if size else 1.0
+    return Estimate(
+        integrals=fine,
+        area_value=area,
+        volume=volume,
+        area=max(area_error, share * area),
+        center=max(
+            _spread(coarse.center, middle.center, fine.center), half * share, DIGIT * 8.0 * far
+        ),
+        inertia=max(_spread(coarse.inertia, middle.inertia, fine.inertia), half**2 * volume),
+    )
+
+
+def unconfirmed(integrals: Integrals, extent: Extent) -> Estimate:
+    """Return the estimate of a mesh that may miss parts: its errors are as large as its values."""
+    reach = float(np.linalg.norm(extent.high - extent.low))
+    volume = abs(integrals.volume) + integrals.columns
+    return Estimate(
+        integrals=integrals,
+        area_value=integrals.area,
+        volume=volume,
+        area=integrals.area,
+        center=reach,
+        inertia=max(float(np.abs(integrals.inertia).max()), volume * reach**2),
+    )
+
+
+def _spread(coarse: float | Floats, middle: float | Floats, fine: float | Floats) -> float:
+    """Return the error of the finest of three values, from their differences."""
+    last = _LAST * np.abs(np.subtract(fine, middle)).max()
+    return float(max(last, _BEFORE * np.abs(np.subtract(middle, coarse)).max()))
+
+
+def _area(rungs: Sequence[Integrals]) -> tuple[float, float]:
+    """Return an area and its error: extrapolated where three meshes show the second order."""
+    coarse, middle, fine = (rung.area for rung in rungs)
+    last, before = fine - middle, middle - coarse
+    least = _ROUNDING * abs(fine)
+    order = before / last if last else 0.0
+    # At creases, areas can show an order by chance.
+    smooth = rungs[-1].rough <= _SMOOTH * rungs[-1].columns
+    if not smooth or not 0.75 * _ORDER < order < 1.33 * _ORDER:
+        spread = max(abs(last) * _LAST_AREA, 2.0 * abs(before), 2.0 * abs(last + before))
+        return fine, max(spread, least)
+    step = last / (_ORDER - 1.0)
+    # The more the order differs, the less it is trusted.
+    doubt = min(1.0, 0.05 + 6.0 * abs(order / _ORDER - 1.0))
+    return fine + step, max(doubt * abs(step), least)
