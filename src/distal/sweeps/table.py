@@ -230,11 +230,12 @@ def _line(cells: Sequence[str]) -> bytes:
 def _whole_rows(text: str) -> list[list[str]]:
     """Return the rows of a table; without the last one if it was cut off."""
     rows = []
-    reader = csv.reader(io.StringIO(text, newline=""))
+    reader = csv.reader(io.StringIO(text, newline=""), strict=True)
     try:
-        rows = [row for row in reader if row]
+        rows.extend(row for row in reader if row)
     except csv.Error as error:
-        raise SaveError(f"line {reader.line_num}: {error}") from None
+        if "unexpected end" not in str(error):  # of what is between quotation marks
+            raise SaveError(f"line {reader.line_num}: {error}") from None
     if rows and not text.endswith(("\n", "\r")):
         rows.pop()
     if rows and len(rows[-1]) != len(rows[0]):
@@ -252,7 +253,7 @@ def _values(cells: Mapping[str, str], prefix: str) -> dict[str, Any]:
     }
     if not any(found.values()):
         return {}
-    return {n: (text if n in _TEXTS else _number(text)) for n, text in found.items()}
+    return {n: (text or None) if n in _TEXTS else _number(text) for n, text in found.items()}
 
 
 def _number(text: str) -> int | float | str | None:
