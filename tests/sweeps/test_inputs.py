@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from distal import packages
 from distal.cli.application import application
 from distal.lang import choice, color, integer, point, slider, toggle
-from distal.packages import PackageError
 from distal.sweeps import drawing, inputs, parameter_sets
 from distal.sweeps.columns import TIME
 from distal.sweeps.inputs import inputs_of, read_inputs
@@ -59,11 +59,11 @@ def test_files(text, sets, tmp_path):
 @pytest.mark.parametrize(
     ("data", "words"),
     [
-        (b"", "it is empty: its first line has the names of parameters"),
+        (b"", "it is empty"),
         (b"\xef\xbb\xbf\n\n", "it is empty: its first line has the names of parameters"),
         (b"width\n", "it has names of parameters, and no values below them"),
-        (b"width,wide\n1,1", "there is no parameter 'wide'; a sweep takes width, scale, count, lit, "
-         "kind, tint, place, \u0448\u0438\u0440\u0438\u043d\u0430, time"),
+        (b"width,wide\n1,1", "there is no parameter 'wide'; a sweep takes width, scale, count, "
+         "lit, kind, tint, place, \u0448\u0438\u0440\u0438\u043d\u0430, time"),
         (b"width,Width\n1,1", "'Width' has two columns: 'width' and 'Width'"),
         (b"tint,tint.r\n#fff,1", "'Tint' has two columns: 'tint' and 'tint.r'"),
         (b"tint.r,tint.g\n1,1", "'Tint' has no column 'tint.b'"),
@@ -80,13 +80,14 @@ def test_files(text, sets, tmp_path):
         (b"count\n2.5", "line 2, column 'count': 'Count' takes a whole number, not '2.5'"),
         (b"kind\neven", "line 2, column 'kind': 'Kind' takes one of plain, odd, a, b, not 'even'"),
         (b"time\nsoon", "line 2, column 'time': time is a number of seconds, not 'soon'"),
-        (b"tint.r,tint.g,tint.b\n1,1,2", "line 2, column 'tint.r', 'tint.g', 'tint.b': 'Tint' takes "
-         "numbers from 0 to 1, not 1,1,2"),
+        (b"tint.r,tint.g,tint.b\n1,1,2", "line 2, column 'tint.r', 'tint.g', 'tint.b': 'Tint' "
+         "takes numbers from 0 to 1, not 1,1,2"),
         (b"\xff\xfew\x00", "it is text in UTF-16; save it as UTF-8"),
         (b"width\n\xff", "it is not text in UTF-8"),
         (b"width\n1\x00", "it is no text"),
         (b'width\n"1', "line 2: unexpected end of data"),
-        (b"width\n" + b"1\n" * 100_001, "a sweep has at most 100000 pictures, and the list has more"),
+        (b"width\n" + b"1\n" * 100_001,
+         "a sweep has at most 100000 pictures, and the list has more"),
     ],
 )  # fmt: skip
 def test_wrong_files(data, words, tmp_path):
@@ -204,9 +205,11 @@ def test_wrong_draws(count, values, options, words, shown):
 
 
 def test_sobol_without_scipy(shown, monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "scipy", None)
-    monkeypatch.setitem(__import__("sys").modules, "scipy.stats", None)
-    with pytest.raises(PackageError, match=r"pip install 'distal\[design\]'"):
+    def missing(module):
+        raise ModuleNotFoundError(f"No module named '{module}'", name="scipy")
+
+    monkeypatch.setattr(packages.importlib, "import_module", missing)
+    with pytest.raises(packages.PackageError, match=r"pip install 'distal\[design\]'"):
         parameter_sets(None, 4, method="sobol")
 
 
