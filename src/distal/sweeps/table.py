@@ -229,7 +229,7 @@ def _line(cells: Sequence[str]) -> bytes:
 
 def _whole_rows(text: str) -> list[list[str]]:
     """Return the rows of a table; without the last one if it was cut off."""
-    rows = []
+    rows: list[list[str]] = []
     reader = csv.reader(io.StringIO(text, newline=""), strict=True)
     try:
         rows.extend(row for row in reader if row)
