@@ -43,7 +43,7 @@ from distal.scene.objects.lettering import text_outline
 from distal.scene.objects.outlines import svg_path
 from distal.sounds.reading import read as read_sound
 from distal.sweeps.inputs import inputs_of, read_inputs
-from distal.sweeps.table import Table
+from distal.sweeps.table import SweepTable
 from distal.triangles import decode, encode
 from distal.triangles.range_coder import CoderError
 from distal.video.animation import _frame
@@ -124,7 +124,7 @@ def _read_list(path: Path) -> object:
 
 def _read_table(path: Path) -> object:
     inputs = inputs_of({"width": [0.25, 0.5], "tint": "#fff;#000"}, _PARAMETERS)
-    return Table(path, inputs, (), (), files=False).earlier(fresh=False)
+    return SweepTable(path, inputs, (), (), files=False).earlier(fresh=False)
 
 
 def _points() -> list[list[float]]:

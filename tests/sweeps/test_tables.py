@@ -18,7 +18,7 @@ from distal import Box, Scene
 from distal.file_writer import SaveError, only_writer
 from distal.lang import choice, color, integer, point, slider, toggle
 from distal.sweeps.solid_measures import SolidMeasures
-from distal.sweeps.table import Table, _whole_rows
+from distal.sweeps.table import SweepTable, _whole_rows
 
 # All words of tables, with the labels of the issue and others.
 WORDS = (
@@ -111,7 +111,7 @@ def test_a_table_reads_back_to_the_bit(tmp_path, monkeypatch):
 
     inputs = inputs_of(sets, parameters)
     assert [inputs.named(i) for i in range(len(sets))] == sets
-    table = Table(tmp_path / "t.csv", inputs, ("brightness",), (), files=False)
+    table = SweepTable(tmp_path / "t.csv", inputs, ("brightness",), (), files=False)
     from distal.sweeps.table import SweepRow  # noqa: PLC0415
 
     with table.open({}):
@@ -120,7 +120,9 @@ def test_a_table_reads_back_to_the_bit(tmp_path, monkeypatch):
     again = read_inputs(tmp_path / "t.csv", parameters)
     assert again.sets == inputs.sets
     assert [repr(again.named(i)) for i in range(len(sets))] == [repr(s) for s in sets]
-    rows = Table(tmp_path / "t.csv", again, ("brightness",), (), files=False).earlier(fresh=False)
+    rows = SweepTable(tmp_path / "t.csv", again, ("brightness",), (), files=False).earlier(
+        fresh=False
+    )
     assert [repr(rows[i + 1].picture["brightness"]) for i in range(len(sets))] == [
         repr(s["slider"] / 3.0) for s in sets
     ]

@@ -172,7 +172,7 @@ def _checked(column: InputColumn, value: Any, where: str) -> Any:
 
 
 @dataclass(frozen=True, slots=True)
-class _Place:
+class _ColumnCells:
     """Where the cells of a column are: their numbers from 0, and the names of the columns."""
 
     column: InputColumn
@@ -238,7 +238,7 @@ def _count_of_cells(line: int, row: Sequence[str], header: Sequence[str]) -> str
     return words
 
 
-def _places(header: Sequence[str], parameters: Sequence[Parameter]) -> list[_Place]:
+def _places(header: Sequence[str], parameters: Sequence[Parameter]) -> list[_ColumnCells]:
     """Return where the values of each column are."""
     is_table = any(name.startswith(INPUT) for name in header)
     if len(header) == 1 and any(mark in header[0] for mark in ";\t"):
@@ -274,18 +274,18 @@ def _named(name: str, parameters: Sequence[Parameter]) -> tuple[InputColumn, str
         raise
 
 
-def _place(column: InputColumn, parts: Mapping[str, tuple[int, str]]) -> _Place:
+def _place(column: InputColumn, parts: Mapping[str, tuple[int, str]]) -> _ColumnCells:
     if "" in parts:
         number, name = parts[""]
-        return _Place(column, (number,), (name,))
+        return _ColumnCells(column, (number,), (name,))
     for part in column.parts:
         if part not in parts:
             raise ValueError(f"'{column.label}' has no column '{column.name}.{part}'")
     ordered = [parts[part] for part in column.parts]
-    return _Place(column, tuple(n for n, _ in ordered), tuple(name for _, name in ordered))
+    return _ColumnCells(column, tuple(n for n, _ in ordered), tuple(name for _, name in ordered))
 
 
-def _of_row(place: _Place, row: Sequence[str], line: int) -> Any:
+def _of_row(place: _ColumnCells, row: Sequence[str], line: int) -> Any:
     cells = [row[number] for number in place.cells]
     for cell, name in zip(cells, place.headers, strict=True):
         if not cell.strip():

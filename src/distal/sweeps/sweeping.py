@@ -33,7 +33,7 @@ from distal.scene.viewing.viewable import Viewable, viewable
 from distal.sweeps.inputs import Inputs, inputs_of
 from distal.sweeps.sheet import Sheet
 from distal.sweeps.solid_measures import MEASURES, SolidMeasures, checked_solid
-from distal.sweeps.table import KEY, SweepRow, Table
+from distal.sweeps.table import KEY, SweepRow, SweepTable
 from distal.version import __version__
 
 if TYPE_CHECKING:
@@ -195,7 +195,7 @@ class _Sweep:
     def measures(self, path: Path, fresh: bool) -> FinishedSweep:
         """Measure all solids, and render nothing."""
         check_destination(path)
-        table = Table(path, self.inputs, (), (KEY, *MEASURES), files=False)
+        table = SweepTable(path, self.inputs, (), (KEY, *MEASURES), files=False)
         rows = self._current(table.earlier(fresh=fresh))
         rows = {number: row for number, row in rows.items() if row.measured}
         needs = [i for i in self._indices if i + 1 not in rows]
@@ -275,10 +275,10 @@ class _Sweep:
     def _indices(self) -> range:
         return range(len(self.inputs.sets))
 
-    def _table(self, path: Path, *, files: bool) -> Table:
+    def _table(self, path: Path, *, files: bool) -> SweepTable:
         figures = (KEY, *_FIGURES) if files else _FIGURES
         measures = () if self.solid is None else (KEY, *MEASURES)
-        return Table(path, self.inputs, figures, measures, files=files)
+        return SweepTable(path, self.inputs, figures, measures, files=files)
 
     def _moving(self, index: int) -> moving_picture.MovingPicture:
         """Return the picture of a set of values."""
@@ -366,7 +366,7 @@ class _Sweep:
             indices = sorted(i for i, error in self.failed.items() if error.shared)
 
     def _finished(
-        self, path: Path, table: Table, pictures: int, rendered: int | None = None
+        self, path: Path, table: SweepTable, pictures: int, rendered: int | None = None
     ) -> FinishedSweep:
         rows = tuple(table.rows[number] for number in sorted(table.rows))
         rendered = pictures if rendered is None else rendered

@@ -61,7 +61,7 @@ class SweepRow:
         }
 
 
-class Table:
+class SweepTable:
     """A table of a sweep.
 
     Attributes:
