@@ -94,14 +94,6 @@ def _anything_random(draw):
     }
 
 
-def _scene_of(parameters):
-    """A scene that has the parameters; what it looks like does not matter here."""
-    p = parameters
-    size = 1.0 + 1e-31 * p["slider"] + 1e-12 * p["integer"]
-    box = Box((size, 1.0, 1.0)).paint(p["color"])
-    return Scene(box)
-
-
 def test_a_table_reads_back_to_the_bit(tmp_path, monkeypatch):
     """As the inputs of the next sweep; by Python's csv, whatever is in an option."""
     draw = random.Random(4)
@@ -120,9 +112,8 @@ def test_a_table_reads_back_to_the_bit(tmp_path, monkeypatch):
     again = read_inputs(tmp_path / "t.csv", parameters)
     assert again.sets == inputs.sets
     assert [repr(again.named(i)) for i in range(len(sets))] == [repr(s) for s in sets]
-    rows = SweepTable(tmp_path / "t.csv", again, ("brightness",), (), files=False).earlier(
-        fresh=False
-    )
+    table = SweepTable(tmp_path / "t.csv", again, ("brightness",), (), files=False)
+    rows = table.earlier(fresh=False)
     assert [repr(rows[i + 1].picture["brightness"]) for i in range(len(sets))] == [
         repr(s["slider"] / 3.0) for s in sets
     ]
