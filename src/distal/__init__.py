@@ -44,6 +44,7 @@ _HAND_WRITTEN = {
     "distal.scene.points.scatter": ("points_in", "points_on"),
     "distal.scene.scene": ("Scene",),
     "distal.scene.steering": ("Steering",),
+    "distal.sweeps.drawing": ("parameter_sets",),
     "distal.sweeps.sweeping": ("sweep",),
 }
 _MODULE_OF = {

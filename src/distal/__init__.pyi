@@ -52,6 +52,7 @@ from distal.scene.points.scatter import points_in as points_in
 from distal.scene.points.scatter import points_on as points_on
 from distal.scene.scene import Scene as Scene
 from distal.scene.steering import Steering as Steering
+from distal.sweeps.drawing import parameter_sets as parameter_sets
 from distal.sweeps.sweeping import sweep as sweep
 from distal.scene.objects.backgrounds import DeclaredBackground as _DeclaredBackground
 from distal.scene.objects.backgrounds import DeclaredSurroundings as _DeclaredSurroundings
@@ -3626,6 +3627,7 @@ __all__ = [
     "outdoor",
     "palette",
     "paper",
+    "parameter_sets",
     "pattern",
     "place",
     "plaster",

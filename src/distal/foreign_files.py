@@ -100,6 +100,8 @@ KINDS: Final = {
     "EXR": _picture("EXR", 2**33),
     "triangles": _one("{file} is no picture as triangles: {reason}", 2**26),
     "lesson": _one("cannot read {file}: {reason}", 2**24),
+    "list": _one("{file}: {reason}", 2**26),
+    "table": _one("{file} cannot be read: {reason}", 2**28),
 }
 
 

@@ -77,6 +77,7 @@ PACKAGES: Final = (
     Package("markdown-it-py", "lessons", "pages of lessons", "markdown_it"),
     Package("pygments", "lessons", "pages of lessons"),
     Package("manifold3d", "mesh", "meshes with fewer triangles"),
+    Package("scipy", "design", "Sobol points"),
     Package("distributed", "cluster", "rendering on more than one machine"),
     Package("cryptography", "cluster", "the keys of --cluster local"),
     Package("websockets", "studio", "the studio in a browser"),

@@ -31,6 +31,7 @@ from distal.file_writer import SaveError
 from distal.images import exr, jpeg, picture_files, png
 from distal.images.metadata import ReadError
 from distal.ir.types import TextureShape
+from distal.lang import color, slider
 from distal.lessons import reading as lessons
 from distal.mesh.files.formats import write
 from distal.polygons import volumes
@@ -41,6 +42,8 @@ from distal.runtime.film_files import FilmFile
 from distal.scene.objects.lettering import text_outline
 from distal.scene.objects.outlines import svg_path
 from distal.sounds.reading import read as read_sound
+from distal.sweeps.inputs import inputs_of, read_inputs
+from distal.sweeps.table import SweepTable
 from distal.triangles import decode, encode
 from distal.triangles.range_coder import CoderError
 from distal.video.animation import _frame
@@ -51,6 +54,14 @@ REFUSALS: Final = (LoadError, CompileError, SaveError, ReadError, LinkError, Cod
 EXTREMES: Final = (0, 1, 0x7F, 0x80, 0xFF, 0x7FFF, 0xFFFF, 2**31 - 1, 2**31, 2**32 - 1, 2**63)
 FLOATS: Final = (float("inf"), float("nan"), 1e38, -1e38, 1e-45, 65504.0)
 WORDS: Final = ("0", "-1", "1e308", "nan", "65536", "4294967295", "99999999999999999999", "1e-400")
+
+
+_PARAMETERS: Final = (slider("Width", 0.5), color("Tint", "#fff"))
+_LIST: Final = b"width,tint\n0.25,#ffffff\n" + 20 * b'1e-1,"0.1,0.2,1"\n'
+_TABLE: Final = (
+    b"number,input.width,input.tint.r,input.tint.g,input.tint.b,measured.volume,measured.remark\n"
+    b'1,0.25,1.0,1.0,1.0,0.3333333333333333,\n2,0.25,0.0,0.0,0.0,,"nothing, of it"\n'
+)
 
 
 @dataclass(frozen=True)
@@ -102,6 +113,18 @@ def _text_ply() -> bytes:
     rows = [" ".join(f"{v:g}" for v in (*p, *p)) for p in points.tolist()]
     rows += ["3 " + " ".join(map(str, t)) for t in triangles.tolist()]
     return (head + "\n".join(rows) + "\n").encode()
+
+
+def _read_list(path: Path) -> object:
+    try:
+        return read_inputs(path, _PARAMETERS)
+    except ValueError as error:  # what callers of a sweep get
+        raise LoadError(str(error)) from None
+
+
+def _read_table(path: Path) -> object:
+    inputs = inputs_of({"width": [0.25, 0.5], "tint": "#fff;#000"}, _PARAMETERS)
+    return SweepTable(path, inputs, (), (), files=False).earlier(fresh=False)
 
 
 def _points() -> list[list[float]]:
@@ -370,6 +393,8 @@ SUBJECTS: Final = (
         lambda path: decode(path.read_bytes()),
     ),
     Subject("lesson", "a.md", lambda: _LESSON, lessons.read),
+    Subject("list", "a.csv", lambda: _LIST, _read_list),
+    Subject("table", "a.csv", lambda: _TABLE, _read_table),
     Subject(
         "link",
         "link.txt",

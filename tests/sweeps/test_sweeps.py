@@ -18,6 +18,7 @@ from distal.devices.base import Cancelled
 from distal.file_writer import SaveError
 from distal.images.png import quantise
 from distal.lang import Frame, choice, color, image, integer, slider, toggle, vec3
+from distal.mesh import measuring
 from distal.sweeps.axes import axis_of
 
 AMOUNT = slider("Amount", 0.5, 0.0, 1.0)
@@ -92,10 +93,10 @@ def test_a_sheet_shows_each_picture_at_its_place(tmp_path):
         np.testing.assert_array_equal(sheet[y, x], pixel)
     with open(made.table, encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert [row["count"] for row in rows[:4]] == ["3", "3", "6", "6"]
-    assert [row["time"] for row in rows[:2]] == ["0", "2"]
+    assert [row["input.count"] for row in rows[:4]] == ["3", "3", "6", "6"]
+    assert [row["input.time"] for row in rows[:2]] == ["0.0", "2.0"]
     light = 0.2126 * 0.5 + 0.7152 * 3 / 9
-    assert float(rows[4]["brightness"]) == pytest.approx(light, abs=2e-3)
+    assert float(rows[4]["picture.brightness"]) == pytest.approx(light, abs=2e-3)
 
 
 def test_a_folder_keeps_what_is_there(tmp_path):
@@ -122,15 +123,15 @@ def test_a_folder_keeps_what_is_there(tmp_path):
         alone = quantise(flat.render((8, 6), params={"amount": 0.5}).array)[..., :3]
         np.testing.assert_array_equal(np.asarray(file.convert("RGB")), alone)
     again = distal.sweep(flat, values, folder, size=(8, 6))
-    assert again.rendered == 0 and again.rows[2]["amount"] == "0.5"
-    assert again.rows[2]["brightness"] == made.rows[2]["brightness"] or made.rows[2]["brightness"]
+    assert again.rendered == 0 and again.rows == made.rows
+    assert again.rows[2].inputs == {"amount": 0.5}
     assert distal.sweep(flat, values, folder, size=(8, 6), fresh=True).rendered == 5
 
 
 def test_shapes_are_swept(tmp_path):
     size = slider("Size", 0.5, 0.2, 1.0)
     made = distal.sweep(Scene(Sphere(size)), {"size": "0.2,1"}, tmp_path / "s.png", size=(24, 18))
-    assert made.rows[0]["brightness"] != made.rows[1]["brightness"]
+    assert made.rows[0].picture["brightness"] != made.rows[1].picture["brightness"]
     assert str(made).startswith(f"{tmp_path / 's.png'}: 2 pictures; ")
 
 
@@ -142,13 +143,14 @@ def test_solids_are_measured(tmp_path):
     distal.sweep(scene, values, tmp_path / "all", **options)
     made = distal.sweep(scene, values, tmp_path / "all", measure=True, **options)
     assert made.rendered == 0 and len(made.rows) == 4
-    for row, radius in zip(made.rows, (0.4, 0.4, 1.0, 1.0), strict=True):
+    for full, radius in zip(made.rows, (0.4, 0.4, 1.0, 1.0), strict=True):
+        row = full.measured
         volume, area = 4.0 / 3.0 * np.pi * radius**3, 4.0 * np.pi * radius**2
         assert abs(row["volume"] - volume) <= max(3.0 * row["volume_error"], 1e-4 * volume)
         assert abs(row["area"] - area) <= max(3.0 * row["area_error"], 1e-4 * area)
-        assert row["width"] == pytest.approx(2.0 * radius, rel=1e-3) and row["remark"] == ""
+        assert row["width"] == pytest.approx(2.0 * radius, rel=1e-3) and row["remark"] is None
     with open(made.table, encoding="utf-8") as file:
-        assert float(list(csv.DictReader(file))[3]["volume"]) == made.rows[3]["volume"]
+        assert float(list(csv.DictReader(file))[3]["measured.volume"]) == row["volume"]
 
 
 def test_a_table_keeps_what_an_earlier_sweep_measured(tmp_path):
@@ -156,13 +158,13 @@ def test_a_table_keeps_what_an_earlier_sweep_measured(tmp_path):
     options = {"size": (8, 6), "threads": 1}
     first = distal.sweep(scene, {"size": "0.4,1"}, tmp_path, measure=True, **options)
     (tmp_path / "001.png").unlink()
-    made = distal.sweep(scene, {"size": "0.4,1", "time": "0"}, tmp_path, **options)
-    assert made.rendered == 1
-    with open(made.table, encoding="utf-8") as file:
-        new, kept = csv.DictReader(file)
-    assert (new["size"], new["time"], new["volume"]) == ("0.4", "0", "")
-    assert (kept["size"], kept["time"]) == ("1", "0")
-    assert float(kept["volume"]) == first.rows[1]["volume"]
+    made = distal.sweep(scene, {"size": "0.4,1"}, tmp_path, **options)
+    assert made.rendered == 1 and made.measured == 0
+    new, kept = made.rows
+    assert new.measured == {} and kept == first.rows[1]
+    again = distal.sweep(scene, {"size": "0.4,1"}, tmp_path, measure=True, **options)
+    assert again.rendered == 0 and again.measured == 1
+    assert [row.measured for row in again.rows] == [row.measured for row in first.rows]
 
 
 def test_measures_need_a_solid(tmp_path):
@@ -180,7 +182,8 @@ def test_measures_need_a_solid(tmp_path):
          "a sweep has at most 100000 pictures, not 144000"),
         ({"amount": "0,1", "Amount": "0.5"}, "a.png", {}, ValueError, "'Amount' has values twice"),
         ({"amount": "0:1:400"}, "a.png", {}, ValueError, "a sheet of 400x1 pictures would have"),
-        ({"amount": "0:1:4"}, "a.jpg", {}, SaveError, "a sweep is a .png or a folder, not a.jpg"),
+        ({"amount": "0:1:4"}, "a.jpg", {}, SaveError,
+         "a sweep is a .png, a .csv or a folder, not a.jpg"),
         ({"amount": "0:1:4"}, "a.png", {"params": {"amount": 1.0}}, ValueError,
          "'amount' has values of the sweep, and another one"),
     ],
@@ -193,14 +196,34 @@ def test_refused(values, path, options, error, words, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_on_a_cluster(tmp_path):
+def test_on_a_cluster(tmp_path, monkeypatch):
+    """Pictures and measures of workers are those of this process, which measures nothing then.
+
+    A solid that has no mesh has the same remark, with the author's line, which workers do not know.
+    """
     pytest.importorskip("distributed")
     from tests.cluster.conftest import local_cluster  # noqa: PLC0415 (needs the package)
 
+    width = slider("Width", 0.5, -0.2, 1.0)
+    solid = Sphere(width + 0.0) - Sphere(0.15).named("hole")
+    values, files = {"width": [0.4, 0.1, 1.0]}, (tmp_path / "alone.csv", tmp_path / "all.csv")
     distal.sweep(flat, {"amount": "0:1:6"}, tmp_path / "alone.png", size=(16, 12))
+    here = distal.sweep(Scene(solid), values, files[0].with_stem("solid"))
+    refused = []
+    measures_of = measuring.measures_of
+
+    def noted(shape, density, request, *rest):
+        refused.append(request.params)
+        return measures_of(shape, density, request, *rest)
+
     with local_cluster(2) as client:
         distal.sweep(flat, {"amount": "0:1:6"}, tmp_path / "all.png", size=(16, 12), cluster=client)
+        monkeypatch.setattr(measuring, "measures_of", noted)
+        made = distal.sweep(Scene(solid), values, files[1].with_stem("solids"), cluster=client)
     assert (tmp_path / "all.png").read_bytes() == (tmp_path / "alone.png").read_bytes()
+    assert made.table.read_bytes() == here.table.read_bytes()
+    assert refused == [{"width": 0.1}] and made.measured == 3
+    assert "has no inside" in made.rows[1].measured["remark"]
 
 
 def test_the_command_takes_a_parameter_once(tmp_path):

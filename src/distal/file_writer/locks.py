@@ -37,6 +37,7 @@ _TOKEN_DIGITS: Final = 7
 # Other threads wait for one of these; two paths rarely share one.
 _THREADS: Final = [new_lock() for _ in range(64)]
 _OPENING: Final = new_lock()
+_claims: set[int] = set()
 
 
 class BusyError(Exception):
@@ -145,6 +146,35 @@ def locked(path: Path) -> Iterator[None]:
                 file.free(place)
     finally:
         threads.release()
+
+
+@contextmanager
+def claimed(path: Path) -> Iterator[None]:
+    """Keep other threads and processes of this user from claiming the same path during the block.
+
+    It may last long: nobody waits for it, and ``locked`` of the path is free.
+
+    Args:
+        path: A path without links.
+
+    Raises:
+        BusyError: Another one has claimed it.
+    """
+    digest = hashlib.sha256(b"claim\0" + str(path).casefold().encode("utf-8", "surrogatepass"))
+    place = int.from_bytes(digest.digest()[:8], "little") % _PLACES
+    with _OPENING:  # the system keeps other processes out, not the threads of this one
+        if place in _claims:
+            raise BusyError
+        _claims.add(place)
+    try:
+        file = _taken(place, time.monotonic())
+        try:
+            yield
+        finally:
+            if file is not None:
+                file.free(place)
+    finally:
+        _claims.discard(place)
 
 
 def _taken(place: int, until: float) -> _LockFile | None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -25,6 +25,34 @@ from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 
 if TYPE_CHECKING:
     from distal.scene.tree.node import Node
+
+
+# The name under which a tree keeps the functions of its field.
+FIELD_FUNCTIONS: Final = "functions of the field"
+
+
+class FieldFunctions(dict[Func, Composed]):
+    """The functions of a tree's field that were called so far.
+
+    Args:
+        node: The tree.
+    """
+
+    def __init__(self, node: Node) -> None:
+        super().__init__()
+        self._node = node
+
+    def need(self, function: Func, types: Sequence[tuple[str, Type]]) -> Composed:
+        """Return a function of the field.
+
+        Args:
+            function: The function; its parameter ``field`` is the shape.
+            types: Names and types of its other parameters.
+        """
+        made = self.get(function)
+        if made is None:
+            made = self[function] = OfField(self._node, function, types)
+        return made
 
 
 class OfField(Composed):
@@ -79,10 +107,8 @@ class FieldKernels:
             types: Their names and types.
         """
         with self._lock:
-            known: dict[Func, OfField] = self.node.derived("functions of the field", dict)
-            made = known.get(function)
-            if made is None:
-                made = known[function] = OfField(self.node, function, types)
+            known = self.node.derived(FIELD_FUNCTIONS, lambda: FieldFunctions(self.node))
+            made = known.need(function, types)
             self.rows += len(columns[0])
         args = [as_rows(column) for column in columns]
         here = is_worker()

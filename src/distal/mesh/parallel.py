@@ -74,6 +74,23 @@ def parallel_map(
     return cast("list[Result]", run.found)
 
 
+def by_one_thread(function: Callable[[], Result]) -> Result:
+    """Return the result of a function that is computed by one thread, with the same bits.
+
+    Raises:
+        BaseException: What the function raises.
+        MemoryError: The system starts no thread.
+    """
+    run: _MapRun[None, Result] = _MapRun(lambda _: function(), [None])
+    started: list[threading.Thread] = []
+    threads.start_threads([_PieceThread(target=run.work, daemon=True)], started)
+    for thread in started:
+        thread.join()
+    if run.failures:
+        raise run.failures[0]
+    return cast("Result", run.found[0])
+
+
 class _MapRun(Generic[Piece, Result]):
     """What the threads of one map share.
 

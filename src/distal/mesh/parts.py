@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from distal.frontend import Assembly
 from distal.ir.nodes import Param, Read, Return
@@ -22,6 +22,9 @@ from distal.scene.lowering.parts.table import rolled_for
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
+
+# The name under which a tree keeps its ``PartAt``.
+PARTS: Final = "parts"
 
 
 class PartAt(Composed):
@@ -54,6 +57,18 @@ class PartAt(Composed):
     def functions(self) -> Iterable[Func]:
         """Yield the scene functions that the shape calls."""
         return self._node.functions()
+
+    def at(self, places: Floats, params: Mapping[str, Any], time: float) -> list[PlacedPart]:
+        """Return what of the tree is at each place; see ``parts_at``."""
+        numbers = executor().call(self, (places,), {}, params=params, time=time)
+        found: dict[int, PlacedPart] = {}
+        for number in {int(number) for number in numbers}:
+            path = self.paths[number]
+            # A table of parts has not all nodes of the author's tree.
+            above = (*reversed(path), *reversed(path_in(self._node, path)))
+            label = next((holder.label for holder in above if holder.label), "")
+            found[number] = PlacedPart(path[-1], label)
+        return [found[int(number)] for number in numbers]
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,16 +108,7 @@ def parts_at(
     """
     if not len(places):
         return []
-    part = PartAt(node)
-    numbers = executor().call(part, (places,), {}, params=params, time=time)
-    found: dict[int, PlacedPart] = {}
-    for number in {int(number) for number in numbers}:
-        path = part.paths[number]
-        # A table of parts has not all nodes of the author's tree.
-        above = (*reversed(path), *reversed(path_in(node, path)))
-        label = next((holder.label for holder in above if holder.label), "")
-        found[number] = PlacedPart(path[-1], label)
-    return [found[int(number)] for number in numbers]
+    return node.derived(PARTS, lambda: PartAt(node)).at(places, params, time)
 
 
 def part_at(node: Node, place: Floats, params: Mapping[str, Any], time: float) -> PlacedPart:

@@ -6,7 +6,7 @@ Input: what was asked for. Output: a function to call while working; slope, divi
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol
+from typing import Any, Final, Protocol
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from distal.lang.runtime_access import executor
 from distal.mesh.solid import Floats
 from distal.scene.lowering.derived import BoundsOf
 from distal.scene.tree.node import Node
+
+# The name under which a tree keeps the function of its bounds.
+BOUNDS: Final = "bounds"
 
 
 class Watched(Protocol):
@@ -57,7 +60,7 @@ def box_of(
         params: Values of parameters by name.
         time: Seconds.
     """
-    asked: BoundsOf = node.derived("bounds", lambda: BoundsOf(node))
+    asked: BoundsOf = node.derived(BOUNDS, lambda: BoundsOf(node))
     bounds = executor().call(asked, (), {}, params=params, time=time)
     low, high = (np.array([ended(c) for c in corner]) for corner in bounds[2:4])
     return (float(bounds[0]), float(bounds[1])), low, high

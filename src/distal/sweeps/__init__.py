@@ -1,7 +1,9 @@
-"""All combinations of some values of parameters: pictures, a sheet of them, a table of figures."""
+"""Many sets of values: pictures, a sheet of them, a table of figures and measures."""
 
 from __future__ import annotations
 
+from distal.sweeps.drawing import parameter_sets
 from distal.sweeps.sweeping import FinishedSweep, sweep
+from distal.sweeps.table import SweepRow
 
-__all__ = ["FinishedSweep", "sweep"]
+__all__ = ["FinishedSweep", "SweepRow", "parameter_sets", "sweep"]

@@ -1,25 +1,20 @@
 """The values of a sweep's parameters.
 
-Input: texts such as "0:1:20" or "1,2,3", or lists of values. Output: checked values by parameter,
-and all combinations of them. Does not depend on pictures.
+Input: texts such as "0:1:20" or "1,2,3", or lists of values. Output: checked values by parameter.
+Does not depend on pictures.
 """
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any, Final
 
-from distal.lang.chosen_values import by_key
-from distal.lang.number_text import shown
-from distal.lang.parameters import Parameter, ParameterKind
-from distal.lang.render_options import checked_time
+from distal.lang.parameters import Parameter
+from distal.sweeps.columns import InputColumn, column_of
 
-# Name of the axis that is no parameter.
-TIME: Final = "time"
 MOST: Final = 100_000
-_LISTS: Final = (ParameterKind.COLOR, ParameterKind.POINT)
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,18 +22,27 @@ class Axis:
     """The values that one parameter takes.
 
     Attributes:
-        name: The parameter's name, or "time".
-        label: What a person reads.
+        column: The parameter, or the time.
         values: Plain values.
-        texts: The same as texts.
-        is_time: Whether it is the time, and no parameter.
     """
 
-    name: str
-    label: str
+    column: InputColumn
     values: tuple[Any, ...]
-    texts: tuple[str, ...]
-    is_time: bool = False
+
+    @property
+    def name(self) -> str:
+        """The parameter's name, or "time"."""
+        return self.column.name
+
+    @property
+    def label(self) -> str:
+        """What a person reads."""
+        return self.column.label
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """The values as short texts."""
+        return tuple(map(self.column.shown, self.values))
 
 
 def axis_of(name: str, given: Any, parameters: Sequence[Parameter]) -> Axis:
@@ -53,46 +57,15 @@ def axis_of(name: str, given: Any, parameters: Sequence[Parameter]) -> Axis:
     Raises:
         ValueError: There is no such parameter, or a value is out of its range.
     """
-    known = by_key(parameters)
-    if name not in known:
-        if name == TIME:
-            times = tuple(map(_time, _spread(name, given) or _listed(given, ",")))
-            _check_any(TIME, times)
-            return Axis(TIME, TIME, times, tuple(map(shown, times)), is_time=True)
-        names = ", ".join([*dict.fromkeys(p.name for p in known.values()), TIME])
-        raise ValueError(f"there is no parameter '{name:.60}'; a sweep takes {names}")
-    parameter = known[name]
-    spread = None if parameter.kind in _LISTS else _spread(parameter.label, given)
-    values: tuple[Any, ...]
-    if spread is not None:
-        if parameter.kind is ParameterKind.INTEGER:
-            spread = list(dict.fromkeys(map(round, spread)))
-        values = tuple(parameter.check(value) for value in spread)
-    else:
-        separator = ";" if parameter.kind in _LISTS else ","
-        values = tuple(
-            parameter.parse(v) if isinstance(v, str) else parameter.check(v)
-            for v in _listed(given, separator)
-        )
-    _check_any(parameter.label, values)
-    return Axis(parameter.name, parameter.label, values, tuple(_text(parameter, v) for v in values))
-
-
-def _time(value: Any) -> float:
-    """Return a time in seconds.
-
-    Raises:
-        ValueError: It is no number, or out of range.
-    """
-    try:
-        return checked_time(value)
-    except TypeError as error:
-        raise ValueError(str(error)) from None
-
-
-def _check_any(label: str, values: Sequence[Any]) -> None:
-    if not values:
-        raise ValueError(f"'{label}' has no values")
+    column = column_of(name, parameters)
+    spread: Sequence[Any] | None = None if column.parts else _spread(column.label, given)
+    if spread is None:
+        spread = _listed(given, ";" if column.parts else ",")
+    elif column.is_integer:
+        spread = list(dict.fromkeys(map(round, spread)))
+    if not spread:
+        raise ValueError(f"'{column.label}' has no values")
+    return Axis(column, tuple(map(column.checked, spread)))
 
 
 def _spread(label: str, given: Any) -> list[float] | None:
@@ -111,7 +84,9 @@ def _spread(label: str, given: Any) -> list[float] | None:
         raise ValueError(f"'{label}' takes at most {MOST} values, not {count}")
     if count == 1:
         return [first]
-    return [first + (last - first) * i / (count - 1) for i in range(count)]
+    # Of the numbers as they are written, so that a tenth of 0:1 is .1, and the last one is LAST.
+    begin, end = (Fraction(repr(number)) for number in (first, last))
+    return [float(begin + (end - begin) * i / (count - 1)) for i in range(count)]
 
 
 def _listed(given: Any, separator: str) -> list[Any]:
@@ -120,38 +95,6 @@ def _listed(given: Any, separator: str) -> list[Any]:
     if isinstance(given, Sequence) or hasattr(given, "__array__"):
         return list(given)
     return [given]
-
-
-def _text(parameter: Parameter, value: Any) -> str:
-    if parameter.kind is ParameterKind.CHOICE:
-        return str(parameter.options[value])
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, tuple):
-        return " ".join(map(shown, value))
-    return str(shown(value))
-
-
-def combinations(axes: Sequence[Axis]) -> Iterator[dict[str, Any]]:
-    """Return all combinations, the values of the last axis fastest."""
-    for values in itertools.product(*(axis.values for axis in axes)):
-        yield {axis.name: value for axis, value in zip(axes, values, strict=True)}
-
-
-def count_of(axes: Sequence[Axis]) -> int:
-    """Return how many combinations there are.
-
-    Raises:
-        ValueError: There are none, or too many.
-    """
-    if not axes:
-        raise ValueError("a sweep takes values: --set NAME=FIRST:LAST:COUNT or NAME=A,B,C")
-    count = 1
-    for axis in axes:
-        count *= len(axis.values)
-    if count > MOST:
-        raise ValueError(f"a sweep has at most {MOST} pictures, not {count}")
-    return count
 
 
 def chosen_axes(values: Mapping[str, Any], parameters: Sequence[Parameter]) -> list[Axis]:

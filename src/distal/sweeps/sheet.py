@@ -6,6 +6,7 @@ axis are above the columns, those of the others left of the rows.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 
 from distal.lang.lazy_module import LazyModule
 from distal.lang.render_options import LARGEST_SIDE_PX
-from distal.sweeps.axes import Axis
+from distal.sweeps.inputs import Inputs
 
 if TYPE_CHECKING:
     from PIL import Image, ImageDraw, ImageFont
@@ -33,7 +34,8 @@ class Sheet:
     """A sheet that pictures are put on.
 
     Args:
-        axes: The axes of the sweep.
+        inputs: The inputs of the sweep: all combinations have a row or a column for each value, of
+            a list the rows have its numbers.
         size: Width and height of each picture in pixels.
         title: A line above all.
 
@@ -41,15 +43,13 @@ class Sheet:
         ValueError: The sheet would be too large.
     """
 
-    def __init__(self, axes: Sequence[Axis], size: tuple[int, int], title: str) -> None:
-        *outer, last = axes
-        self._columns = len(last.values)
-        self._rows = int(np.prod([len(axis.values) for axis in outer], dtype=np.int64))
+    def __init__(self, inputs: Inputs, size: tuple[int, int], title: str) -> None:
+        labels, columns = _labels(inputs)
+        self._columns, self._rows = len(columns), max(1, len(labels))
         self._size = size
         points = max(11, min(20, size[1] // 9))
         self._font: Any = ImageFont.load_default(points)
         self._line = round(points * 1.5)
-        labels = _row_labels(outer)
         widest = max((self._width(line) for label in labels for line in label), default=0)
         self._left = _MARGIN + (widest + 2 * _GAP if labels else 0)
         self._top = _MARGIN + 2 * self._line + _GAP
@@ -63,16 +63,17 @@ class Sheet:
             )
         self._picture = Image.new("RGB", (width, height), _PAPER)
         self._draw = ImageDraw.Draw(self._picture)
-        self._write(title, labels, last)
+        self._write(title, labels, columns)
 
     def _width(self, text: str) -> int:
         return int(self._font.getlength(text)) + 1
 
-    def _write(self, title: str, labels: Sequence[Sequence[str]], last: Axis) -> None:
+    def _write(
+        self, title: str, labels: Sequence[Sequence[str]], columns: Sequence[tuple[str, str]]
+    ) -> None:
         draw, (width, height) = self._draw, self._size
         draw.text((_MARGIN, _MARGIN), title, _SOFT, self._font)
-        for column, text in enumerate(last.texts):
-            label = f"{last.label} {text}"
+        for column, (label, text) in enumerate(columns):
             if self._width(label) > width:
                 label = text
             at = self._left + column * (width + _GAP) + width // 2
@@ -102,8 +103,17 @@ class Sheet:
         return np.asarray(self._picture)
 
 
-def _row_labels(outer: Sequence[Axis]) -> list[list[str]]:
+def _labels(inputs: Inputs) -> tuple[list[list[str]], list[tuple[str, str]]]:
+    """Return the lines of text at each row, and a long and a short text for each column."""
+    if inputs.axes is None:
+        count = len(inputs.sets)
+        across = math.isqrt(count - 1) + 1
+        ends = [
+            (first, min(first + across, count + 1) - 1) for first in range(1, count + 1, across)
+        ]
+        return [[str(a) if a == b else f"{a} to {b}"] for a, b in ends], [("", "")] * across
+    *outer, last = inputs.axes
     labels: list[list[str]] = [[]] if outer else []
     for axis in outer:
         labels = [[*label, f"{axis.label} {text}"] for label in labels for text in axis.texts]
-    return labels
+    return labels, [(f"{last.label} {text}", text) for text in last.texts]

@@ -1,19 +1,16 @@
-"""``distal.sweep``: render a scene for all combinations of some values.
+"""``distal.sweep``: render and measure a scene for many sets of values.
 
-Input: a picture, values by parameter, a file or a folder. Output: a sheet or numbered pictures, and
-a table of what was measured of each. Pictures that a broken-off sweep has left in a folder are used
-again.
+Input: a picture, sets of values, a file or a folder. Output: a sheet or numbered pictures, and a
+table of the inputs, of figures of the pictures and of what was measured, to which each row is added
+as it is finished. What a broken-off sweep has left is used again.
 """
 
 from __future__ import annotations
 
-import csv
-import io
-import itertools
 import json
 import threading
 import time as clock
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from os import PathLike
@@ -32,20 +29,22 @@ from distal.lang.lazy_module import LazyModule
 from distal.lang.presentable import Presentable
 from distal.lang.render_options import Cancel, RenderOptions
 from distal.loading import loaded_from
-from distal.scene.objects.meshable import Meshable
 from distal.scene.viewing.viewable import Viewable, viewable
-from distal.sweeps.axes import TIME, Axis, chosen_axes, combinations, count_of
+from distal.sweeps.inputs import Inputs, inputs_of
 from distal.sweeps.sheet import Sheet
-from distal.sweeps.solid_measures import COLUMNS, checked_solid, measured
+from distal.sweeps.solid_measures import MEASURES, SolidMeasures, checked_solid
+from distal.sweeps.table import KEY, SweepRow, SweepTable
 from distal.version import __version__
 
 if TYPE_CHECKING:
     from distributed import Client
 
+    from distal.cluster import pool as cluster_pool
     from distal.cluster.pool import WorkerPool
     from distal.video import frame_rendering, frames, moving_picture, overlap
 else:
     # ``from distal import *`` imports this module.
+    cluster_pool = LazyModule("distal.cluster.pool")
     frame_rendering = LazyModule("distal.video.frame_rendering")
     frames = LazyModule("distal.video.frames")
     moving_picture = LazyModule("distal.video.moving_picture")
@@ -53,8 +52,12 @@ else:
 
 _TABLE: Final = "sweep.csv"
 _FIGURES: Final = ("seconds", "brightness", "samples", "noise")
+_DIGITS: Final = 16  # of a hash in a table
+_NOTHING: Final[Mapping[int, SweepRow]] = {}
 # Called with the finished pictures, all pictures, and the kind of work.
 Progress = Callable[[int, int, str], Any]
+# Values by parameter, all combinations of which are taken; a list of sets of values; a CSV file.
+Values = Mapping[str, Any] | Iterable[Any] | str | PathLike[str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,11 +65,12 @@ class FinishedSweep:
     """A finished sweep.
 
     Attributes:
-        path: The sheet, or the folder of the pictures.
+        path: The sheet, the folder of the pictures, or the table.
         table: The table, a CSV file.
         pictures: How many pictures there are.
         rendered: How many of them this call rendered.
-        rows: The rows of the table: values by parameter, and figures.
+        measured: How many solids this call measured.
+        rows: The rows of the table, in the order of the inputs.
         seconds: How long it took.
     """
 
@@ -74,17 +78,20 @@ class FinishedSweep:
     table: Path
     pictures: int
     rendered: int
-    rows: tuple[Mapping[str, Any], ...]
+    measured: int
+    rows: tuple[SweepRow, ...]
     seconds: float
 
     def __str__(self) -> str:
-        count = "1 picture" if self.pictures == 1 else f"{self.pictures} pictures"
+        if self.path == self.table:
+            return f"{self.path}: {_counted(len(self.rows), 'row')}; {self.seconds:.1f} s"
+        count = _counted(self.pictures, "picture")
         return f"{self.path}: {count}; {self.table}; {self.seconds:.1f} s"
 
 
 def sweep(
     obj: Presentable,
-    values: Mapping[str, Any],
+    values: Values,
     path: str | PathLike[str],
     *,
     size: tuple[int, int] = (160, 120),
@@ -101,15 +108,21 @@ def sweep(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> FinishedSweep:
-    """Render all combinations of some values.
+    """Render, or only measure, a scene for many sets of values.
+
+    Each finished row is in the table at once, with all digits: if the process is killed, the same
+    call goes on where it ended.
 
     Args:
         obj: A scene, a shape or an ``@image``.
-        values: The values of each parameter by its name: a list, or a text such as "0:1:20" (twenty
-            numbers from 0 to 1) or "1,2,3"; "time" for seconds.
-        path: A file that ends in .png, for a sheet of all pictures with their values, or a folder,
-            for numbered pictures, each with all that is needed to render it again. The table is
-            beside the sheet, or in the folder.
+        values: The values of each parameter by its name, all combinations of which are taken: a
+            list, or a text such as "0:1:20" (twenty numbers from 0 to 1) or "1,2,3"; "time" for
+            seconds. Or a list of sets of values, each a mapping or a named tuple, as
+            ``distal.parameter_sets`` draws them. Or the path of a CSV file of such sets.
+        path: A file that ends in .png, for a sheet of all pictures with their values; one that ends
+            in .csv, for a table of measures without pictures; or a folder, for numbered pictures,
+            each with all that is needed to render it again. The table is beside the sheet, or in
+            the folder.
         size: Width and height of each picture in pixels.
         time: Seconds, if it is none of the values.
         params: Values of the other parameters by name.
@@ -118,17 +131,18 @@ def sweep(
         mode: How light is computed: "direct" or "path"; None: as the scene says.
         device: The device to render on, as for ``render``.
         threads: Number of CPU threads; None for all.
-        cluster: A ``dask.distributed.Client`` whose workers render the pictures, with the same
-            bits; None renders them in this process. Needs ``distal[cluster]``.
+        cluster: A ``dask.distributed.Client`` whose workers render the pictures and measure the
+            solids, with the same bits; None does that in this process. Needs ``distal[cluster]``.
         measure: Whether the table has the volume, area, box and thinnest wall of each solid too, as
-            ``Shape.measure`` finds them; they are computed on this machine.
-        fresh: Render all pictures again, even those that an earlier sweep left in the folder.
+            ``Shape.measure`` finds them; a table without pictures always has.
+        fresh: Do all work again, also what an earlier sweep left, and replace a table of other
+            inputs.
         progress: Called with the finished pictures, all pictures, and the kind of work.
         cancel: An event, or a function without arguments, that stops the work early.
 
     Raises:
         CompileError: The scene has mistakes.
-        SaveError: A file cannot be written.
+        SaveError: A file cannot be written, or there is a table of other inputs.
         ValueError: There is no such parameter, view or mode, a value is out of range, or there are
             too many pictures.
     """
@@ -145,185 +159,238 @@ def sweep(
         cancel=lambda: stop.is_set() or is_cancelled(),
     )
     shown = viewable(obj, options.params, options.time)
-    axes = chosen_axes(values, shown.parameters)
-    both = {axis.name for axis in axes} & set(options.params)
+    inputs = inputs_of(values, shown.parameters)
+    both = {column.name for column in inputs.columns} & set(options.params)
     if both:
         raise ValueError(f"'{min(both)}' has values of the sweep, and another one")
-    job = _Sweep(
-        obj=obj,
-        axes=axes,
-        options=options,
-        view=view,
-        mode=mode,
-        title=f"{_source(obj, shown.name)} · {count_of(axes)} pictures",
-        progress=progress or (lambda done, total, what: None),
-        stop=stop,
-        solid=_solid(shown) if measure else None,
-    )
     output = Path(path)
-    found = job.sheet(output) if output.suffix.lower() == ".png" else job.folder(output, fresh)
+    kind = output.suffix.lower()
+    solid = _measures(shown, cluster) if measure or kind == ".csv" else None
+    job = _Sweep(obj, inputs, options, view, mode, stop, progress or _silent, solid)
+    if kind == ".csv":
+        found = job.measures(output, fresh)
+    elif kind == ".png":
+        name = f"{_source(obj, shown.name)} · {_counted(len(inputs.sets), 'picture')}"
+        found = job.sheet(output, name, fresh)
+    elif kind:
+        raise SaveError(f"a sweep is a .png, a .csv or a folder, not {path}")
+    else:
+        found = job.folder(output, fresh)
     return replace(found, seconds=clock.perf_counter() - begin)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class _Sweep:
     obj: Any
-    axes: list[Axis]
+    inputs: Inputs
     options: RenderOptions
     view: str
     mode: str | None
-    title: str
-    progress: Progress
     stop: threading.Event
-    solid: Meshable | None = None
+    progress: Progress
+    solid: SolidMeasures | None = None
     failed: dict[int, PartError] = field(default_factory=dict)
+    measured: int = 0
 
-    def sheet(self, path: Path) -> FinishedSweep:
+    def measures(self, path: Path, fresh: bool) -> FinishedSweep:
+        """Measure all solids, and render nothing."""
+        check_destination(path)
+        table = SweepTable(path, self.inputs, (), (KEY, *MEASURES), files=False)
+        rows = self._current(table.earlier(fresh=fresh))
+        rows = {number: row for number, row in rows.items() if row.measured}
+        needs = [i for i in self._indices if i + 1 not in rows]
+        with table.open(rows):
+            for row, _ in self._found(needs, lambda index: (self._row(index), None)):
+                table.add(row)
+        self._check("the other rows are kept: the same command measures only what failed")
+        return self._finished(path, table, 0)
+
+    def sheet(self, path: Path, title: str, fresh: bool) -> FinishedSweep:
         """Render all pictures, and write them as a sheet."""
         check_destination(path)
-        sheet = Sheet(self.axes, self.options.size, self.title)
-        rows: dict[int, dict[str, Any]] = {}
-        for index, picture, row in self._rendered(list(range(count_of(self.axes))), {}):
-            if picture is not None:
-                sheet.put(index, picture.levels)
-            rows[index] = row
+        sheet = Sheet(self.inputs, self.options.size, title)
+        table = self._table(path.with_suffix(".csv"), files=False)
+        earlier = self._current(table.earlier(fresh=fresh))
+        first, lock = self._moving(0), new_lock()
+
+        def made(index: int) -> tuple[SweepRow, Picture | None]:
+            with lock:
+                moving = first if index == 0 else self._moving(index)
+            return self._with_picture(moving, self._row(index, earlier))
+
+        with table.open(earlier):
+            for row, picture in self._found(self._indices, made, first.at_once):
+                if picture is not None:
+                    sheet.put(row.number - 1, picture.levels)
+                table.add(row)
         texts = {"Software": f"distal {__version__}", "distal:sweep": json.dumps(self._recipe())}
         with replacement(path) as file:
             file.write(encode_levels(sheet.pixels(), texts))
-        table = path.with_suffix(".csv")
-        in_order = tuple(rows[i] for i in sorted(rows))
-        _write_table(table, in_order)
         self._check("their places are empty")
-        return FinishedSweep(path, table, len(rows), len(rows), in_order, 0.0)
+        return self._finished(path, table, len(self._indices))
 
     def folder(self, path: Path, fresh: bool) -> FinishedSweep:
         """Render the pictures that are not there yet, and write each of them."""
-        if path.suffix:
-            raise SaveError(f"a sweep is a .png or a folder, not {path}")
         frames.make_folder(path)
-        count = count_of(self.axes)
-        digits = max(3, len(str(count)))
-        files = [path / f"{i + 1:0{digits}d}.png" for i in range(count)]
-        known = {} if fresh else _known_rows(path / _TABLE)
-        moving = [self._moving(values) for values in combinations(self.axes)]
+        digits = max(3, len(str(len(self._indices))))
+        files = [path / f"{i + 1:0{digits}d}.png" for i in self._indices]
+        table = self._table(path / _TABLE, files=True)
+        earlier = self._current(table.earlier(fresh=fresh))
+        moving = [self._moving(index) for index in self._indices]
         kept = [
             frames.Frames([file], [m.options.time], m)
             for file, m in zip(files, moving, strict=True)
         ]
-        there = [] if fresh else [i for i, frame in enumerate(kept) if frame.is_there(0)]
-        rows = {i: self._row(i, None, 0.0) | known.get(files[i].name, {}) for i in there}
-        rows = {i: self._with_measures(i, row) for i, row in rows.items()}
-        rendered = [i for i in range(count) if i not in rows]
-        try:
-            for index, picture, row in self._rendered(rendered, dict(enumerate(moving))):
+
+        def is_there(index: int) -> bool:
+            row = earlier.get(index + 1)
+            return (
+                row is not None
+                and row.picture.get(KEY) == kept[index].key(0)[:_DIGITS]
+                and kept[index].is_there(0)
+            )
+
+        there = {i for i in self._indices if is_there(i)}
+        rows = {i + 1: replace(earlier[i + 1], file=files[i].name) for i in there}
+
+        def made(index: int) -> tuple[SweepRow, Picture | None]:
+            if index in there:
+                return rows[index + 1], None
+            row = self._row(index, {} if self.solid is None else earlier)
+            return self._with_picture(moving[index], replace(row, file=files[index].name))
+
+        is_done = [i in there and self._is_measured(rows[i + 1]) for i in self._indices]
+        needs = [i for i in self._indices if not is_done[i]]
+        with table.open(rows):
+            for row, picture in self._found(needs, made, moving[0].at_once):
+                own = kept[row.number - 1]
                 if picture is not None:
-                    kept[index].write(0, picture)
-                    rows[index] = row
-        finally:
-            in_order = tuple({"file": files[i].name, **rows[i]} for i in sorted(rows))
-            _write_table(path / _TABLE, in_order)
+                    own.write(0, picture)
+                    row = replace(row, picture={KEY: own.key(0)[:_DIGITS], **row.picture})
+                table.add(row)
         self._check("the other pictures are kept: the same command renders only what failed")
-        return FinishedSweep(path, path / _TABLE, count, len(rendered), in_order, 0.0)
-
-    def _moving(self, values: Mapping[str, Any]) -> moving_picture.MovingPicture:
-        """Return the picture of some values."""
-        own, time = {}, self.options.time
-        for axis in self.axes:
-            if axis.is_time:
-                time = values[axis.name]
-            else:
-                own[axis.name] = values[axis.name]
-        options = replace(self.options, time=time, params={**self.options.params, **own})
-        return moving_picture.moving_picture(self.obj, options, self.view, self.mode)
-
-    def _rendered(
-        self, indices: list[int], known: Mapping[int, moving_picture.MovingPicture]
-    ) -> Iterator[tuple[int, Picture | None, dict[str, Any]]]:
-        """Return the number, the picture and the row of each picture, in order.
-
-        Pictures that fail on the workers of a cluster are noted in ``failed``, and have no picture;
-        if others may be the reason they are tried again alone, and come a second time.
-        """
-        every = list(combinations(self.axes))
-        count, lock = len(every), new_lock()
-        first = {i: known.get(i) or self._moving(every[i]) for i in indices[:1]}
-
-        def made(index: int) -> tuple[int, Picture | None, dict[str, Any]]:
-            begin = clock.perf_counter()
-            with lock:
-                moving = known.get(index) or first.get(index) or self._moving(every[index])
-            try:
-                picture = moving.picture(0, moving.options.time)
-            except PartError as error:
-                self.failed[index] = error
-                return index, None, self._row(index, None, 0.0)
-            self.failed.pop(index, None)
-            return index, picture, self._row(index, picture, clock.perf_counter() - begin)
-
-        done = count - len(indices)
-        at_once = first[indices[0]].at_once if indices else 1
-        for several in (at_once, 1):
-            with closing(overlap.made_ahead(made, indices, several, self.stop.set)) as pictures:
-                for index, picture, row in pictures:
-                    yield index, picture, self._with_measures(index, row)
-                    if picture is not None:
-                        done += 1
-                        self.progress(done, count, "rendering")
-            indices = sorted(i for i, error in self.failed.items() if error.shared)
-
-    def _with_measures(self, index: int, row: dict[str, Any]) -> dict[str, Any]:
-        """Return a row of the table with the measures of its solid, if they are asked for."""
-        if self.solid is None or row.get(COLUMNS[0]):
-            return row
-        moving = next(itertools.islice(combinations(self.axes), index, None))
-        time = moving.pop(TIME, self.options.time) if self._sweeps_time else self.options.time
-        values = {**self.options.params, **moving}
-        return row | measured(self.solid, values, time, self.options.cancel)
+        return self._finished(path, table, len(self._indices), len(self._indices) - len(there))
 
     @property
-    def _sweeps_time(self) -> bool:
-        return any(axis.is_time for axis in self.axes)
+    def _indices(self) -> range:
+        return range(len(self.inputs.sets))
+
+    def _table(self, path: Path, *, files: bool) -> SweepTable:
+        figures = (KEY, *_FIGURES) if files else _FIGURES
+        measures = () if self.solid is None else (KEY, *MEASURES)
+        return SweepTable(path, self.inputs, figures, measures, files=files)
+
+    def _moving(self, index: int) -> moving_picture.MovingPicture:
+        """Return the picture of a set of values."""
+        options = replace(self.options, time=self._time(index), params=self._params(index))
+        return moving_picture.moving_picture(self.obj, options, self.view, self.mode)
+
+    def _params(self, index: int) -> dict[str, Any]:
+        return {**self.options.params, **self.inputs.params(index)}
+
+    def _time(self, index: int) -> float:
+        return self.inputs.time(index, self.options.time)
+
+    def _row(self, index: int, earlier: Mapping[int, SweepRow] = _NOTHING) -> SweepRow:
+        """Return the row of a set, with what an earlier run has measured."""
+        known = earlier.get(index + 1)
+        measured = {} if known is None else known.measured
+        return SweepRow(index + 1, self.inputs.named(index), measured)
+
+    def _current(self, rows: Mapping[int, SweepRow]) -> dict[int, SweepRow]:
+        """Return rows of an earlier run without measures of what the solid was then."""
+        if self.solid is None:
+            return dict(rows)
+        found = {}
+        for number, row in rows.items():
+            key = self.solid.key(self._params(number - 1), self._time(number - 1))
+            is_current = row.measured.get(KEY) == key
+            found[number] = row if is_current else replace(row, measured={})
+        return found
+
+    def _is_measured(self, row: SweepRow) -> bool:
+        return self.solid is None or bool(row.measured)
+
+    def _with_picture(
+        self, moving: moving_picture.MovingPicture, row: SweepRow
+    ) -> tuple[SweepRow, Picture]:
+        """Return a row with the figures of its picture, and the picture."""
+        begin = clock.perf_counter()
+        picture = moving.picture(0, moving.options.time)
+        figures = _figures(picture, clock.perf_counter() - begin)
+        return replace(row, picture=figures), picture
+
+    def _with_measures(self, index: int, row: SweepRow) -> SweepRow:
+        """Return a row with the measures of its solid, if they are asked for."""
+        if self.solid is None or row.measured:
+            return row
+        found = self.solid.of(self._params(index), self._time(index), self.options.cancel)
+        self.measured += 1
+        return replace(row, measured=found)
+
+    def _found(
+        self,
+        indices: Sequence[int],
+        make: Callable[[int], tuple[SweepRow, Picture | None]],
+        at_once: int | None = None,
+    ) -> Iterator[tuple[SweepRow, Picture | None]]:
+        """Yield the row and the picture of each set, measured, as they are finished.
+
+        What fails on the workers of a cluster is noted in ``failed``, and not yielded; if others
+        may be the reason it is tried again alone.
+        """
+
+        def made(index: int) -> tuple[int, tuple[SweepRow, Picture | None] | None]:
+            try:
+                row, picture = make(index)
+                row = self._with_measures(index, row)
+            except PartError as error:
+                self.failed[index] = error
+                return index, None
+            self.failed.pop(index, None)
+            return index, (row, picture)
+
+        count = len(self.inputs.sets)
+        done = count - len(indices)
+        if at_once is None:
+            at_once = 1 if self.options.cluster is None else _slots(self.options.cluster)
+        what = "rendering" if self.solid is None else "measuring"
+        for several in (at_once, 1):
+            with closing(overlap.made_at_once(made, indices, several, self.stop.set)) as results:
+                for _, found in results:
+                    if found is None:
+                        continue
+                    yield found
+                    done += 1
+                    self.progress(done, count, what)
+            indices = sorted(i for i, error in self.failed.items() if error.shared)
+
+    def _finished(
+        self, path: Path, table: SweepTable, pictures: int, rendered: int | None = None
+    ) -> FinishedSweep:
+        rows = tuple(table.rows[number] for number in sorted(table.rows))
+        rendered = pictures if rendered is None else rendered
+        return FinishedSweep(path, table.path, pictures, rendered, self.measured, rows, 0.0)
 
     def _check(self, more: str) -> None:
-        """Name the pictures that failed.
+        """Name the sets that failed.
 
         Raises:
             DeviceError: There are some.
         """
         if not self.failed:
             return
-        every = list(combinations(self.axes))
-        names = []
-        for index in sorted(self.failed):
-            texts = self._row(index, None, 0.0)
-            names.append(", ".join(f"{axis.label} {texts[axis.name]}" for axis in self.axes))
+        names = [self.inputs.shown(index) for index in sorted(self.failed)]
         reason = self.failed[min(self.failed)].reason
         raise DeviceError(
-            f"{len(names)} of {len(every)} pictures failed: {frame_rendering.listed(names, '; ')}; "
+            f"{len(names)} of {_counted(len(self.inputs.sets), 'picture')} failed: "
+            f"{frame_rendering.listed(names, '; ')}; "
             f"{'it' if len(names) == 1 else 'the first'} {reason}; {more}"
         )
 
-    def _row(self, index: int, picture: Picture | None, seconds: float) -> dict[str, Any]:
-        row: dict[str, Any] = {}
-        for axis in reversed(self.axes):
-            index, place = divmod(index, len(axis.values))
-            row[axis.name] = axis.texts[place]
-        row = dict(reversed(row.items()))
-        if picture is None:
-            return row | dict.fromkeys(_FIGURES, "")
-        red, green, blue = (float(picture.array[..., i].mean(dtype=np.float64)) for i in range(3))
-        stats = picture.stats
-        figures = {
-            "seconds": round(float(stats.get("render_s", seconds)), 4),
-            "brightness": round(0.2126 * red + 0.7152 * green + 0.0722 * blue, 6),
-            "samples": stats.get("samples", picture.provenance.samples),
-            "noise": stats.get("noise"),
-        }
-        return row | {name: "" if value is None else value for name, value in figures.items()}
-
     def _recipe(self) -> dict[str, Any]:
         return {
-            "axes": {axis.name: list(axis.values) for axis in self.axes},
+            **self.inputs.recipe,
             "parameters": dict(self.options.params),
             "time": self.options.time,
             "view": self.view,
@@ -333,41 +400,42 @@ class _Sweep:
         }
 
 
-def _solid(shown: Viewable) -> Meshable:
-    return checked_solid(None if shown.scene is None else shown.scene.subject)
+def _silent(done: int, total: int, what: str) -> None:
+    """In place of a report of progress."""
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
+
+
+def _slots(cluster: Any) -> int:
+    """Return how many tasks keep the workers of a client or a pool busy."""
+    return 2 * cluster_pool.pool_of(cluster).slots
+
+
+def _figures(picture: Picture, seconds: float) -> dict[str, Any]:
+    """Return what a table says of a picture."""
+    red, green, blue = (float(picture.array[..., i].mean(dtype=np.float64)) for i in range(3))
+    stats = picture.stats
+    return {
+        "seconds": float(stats.get("render_s", seconds)),
+        "brightness": 0.2126 * red + 0.7152 * green + 0.0722 * blue,
+        "samples": stats.get("samples", picture.provenance.samples),
+        "noise": stats.get("noise"),
+    }
+
+
+def _measures(shown: Viewable, cluster: Client | WorkerPool | None) -> SolidMeasures:
+    """Return what measures the solid of a picture.
+
+    Raises:
+        ValueError: It has none.
+    """
+    solid = checked_solid(None if shown.scene is None else shown.scene.subject)
+    return SolidMeasures(solid, None if cluster is None else cluster_pool.pool_of(cluster))
 
 
 def _source(obj: Any, name: str) -> str:
     """Return where an object is from, as the author wrote it, or its name."""
     known = loaded_from(obj)
     return name if known is None else known.source
-
-
-def _write_table(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Write the rows as CSV; what some of them do not have is empty there.
-
-    Raises:
-        SaveError: It cannot be written.
-    """
-    if not rows:
-        return
-    text = io.StringIO()
-    columns = list(dict.fromkeys(name for row in rows for name in row))
-    writer = csv.DictWriter(text, columns, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    with replacement(path) as file:
-        file.write(text.getvalue().encode())
-
-
-def _known_rows(path: Path) -> dict[str, dict[str, Any]]:
-    """Return the figures of an earlier table by file; none if it cannot be read."""
-    known = {*_FIGURES, *COLUMNS}
-    try:
-        with open(path, encoding="utf-8", newline="") as file:
-            return {
-                row["file"]: {name: text for name, text in row.items() if name in known}
-                for row in csv.DictReader(file)
-            }
-    except (OSError, KeyError, csv.Error, UnicodeDecodeError):
-        return {}

@@ -47,7 +47,7 @@ class Frames:
         """Return whether the file of a frame exists and has the right key."""
         try:
             with PngImageFile(self.files[index]) as picture:
-                return picture.info.get(KEY) == self._key(index)
+                return picture.info.get(KEY) == self.key(index)
         except Exception:  # Pillow raises many kinds of exceptions for broken files
             return False
 
@@ -57,7 +57,7 @@ class Frames:
         Raises:
             SaveError: It cannot be written.
         """
-        texts = {**picture.metadata, KEY: self._key(index)}
+        texts = {**picture.metadata, KEY: self.key(index)}
         with replacement(self.files[index]) as file:
             file.write(encode(picture.array, texts))
 
@@ -70,7 +70,8 @@ class Frames:
         for index in indices:
             self.files[index].unlink(missing_ok=True)
 
-    def _key(self, index: int) -> str:
+    def key(self, index: int) -> str:
+        """Return the hash of everything that a frame depends on."""
         key = f"{self._common} {index} {self._times[index]!r}"
         return hashlib.sha256(key.encode()).hexdigest()
 

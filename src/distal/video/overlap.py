@@ -11,8 +11,9 @@ import queue
 import threading
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
+from itertools import islice
 from typing import Final, Generic, TypeVar
 
 Item = TypeVar("Item")
@@ -126,6 +127,28 @@ def made_ahead(
         except BaseException:
             stop()
             for future in waiting:
+                future.cancel()
+            raise
+
+
+def made_at_once(
+    make: Callable[[Given], Item], given: Iterable[Given], count: int, stop: Callable[[], object]
+) -> Generator[Item, None, None]:
+    """Yield ``make`` of each item as it is finished, in any order; arguments of ``made_ahead``."""
+    rest, working = iter(given), set[Future[Item]]()
+    with ThreadPoolExecutor(count) as pool:
+        try:
+            while True:
+                working |= {pool.submit(make, each) for each in islice(rest, count - len(working))}
+                if not working:
+                    return
+                # With a timeout, so that ctrl-C is handled everywhere.
+                done, working = wait(working, _LOOK_S, FIRST_COMPLETED)
+                for future in done:
+                    yield future.result()
+        except BaseException:
+            stop()
+            for future in working:
                 future.cancel()
             raise
 
