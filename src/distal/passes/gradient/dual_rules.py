@@ -96,7 +96,6 @@ def _binary_tangent(e: Binary, d: Lanes) -> Tangent:
         case BinaryOp.FLOOR_DIV:
             return None
         case BinaryOp.MOD:
-            whole = Builtin("floor", (binary(BinaryOp.DIV, e.lhs, e.rhs),), e.type)
-            return minus(d[0], scaled(d[1], whole))
+            return node_tangent(Builtin("mod", (e.lhs, e.rhs), e.type), d)
         case _:
             raise AssertionError(f"{e.op} of floats")
