@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from distal.ir import limits
 from distal.ir.intrinsics import derivatives, folding, meanings
 from distal.ir.intrinsics.declaration import ONE, SCENE, TWO, ZERO_TO_ONE, Intrinsic, R
 from distal.ir.signatures import BINARY, NUMBERS, SIGNED, TERNARY, UNARY, componentwise
@@ -54,6 +55,14 @@ COMPONENTS: Final = (
         (UNARY,), ((1.0, 5.0),), meaning=lambda xp, x: xp.nextafter(x, xp.zeros_like(x)), cost=1,
         fold=folding.stepwise(folding.nearer_zero), derivative=derivatives.same, python=(),
         hidden=True),
+    Intrinsic("smallest_normal", "The smallest normal float, in each component.", ONE, (UNARY,),
+        (R,), meaning=lambda xp, x: xp.full_like(x, limits.smallest(8 * x.dtype.itemsize)), cost=0,
+        fold=folding.stepwise(folding.smallest_normal), derivative=derivatives.constant, python=(),
+        hidden=True),
+    Intrinsic("largest_power", "What powers are at most, in each component.", ONE, (UNARY,),
+        (R,), meaning=lambda xp, x: xp.full_like(x, limits.largest_power(8 * x.dtype.itemsize)),
+        cost=0, fold=folding.stepwise(folding.largest_power), derivative=derivatives.constant,
+        python=(), hidden=True),
     Intrinsic("mod", "a - b * floor(a / b), the sign of b; the same as a % b.", TWO, (BINARY,),
         (R, (0.5, 4.0)), scene="rounding.remainder", cost=8,
         fold=folding.stepwise(folding.remainder), derivative=derivatives.remainder, python=(),

@@ -17,8 +17,9 @@ from dataclasses import replace
 from typing import Final
 
 from distal.diagnostics import Span
-from distal.ir.build import binary, components, integer, splat
+from distal.ir.build import binary, components, integer, number, splat
 from distal.ir.intrinsics import INTRINSICS
+from distal.ir.limits import largest_power, smallest
 from distal.ir.nodes import (
     Assign,
     Binary,
@@ -69,6 +70,7 @@ _SAMPLERS: Final = {
     TextureShape.VOLUME: "textures.sample_3d",
 }
 _WRAPS: Final = {"repeat": 0, "clamp": 1}
+_ENDS: Final = {"smallest_normal": smallest, "largest_power": largest_power}
 _WHOLE: Final = (Kind.INT, Kind.UINT)
 
 
@@ -258,6 +260,8 @@ class _Decomposer:
         precision = self._context.precision
         if e.name == "nearer_zero":
             return nearer_zero(*e.args, precision)
+        if e.name in _ENDS:
+            return number(_ENDS[e.name](precision), e.type)
         e = held(e, intrinsic, self._target, precision)
         if e.name in self._target.rough and intrinsic.careful is not None:
             careful = self._scene(e, intrinsic.careful, e.args, e.name)

@@ -26,7 +26,6 @@ from distal.ir.nodes import (
 from distal.ir.tangents import (
     Lanes,
     Tangent,
-    binary,
     composed,
     element,
     filled,
