@@ -287,16 +287,6 @@ def nearer_zero(calc: ConstantArithmetic, a: Floats) -> Floats:
     return tuple(calc.mul(x, limits.below_one(calc.precision)) for x in a)
 
 
-def smallest_normal(calc: ConstantArithmetic, a: Floats) -> Floats:
-    """Return the smallest normal float for each component."""
-    return (limits.smallest(calc.precision),) * len(a)
-
-
-def largest_power(calc: ConstantArithmetic, a: Floats) -> Floats:
-    """Return what powers are at most for each component."""
-    return (limits.largest_power(calc.precision),) * len(a)
-
-
 def remainder(calc: ConstantArithmetic, a: Floats, b: Floats) -> Floats:
     """Compute mod; 0 where b counts as 0.
 
