@@ -256,7 +256,7 @@ def unary(body: FunctionBody, op: ast.unaryop, operand: Value, node: ast.expr) -
     if isinstance(operand, Whole):
         match op:
             case ast.USub():
-                return Whole(-operand.value, operand.computed)
+                return Whole(-operand.value, operand.computed or operand.value < 0)
             case ast.UAdd():
                 return operand
             case _:
