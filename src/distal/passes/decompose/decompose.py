@@ -259,7 +259,7 @@ class _Decomposer:
         family = self._target.family
         precision = self._context.precision
         if e.name == "nearer_zero":
-            return nearer_zero(*e.args, precision)
+            return nearer_zero(e.args[0], precision)
         if e.name in _ENDS:
             return number(_ENDS[e.name](precision), e.type)
         e = held(e, intrinsic, self._target, precision)
@@ -272,7 +272,7 @@ class _Decomposer:
         if family == "glsl100" and intrinsic.scene and kind_of(e.args[0].type) in _WHOLE:
             spelling = f"@{intrinsic.scene}"
         if e.name == "mod" and divides(e.args[1], self._known):
-            return remainder(*e.args, self._known, precision)
+            return remainder(e.args[0], e.args[1], self._known, precision)
         if intrinsic.guarded and not target_serves(e, self._known):
             assert intrinsic.scene is not None, intrinsic
             return self._scene(e, intrinsic.scene, e.args, e.name)
