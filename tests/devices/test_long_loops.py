@@ -36,7 +36,7 @@ def long(frame: Frame) -> vec3:
 @image
 def left_early(frame: Frame) -> vec3:
     total = 0.0
-    for k in range(70000):
+    for _ in range(70000):
         total += 1.0
         if total > frame.coord.x:
             break
