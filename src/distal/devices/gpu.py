@@ -26,6 +26,7 @@ from distal.devices.adapters import Adapter, Gpu, chosen, opened, require_unfork
 from distal.devices.base import Cancel, Cancelled, DeviceError, Progress, Values, cancel_test
 from distal.devices.driver_errors import rough_names, uses_rough
 from distal.devices.gpu_program import LARGEST_DISPATCH, GpuProgram
+from distal.devices.long_loops import warn_of_long_loops
 from distal.devices.pool import PICTURES
 from distal.devices.tiles import Tile, TileSizer, tiles
 from distal.forking import new_lock
@@ -74,6 +75,7 @@ def prepare(
     if uses_rough(module):
         target = replace(target, rough=_rough_names(row))
     shaped = (passes or run_passes)(module, target, precision)
+    warn_of_long_loops(shaped, row)
     artifact = emit(shaped, target)
     kernel = GpuKernel(shaped, artifact, lambda: opened(row))
     kernel.stats |= {

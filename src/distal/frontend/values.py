@@ -24,9 +24,16 @@ WHOLE_RANGES: dict[Type, range] = {INT: range(-(2**31), 2**31), UINT: range(2**3
 
 @dataclass(frozen=True, slots=True)
 class Whole:
-    """A whole number known at compile time (literal or captured int); its default type is int."""
+    """A whole number known at compile time (literal or captured int); its default type is int.
+
+    Attributes:
+        value: The number.
+        computed: Whether operators of scene code computed it: then it wraps as an int or uint,
+            where a number that is written must fit. As a float it is exact.
+    """
 
     value: int
+    computed: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,6 +17,7 @@ import struct
 from collections.abc import Callable
 from typing import Final, TypeAlias
 
+from distal.ir.limits import below_one
 from distal.ir.nodes import BinaryOp, CompareOp, UnaryOp
 from distal.ir.types import Kind
 
@@ -119,7 +120,9 @@ class ConstantArithmetic:
                 return float(math.floor(quotient))
             case _:
                 assert op is BinaryOp.MOD, op
-                return self.round(a - self.round(b * float(math.floor(quotient))))
+                rest = self.round(a - self.round(b * float(math.floor(quotient))))
+                end = self.round(b * below_one(self.precision))
+                return min(max(rest, min(end, 0.0)), max(end, 0.0))
 
     def add(self, a: float, b: float) -> float:
         """Return ``a + b``, rounded."""

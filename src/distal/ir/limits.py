@@ -26,6 +26,9 @@ LARGEST_TIME: Final = 2.0**20
 SMALLEST_COSINE: Final = 2.0**-30
 # A smaller divisor of a remainder counts as 0, so that a quotient of ordinary numbers is finite.
 SMALLEST_DIVISOR: Final = 2.0**-60
+# The largest floats below 1: a normal number times this is its neighbour in the direction of 0.
+BELOW_ONE: Final = 1.0 - 2.0**-24
+BELOW_ONE_64: Final = 1.0 - 2.0**-53
 # A matrix with a smaller determinant is singular.
 SMALLEST_DETERMINANT: Final = 2.0**-100
 
@@ -72,6 +75,11 @@ ANGLE: Final = Held(
 def smallest(precision: int) -> float:
     """Return the smallest normal float with ``precision`` bits."""
     return SMALLEST if precision == 32 else SMALLEST_64
+
+
+def below_one(precision: int) -> float:
+    """Return the largest float below 1 with ``precision`` bits."""
+    return BELOW_ONE if precision == 32 else BELOW_ONE_64
 
 
 def largest_power(precision: int) -> float:

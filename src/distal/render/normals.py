@@ -5,7 +5,20 @@ Input: a field and a point. Output: a unit vector, never NaN.
 
 from __future__ import annotations
 
-from distal.lang import Field3, abs, dot, func, gradient, inversesqrt, max, select, vec2, vec3
+from distal.ir.limits import ORDINARY
+from distal.lang import (
+    Field3,
+    abs,
+    clamp,
+    dot,
+    func,
+    gradient,
+    inversesqrt,
+    max,
+    select,
+    vec2,
+    vec3,
+)
 
 # The methods; the choice is a constant at compile time.
 EXACT = 0  # the field's own derivative
@@ -17,8 +30,9 @@ FORWARD = 3  # forward differences, for water and for speed: three evaluations a
 @func
 def unit_or_up(v: vec3) -> vec3:
     """Return the vector scaled to length 1; the unit vector up if it has no direction."""
-    squared = dot(v, v)
-    return select(squared > 1e-30, v * inversesqrt(max(squared, 1e-30)), vec3(0.0, 1.0, 0.0))
+    held = clamp(v, -ORDINARY, ORDINARY)  # larger slopes have no squares in 32 bits
+    squared = dot(held, held)
+    return select(squared > 1e-30, held * inversesqrt(max(squared, 1e-30)), vec3(0.0, 1.0, 0.0))
 
 
 @func

@@ -13,7 +13,7 @@ from typing import Final, NoReturn, TypeAlias
 from distal.ir.constant_arithmetic import COMPARE, ConstantArithmetic, NotFoldableError, Number
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.intrinsics.folding import ConstantCall
-from distal.ir.limits import Held, smallest
+from distal.ir.limits import Held, below_one, smallest
 from distal.ir.nodes import BinaryOp, CompareOp, UnaryOp
 from distal.ir.types import Kind
 from distal.tape.operations import ELEMENTARY
@@ -112,7 +112,11 @@ class Scalars:
             if op is BinaryOp.FLOOR_DIV:
                 return quotient
             product = self.binary(BinaryOp.MUL, b, quotient, kind)
-            return self.binary(BinaryOp.SUB, a, product, kind)
+            rest = self.binary(BinaryOp.SUB, a, product, kind)
+            nearest = below_one(self._constants.precision)
+            end = self.binary(BinaryOp.MUL, b, nearest, kind)
+            least, most = (self.builtin(n, (end, 0.0), kind) for n in ("min", "max"))
+            return self.builtin("min", (self.builtin("max", (rest, least), kind), most), kind)
         if not isinstance(b, Varying) and float(b) == _NEUTRAL[op]:
             return a
         if op in (BinaryOp.ADD, BinaryOp.MUL) and not isinstance(a, Varying):

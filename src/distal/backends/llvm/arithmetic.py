@@ -249,14 +249,8 @@ class LaneArithmetic:
             return rhs
         if op in _FLOAT_OPS:
             return self.apply(Kind.FLOAT, f"{_FLOAT_OPS[op]} {{t0}} {{0}}, {{1}}", lhs, rhs)
-        quotient = self.divide(lhs, rhs)
-        if op is BinaryOp.DIV:
-            return quotient
-        floored = self.intrinsic("floor", Kind.FLOAT, quotient)
-        if op is BinaryOp.FLOOR_DIV:
-            return floored
-        assert op is BinaryOp.MOD
-        return self.binary(BinaryOp.SUB, lhs, self.binary(BinaryOp.MUL, rhs, floored))
+        assert op is BinaryOp.DIV, f"{op} of floats is decomposed"
+        return self.divide(lhs, rhs)
 
     def is_zero(self, leaf: Leaf) -> bool:
         """Return whether a float is the constant 0."""

@@ -115,7 +115,13 @@ def _int_remainder(a: Leaf, b: Leaf) -> Leaf:
 
 
 def _mod(a: Leaf, b: Leaf) -> Leaf:
-    return a - b * _floor_quotient(a, b) if _is_float(a) else _int_remainder(a, b)
+    if not _is_float(a):
+        return _int_remainder(a, b)
+    zero = np.zeros_like(b)
+    end = np.nextafter(b, zero)
+    rest = a - b * _floor_quotient(a, b)
+    held: Leaf = np.minimum(np.maximum(rest, np.minimum(end, zero)), np.maximum(end, zero))
+    return held
 
 
 def _shifted_left(a: Leaf, b: Leaf) -> Leaf:

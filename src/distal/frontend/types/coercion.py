@@ -15,6 +15,7 @@ from distal.frontend.problems import SceneError, must_be, must_match
 from distal.frontend.source import Node
 from distal.frontend.types.python_objects import kind_of_object
 from distal.frontend.values import Closure, SequenceValue, Static, Value, Whole, describe, whole_to
+from distal.ir.constant_arithmetic import wrap
 from distal.ir.nodes import Compose, Const, Construct, Expr
 from distal.ir.types import (
     FLOAT,
@@ -60,8 +61,8 @@ def coerce(body: FunctionBody, value: Value, type: Type, node: Node) -> Expr | N
         SceneError: A whole number is out of the range of the type.
     """
     match value:
-        case Whole(number):
-            return _coerce_whole(body, number, type, node)
+        case Whole():
+            return _coerce_whole(body, value, type, node)
         case SequenceValue(items, is_list, captured):
             return _coerce_sequence(body, items, type, node, vectors=captured or not is_list)
         case Static() | Closure():
@@ -80,9 +81,12 @@ def last_frame(body: FunctionBody, value: Value) -> Expr | None:
     return body.compilation.resource(texture, value.text, texture.__distal_type__)
 
 
-def _coerce_whole(body: FunctionBody, number: int, type: Type, node: Node) -> Expr | None:
+def _coerce_whole(body: FunctionBody, value: Whole, type: Type, node: Node) -> Expr | None:
     if not isinstance(type, Scalar) or type.kind is Kind.BOOL:
         return None
+    number = value.value
+    if value.computed and type.kind is not Kind.FLOAT:
+        number = wrap(number, type.kind)
     coerced = whole_to(number, type)
     if coerced is None:
         raise body.problem(

@@ -19,6 +19,7 @@ from distal.frontend.types.coercion import (
 from distal.frontend.types.python_objects import RefusedError, value_of
 from distal.frontend.values import LARGEST_ARRAY, Closure, SequenceValue, Static, Value, Whole
 from distal.ir.build import cast, integer, number, splat
+from distal.ir.constant_arithmetic import wrap
 from distal.ir.nodes import Compose, Const, Construct, Expr, Index
 from distal.ir.types import (
     BOOL,
@@ -72,7 +73,8 @@ def _scalar(body: FunctionBody, kind: Kind, args: Sequence[Value], node: ast.Cal
         raise body.problem(ErrorCode.CALL, f"'{type}' takes 1 argument, got {len(args)}", node)
     (arg,) = args
     if isinstance(arg, Whole):
-        return _literal(body, arg.value, type, node)
+        wraps = arg.computed and kind in (Kind.INT, Kind.UINT)
+        return _literal(body, wrap(arg.value, kind) if wraps else arg.value, type, node)
     value = with_default_type(body, arg, node)
     if not isinstance(value.type, Scalar):
         hint = None

@@ -20,6 +20,7 @@ from distal.frontend.types.python_objects import RefusedError, float_constant
 from distal.frontend.types.unification import concrete, do_not_mix, unify_operands
 from distal.frontend.values import Value, Whole
 from distal.ir.build import cast, splat
+from distal.ir.constant_arithmetic import wrap
 from distal.ir.nodes import (
     Binary,
     BinaryOp,
@@ -81,7 +82,9 @@ _LITERAL: Final[dict[BinaryOp, Callable[[int, int], int]]] = {
 _BITWISE = {BinaryOp.AND, BinaryOp.OR, BinaryOp.XOR}
 _DIVISIONS = {BinaryOp.DIV, BinaryOp.FLOOR_DIV, BinaryOp.MOD}
 _SHIFTS = {BinaryOp.SHL, BinaryOp.SHR}
-_LARGEST_LITERAL = 1 << 64
+# Of these the lowest 32 bits of the result depend on higher bits of the operands.
+_NARROWING = {BinaryOp.FLOOR_DIV, BinaryOp.MOD, BinaryOp.SHR}
+_LARGEST_LITERAL = 1 << 1024
 
 
 def binary(body: FunctionBody, op: ast.operator, lhs: Value, rhs: Value, node: Node) -> Value:
@@ -103,7 +106,7 @@ def binary(body: FunctionBody, op: ast.operator, lhs: Value, rhs: Value, node: N
         return _matmul(body, lhs, rhs, node)
     kind = _OPS[type(op)]
     if isinstance(lhs, Whole) and isinstance(rhs, Whole):
-        folded = _fold(body, kind, lhs.value, rhs.value, node)
+        folded = _fold(body, kind, lhs, rhs, node)
         if folded is not None:
             return folded
     if kind in _SHIFTS:
@@ -112,12 +115,18 @@ def binary(body: FunctionBody, op: ast.operator, lhs: Value, rhs: Value, node: N
     return _arithmetic(body, kind, left, right, node)
 
 
-def _fold(body: FunctionBody, op: BinaryOp, lhs: int, rhs: int, node: Node) -> Value | None:
-    if op in (BinaryOp.DIV, BinaryOp.FLOOR_DIV, BinaryOp.MOD) and rhs == 0:
+def _held(operand: Whole, op: BinaryOp) -> int:
+    """Return an operand as the int that it is, where more bits would give another result."""
+    exact = op not in _NARROWING or not operand.computed
+    return operand.value if exact else wrap(operand.value, Kind.INT)
+
+
+def _fold(body: FunctionBody, op: BinaryOp, lhs: Whole, rhs: Whole, node: Node) -> Value | None:
+    if op in _DIVISIONS and _held(rhs, op) == 0:
         raise body.problem(ErrorCode.NUMBER, "division by zero", node)
     if op is BinaryOp.DIV:
         try:
-            return float_constant(lhs / rhs, "the quotient")
+            return float_constant(lhs.value / rhs.value, "the quotient")
         except (RefusedError, OverflowError):
             raise body.problem(
                 ErrorCode.NUMBER, "the quotient is out of the range of float", node
@@ -125,12 +134,12 @@ def _fold(body: FunctionBody, op: BinaryOp, lhs: int, rhs: int, node: Node) -> V
     compute = _LITERAL.get(op)
     if compute is None:
         return None
-    value = compute(lhs, rhs)
+    value = compute(_held(lhs, op), _held(rhs, op))
     if abs(value) >= _LARGEST_LITERAL:
         raise body.problem(
             ErrorCode.NUMBER, "this number is too large", node, "write it as a float"
         )
-    return Whole(value)
+    return Whole(value, computed=True)
 
 
 def _arithmetic(body: FunctionBody, op: BinaryOp, lhs: Expr, rhs: Expr, node: Node) -> Expr:
@@ -189,8 +198,8 @@ def _shift(body: FunctionBody, op: BinaryOp, lhs: Value, rhs: Value, node: Node)
     if isinstance(rhs, Whole) and not 0 <= rhs.value < 32:
         raise body.problem(ErrorCode.NUMBER, "a shift goes by 0 to 31 bits", node)
     if isinstance(lhs, Whole) and isinstance(rhs, Whole):
-        shifted = lhs.value << rhs.value if op is BinaryOp.SHL else lhs.value >> rhs.value
-        return Whole(shifted)
+        number, by = _held(lhs, op), rhs.value
+        return Whole(number << by if op is BinaryOp.SHL else number >> by, computed=True)
     value = with_default_type(body, lhs, node)
     kind = kind_of(value.type)
     if isinstance(rhs, Whole) and kind is Kind.UINT:
@@ -247,11 +256,11 @@ def unary(body: FunctionBody, op: ast.unaryop, operand: Value, node: ast.expr) -
     if isinstance(operand, Whole):
         match op:
             case ast.USub():
-                return Whole(-operand.value)
+                return Whole(-operand.value, operand.computed or operand.value < 0)
             case ast.UAdd():
                 return operand
             case _:
-                return Whole(~operand.value)
+                return Whole(~operand.value, operand.computed)
     value = with_default_type(body, operand, node)
     kind, span = kind_of(value.type), body.span(node)
     match op:

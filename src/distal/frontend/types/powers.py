@@ -92,7 +92,7 @@ def _fold_power(body: FunctionBody, base: int, exponent: int, node: Node) -> Val
         raise body.problem(
             ErrorCode.NUMBER, "this number is too large", node, "write it as a float"
         )
-    return Whole(base**exponent)
+    return Whole(base**exponent, computed=True)
 
 
 def _multiplied(body: FunctionBody, base: Expr, exponent: int, node: Node) -> Expr:

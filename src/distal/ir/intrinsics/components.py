@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from distal.ir import limits
 from distal.ir.intrinsics import derivatives, folding, meanings
 from distal.ir.intrinsics.declaration import ONE, SCENE, TWO, ZERO_TO_ONE, Intrinsic, R
 from distal.ir.signatures import BINARY, NUMBERS, SIGNED, TERNARY, UNARY, componentwise
@@ -36,7 +37,8 @@ COMPONENTS: Final = (
     Intrinsic("fract", "x - floor(x).", ONE, (UNARY,), (R,), scene="rounding.fraction", cost=2,
         fold=folding.stepwise(folding.fraction), derivative=derivatives.same, python=(), llvm=SCENE,
         results=ZERO_TO_ONE,
-        edges="From 0 to 1; 1 itself only by rounding, for negative x above -2^-24."),
+        glsl="min(fract({0}), 0.99999994)", wgsl="min(fract({0}), {result}(0.99999994))",
+        edges="At least 0, and at most the float below 1."),
     Intrinsic("min", "The smaller: b if b < a else a.", TWO, (componentwise(2, NUMBERS),),
         (R, R), meaning=meanings.minimum, scene="choosing.smaller_int", cost=1,
         fold=folding.by_component(folding.smaller), derivative=derivatives.minimum,
@@ -49,11 +51,24 @@ COMPONENTS: Final = (
         (componentwise(3, NUMBERS),), (R, (-5.0, 0.0), (0.0, 5.0)), scene="choosing.clamped",
         cost=2, fold=folding.by_component(folding.clamped), derivative=derivatives.clamped,
         python=(), llvm=SCENE, glsl_scalars=(1, 2), edges="Where low > high it is high."),
+    Intrinsic("nearer_zero", "The next float in the direction of 0, of a normal number.", ONE,
+        (UNARY,), ((1.0, 5.0),), meaning=lambda xp, x: xp.nextafter(x, xp.zeros_like(x)), cost=1,
+        fold=folding.stepwise(folding.nearer_zero), derivative=derivatives.same, python=(),
+        hidden=True),
+    Intrinsic("smallest_normal", "The smallest normal float, in each component.", ONE, (UNARY,),
+        (R,), meaning=lambda xp, x: xp.full_like(x, limits.smallest(8 * x.dtype.itemsize)), cost=0,
+        fold=folding.not_folded, derivative=derivatives.constant, python=(),
+        hidden=True),
+    Intrinsic("largest_power", "What powers are at most, in each component.", ONE, (UNARY,),
+        (R,), meaning=lambda xp, x: xp.full_like(x, limits.largest_power(8 * x.dtype.itemsize)),
+        cost=0, fold=folding.not_folded, derivative=derivatives.constant,
+        python=(), hidden=True),
     Intrinsic("mod", "a - b * floor(a / b), the sign of b; the same as a % b.", TWO, (BINARY,),
         (R, (0.5, 4.0)), scene="rounding.remainder", cost=8,
         fold=folding.stepwise(folding.remainder), derivative=derivatives.remainder, python=(),
         glsl=SCENE, wgsl=SCENE, llvm=SCENE, rtol=2e-6, atol=2e-6,
-        edges="0 for a b below 2^-60 in magnitude: mod(a, 0) = 0."),
+        edges="For b > 0 at least 0, and at most the float below b; for b < 0 mirrored. 0 for a b "
+        "below 2^-60 in magnitude: mod(a, 0) = 0."),
     Intrinsic("mix", "a + (b - a) * t.", ("a", "b", "t"), (TERNARY,), (R, R, (0.0, 1.0)),
         scene="choosing.mixed", cost=3, fold=folding.stepwise(folding.mixed),
         derivative=derivatives.mixed, python=(), llvm=SCENE, glsl_scalars=(2,), rtol=1e-6,

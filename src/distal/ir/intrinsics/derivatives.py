@@ -15,7 +15,7 @@ import math
 from collections.abc import Callable
 from typing import TypeAlias
 
-from distal.ir.limits import ORDINARY, SMALLEST, SMALLEST_DIVISOR
+from distal.ir.limits import SMALLEST, SMALLEST_DIVISOR
 from distal.ir.nodes import (
     BinaryOp,
     Builtin,
@@ -80,9 +80,16 @@ def _dot(lhs: Expr, rhs: Expr) -> Expr:
     return _call("dot", lhs, rhs, type=FLOAT)
 
 
-def _ordinary(slope: Expr) -> Expr:
-    """Clamp a derivative that may overflow to the range of ordinary numbers."""
-    end = number(ORDINARY, slope.type)
+def _where_normal(x: Expr, slope: Expr) -> Expr:
+    """Return ``slope`` where ``x`` is above the smallest normal number, else 0."""
+    none = number(0.0, slope.type)
+    above = compared(CompareOp.GT, x, _call("smallest_normal", x))
+    return Select(above, slope, none, slope.type)
+
+
+def _finite(slope: Expr) -> Expr:
+    """Clamp a derivative that may overflow to what powers are clamped to."""
+    end = _call("largest_power", slope)
     return _call("min", _call("max", slope, _negated(end)), end)
 
 
@@ -120,10 +127,10 @@ def square_root(e: Builtin, d: Lanes) -> Tangent:
 
 
 def inverse_square_root(e: Builtin, d: Lanes) -> Tangent:
-    """Differentiate inversesqrt: -1 / (2 x sqrt(x)); 0 where that could overflow."""
+    """Differentiate inversesqrt: -1 / (2 x sqrt(x)); 0 where the argument is clamped."""
     x = e.args[0]
     slope = _quotient(product(number(-0.5, e.type), e), x)
-    return scaled(d[0], where_above(x, SMALLEST_DIVISOR, slope))
+    return scaled(d[0], _where_normal(x, _finite(slope)))
 
 
 def exponential(e: Builtin, d: Lanes) -> Tangent:
@@ -139,14 +146,14 @@ def exponential_base_2(e: Builtin, d: Lanes) -> Tangent:
 def logarithm(e: Builtin, d: Lanes) -> Tangent:
     """Differentiate log: 1 / x; 0 where the argument is clamped."""
     x = e.args[0]
-    return scaled(d[0], where_above(x, SMALLEST, _quotient(number(1.0, e.type), x)))
+    return scaled(d[0], _where_normal(x, _quotient(number(1.0, e.type), x)))
 
 
 def logarithm_base_2(e: Builtin, d: Lanes) -> Tangent:
     """Differentiate log2: 1 / (x log 2); 0 where the argument is clamped."""
     x = e.args[0]
     slope = _quotient(number(1.0 / math.log(2.0), e.type), x)
-    return scaled(d[0], where_above(x, 2.0 * SMALLEST, slope))
+    return scaled(d[0], _where_normal(x, slope))
 
 
 def sine(e: Builtin, d: Lanes) -> Tangent:
@@ -165,7 +172,9 @@ def tangent(e: Builtin, d: Lanes) -> Tangent:
 
 
 def _arc_slope(x: Expr) -> Expr:
-    rest = _difference(number(1.0, x.type), product(x, x))
+    # The square of an x near 1 would lose digits of the rest.
+    one = number(1.0, x.type)
+    rest = product(_difference(one, x), _sum(one, x))
     return where_positive(rest, _call("inversesqrt", rest))
 
 
@@ -196,8 +205,9 @@ def hyperbolic_cosine(e: Builtin, d: Lanes) -> Tangent:
 
 
 def hyperbolic_tangent(e: Builtin, d: Lanes) -> Tangent:
-    """Differentiate tanh: 1 - tanh^2."""
-    return scaled(d[0], _difference(number(1.0, e.type), product(e, e)))
+    """Differentiate tanh: 1 / cosh^2; 1 - tanh^2 has no digits where tanh is near 1."""
+    root = _quotient(number(1.0, e.type), _call("cosh", e.args[0]))
+    return scaled(d[0], product(root, root))
 
 
 # Rules for several arguments, component by component.
@@ -243,8 +253,8 @@ def smoothstepped(e: Builtin, d: Lanes) -> Tangent:
     is_step = _less(_call("abs", between), number(SMALLEST, e.type))
     extent = Select(is_step, number(1.0, e.type), between, e.type)
     place = _quotient(_difference(x, low), extent)
-    moved = over(minus(minus(d[2], d[0]), scaled(minus(d[1], d[0]), place)), extent)
     t = _call("clamp", place, number(0.0, e.type), number(1.0, e.type))
+    moved = over(minus(minus(d[2], d[0]), scaled(minus(d[1], d[0]), t)), extent)
     slope = product(product(number(6.0, e.type), t), _difference(number(1.0, e.type), t))
     return picked(is_step, None, scaled(moved, slope), e.type)
 
@@ -252,8 +262,9 @@ def smoothstepped(e: Builtin, d: Lanes) -> Tangent:
 def power(e: Builtin, d: Lanes) -> Tangent:
     """Differentiate pow: along x, y x^(y-1); along y, x^y log x; 0 for x <= 0."""
     x, y = e.args
-    along_x = scaled(d[0], where_above(x, SMALLEST, _ordinary(_quotient(product(e, y), x))))
-    along_y = scaled(d[1], where_above(x, SMALLEST, _ordinary(product(e, _call("log", x)))))
+    lower = _call("pow", x, _difference(y, number(1.0, e.type)))
+    along_x = scaled(d[0], _where_normal(x, _finite(product(y, lower))))
+    along_y = scaled(d[1], _where_normal(x, _finite(product(e, _call("log", x)))))
     return plus(along_x, along_y)
 
 
@@ -262,7 +273,7 @@ def arc_tangent_2(e: Builtin, d: Lanes) -> Tangent:
     y, x = e.args
     square = _sum(product(x, x), product(y, y))
     around = minus(scaled(d[0], x), scaled(d[1], y))
-    return scaled(around, where_above(square, SMALLEST, _quotient(number(1.0, e.type), square)))
+    return scaled(around, _where_normal(square, _quotient(number(1.0, e.type), square)))
 
 
 # Rules for vectors.

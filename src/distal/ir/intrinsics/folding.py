@@ -277,8 +277,14 @@ def inverse_square_root(calc: ConstantArithmetic, a: Floats) -> Floats:
 
 
 def fraction(calc: ConstantArithmetic, a: Floats) -> Floats:
-    """Compute x - floor(x) for each component."""
-    return tuple(calc.sub(x, float(math.floor(x))) for x in a)
+    """Compute x - floor(x) for each component, below 1."""
+    most = limits.below_one(calc.precision)
+    return tuple(min(calc.sub(x, float(math.floor(x))), most) for x in a)
+
+
+def nearer_zero(calc: ConstantArithmetic, a: Floats) -> Floats:
+    """Compute the next float in the direction of 0 for each component."""
+    return tuple(calc.mul(x, limits.below_one(calc.precision)) for x in a)
 
 
 def remainder(calc: ConstantArithmetic, a: Floats, b: Floats) -> Floats:

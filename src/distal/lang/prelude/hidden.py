@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Final, Protocol, TypeVar
 
 from distal.ir.intrinsics import INTRINSICS
-from distal.lang import uint
+from distal.lang import Floats, uint
 from distal.lang.names import LangFunction
 
 Integers = TypeVar("Integers", int, uint)
@@ -17,6 +17,10 @@ Integers = TypeVar("Integers", int, uint)
 
 class _OfTwoFloats(Protocol):
     def __call__(self, a: float, b: float, /) -> float: ...
+
+
+class _OfFloats(Protocol):
+    def __call__(self, x: Floats, /) -> Floats: ...
 
 
 class _OfTwoIntegers(Protocol):
@@ -36,6 +40,7 @@ class _FloatToUint(Protocol):
 
 
 anywhere: Final[_OfACondition] = LangFunction(INTRINSICS["anywhere"])
+nearer_zero: Final[_OfFloats] = LangFunction(INTRINSICS["nearer_zero"])
 raw_atan2: Final[_OfTwoFloats] = LangFunction(INTRINSICS["raw_atan2"])
 raw_power: Final[_OfTwoFloats] = LangFunction(INTRINSICS["raw_power"])
 saturated_int: Final[_FloatToInt] = LangFunction(INTRINSICS["saturated_int"])

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from distal.ir.limits import SMALLEST_DIVISOR
-from distal.lang import Floats, abs, floor, func, select
+from distal.lang import Floats, abs, floor, func, max, min, select
+from distal.lang.prelude.hidden import nearer_zero
 
 
 @func
@@ -24,13 +25,19 @@ def truncate(x: float) -> float:
 
 @func
 def fraction(x: Floats) -> Floats:
-    """Return ``x - floor(x)``: from 0 to 1; exactly 1 occurs for tiny negative x, by rounding."""
-    return x - floor(x)
+    """Return ``x - floor(x)``, below 1 also where the difference is rounded up to 1."""
+    return min(x - floor(x), nearer_zero(1.0))
 
 
 @func
 def remainder(a: Floats, b: Floats) -> Floats:
-    """Return the floored remainder with the sign of ``b``, as Python's ``%``; 0 if b is 0."""
+    """Return the floored remainder, from 0 to the float next to ``b``; 0 if b is 0.
+
+    The quotient may be rounded up to a whole number, and the product may be exact or rounded: the
+    difference can be a little below 0, or ``b`` itself.
+    """
     is_zero = abs(b) < SMALLEST_DIVISOR
     divisor = select(is_zero, 1.0, b)
-    return select(is_zero, 0.0, a - divisor * floor(a / divisor))
+    end = select(is_zero, 0.0, nearer_zero(b))
+    rest = a - divisor * floor(a / divisor)
+    return min(max(rest, min(end, 0.0)), max(end, 0.0))

@@ -17,8 +17,9 @@ from dataclasses import replace
 from typing import Final
 
 from distal.diagnostics import Span
-from distal.ir.build import binary, components, integer, splat
+from distal.ir.build import binary, components, integer, number, splat
 from distal.ir.intrinsics import INTRINSICS
+from distal.ir.limits import largest_power, smallest
 from distal.ir.nodes import (
     Assign,
     Binary,
@@ -53,6 +54,7 @@ from distal.passes.decompose.edges import (
     divides,
     floor_quotient,
     held,
+    nearer_zero,
     never_crossed,
     remainder,
     target_serves,
@@ -68,6 +70,7 @@ _SAMPLERS: Final = {
     TextureShape.VOLUME: "textures.sample_3d",
 }
 _WRAPS: Final = {"repeat": 0, "clamp": 1}
+_ENDS: Final = {"smallest_normal": smallest, "largest_power": largest_power}
 _WHOLE: Final = (Kind.INT, Kind.UINT)
 
 
@@ -254,7 +257,12 @@ class _Decomposer:
     def _builtin(self, e: Builtin) -> Expr:
         intrinsic = INTRINSICS[e.name]
         family = self._target.family
-        e = held(e, intrinsic, self._target, self._context.precision)
+        precision = self._context.precision
+        if e.name == "nearer_zero":
+            return nearer_zero(e.args[0], precision)
+        if e.name in _ENDS:
+            return number(_ENDS[e.name](precision), e.type)
+        e = held(e, intrinsic, self._target, precision)
         if e.name in self._target.rough and intrinsic.careful is not None:
             careful = self._scene(e, intrinsic.careful, e.args, e.name)
             self._linker.natives[careful.function] = e.name
@@ -264,14 +272,14 @@ class _Decomposer:
         if family == "glsl100" and intrinsic.scene and kind_of(e.args[0].type) in _WHOLE:
             spelling = f"@{intrinsic.scene}"
         if e.name == "mod" and divides(e.args[1], self._known):
-            return remainder(*e.args)
+            return remainder(e.args[0], e.args[1], self._known, precision)
         if intrinsic.guarded and not target_serves(e, self._known):
             assert intrinsic.scene is not None, intrinsic
             return self._scene(e, intrinsic.scene, e.args, e.name)
         if spelling is None or not spelling.startswith("@"):
             return never_crossed(e) if e.name == "clamp" else e
         # The elementary polynomials are for 32 bits; for 64 bits the backend has its own functions.
-        if self._context.precision == 64 and family == "llvm" and "@elementary." in spelling:
+        if precision == 64 and family == "llvm" and "@elementary." in spelling:
             return e
         return self._scene(e, spelling[1:], e.args, e.name)
 
@@ -280,7 +288,7 @@ class _Decomposer:
             if e.op is BinaryOp.FLOOR_DIV:
                 return floor_quotient(e.lhs, e.rhs)
             if divides(e.rhs, self._known):
-                return remainder(e.lhs, e.rhs)
+                return remainder(e.lhs, e.rhs, self._known, self._context.precision)
             return self._scene(e, "rounding.remainder", (e.lhs, e.rhs), e.op.value)
         if self._target.integer_floor:
             return e

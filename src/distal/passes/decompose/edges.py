@@ -15,7 +15,7 @@ from typing import Final
 
 from distal.ir.build import binary, builtin, divide, literal_components, multiply, number, subtract
 from distal.ir.intrinsics import Intrinsic
-from distal.ir.limits import SMALLEST, SMALLEST_DIVISOR
+from distal.ir.limits import SMALLEST, SMALLEST_DIVISOR, below_one
 from distal.ir.nodes import BinaryOp, Builtin, Expr
 from distal.ir.target import Target
 from distal.passes.fold.float_ranges import interval
@@ -75,9 +75,29 @@ def divides(divisor: Expr, known: Known) -> bool:
     return low >= SMALLEST_DIVISOR or high <= -SMALLEST_DIVISOR
 
 
-def remainder(a: Expr, b: Expr) -> Expr:
-    """Return ``a - b * floor(a / b)``."""
-    return subtract(a, multiply(b, builtin("floor", divide(a, b))))
+def remainder(a: Expr, b: Expr, known: Known, precision: int) -> Expr:
+    """Return ``a - b * floor(a / b)``, between 0 and the float next to ``b``; see ``divides``.
+
+    Args:
+        a: The dividend.
+        b: The divisor, provably not 0.
+        known: The values of immutable locals.
+        precision: The bits of a float, 32 or 64.
+    """
+    rest = subtract(a, multiply(b, builtin("floor", divide(a, b))))
+    none, end = number(0.0, b.type), nearer_zero(b, precision)
+    if interval(b, known)[0] > 0.0:
+        return builtin("min", builtin("max", rest, none), end)
+    return builtin("max", builtin("min", rest, none), end)
+
+
+def nearer_zero(x: Expr, precision: int) -> Expr:
+    """Return the next float in the direction of 0, of a normal number.
+
+    The product is half a unit or more, and less than a unit, smaller than ``x``, so that it is
+    rounded to the neighbour.
+    """
+    return multiply(x, number(below_one(precision), x.type))
 
 
 def floor_quotient(a: Expr, b: Expr) -> Expr:

@@ -26,7 +26,6 @@ from distal.ir.nodes import (
 from distal.ir.tangents import (
     Lanes,
     Tangent,
-    binary,
     composed,
     element,
     filled,
@@ -96,7 +95,6 @@ def _binary_tangent(e: Binary, d: Lanes) -> Tangent:
         case BinaryOp.FLOOR_DIV:
             return None
         case BinaryOp.MOD:
-            whole = Builtin("floor", (binary(BinaryOp.DIV, e.lhs, e.rhs),), e.type)
-            return minus(d[0], scaled(d[1], whole))
+            return node_tangent(Builtin("mod", (e.lhs, e.rhs), e.type), d)
         case _:
             raise AssertionError(f"{e.op} of floats")
