@@ -22,7 +22,7 @@ from distal import foreign_files
 from distal.devices.resources import texels
 from distal.diagnostics import LoadError
 from distal.foreign_files import KINDS, memory_of, need, opened, reading, shown, watched
-from distal.images import exr_header
+from distal.pixels import exr_header
 from distal.ir.types import TextureShape
 from distal.polygons.reading import read_mesh
 from distal.polygons.volumes import read_volume
