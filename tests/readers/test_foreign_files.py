@@ -525,6 +525,7 @@ OWN = {
     "loading.py": "the author's scene",
     "mesh/": "writes",
     "notebook/widget.py": "distal's own script",
+    "pixels/openexr.py": "within the readers of pictures, from bytes",
     "polygons/": "within read_mesh, read_points and read_volume",
     "read_watch.py": "/proc",
     "runtime/fingerprints.py": "files that were read before",

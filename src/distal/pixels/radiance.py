@@ -72,7 +72,7 @@ def _top_left(pixels: NDArray[np.float32], size: re.Match[bytes]) -> NDArray[np.
 
 
 def _head(data: bytes) -> tuple[str, NDArray[np.float32], int]:
-    """Return the format, what its light was multiplied by, and where the line of the size begins."""
+    """Return the format, the factor on its light, and where the line of the size begins."""
     end = data.find(b"\n\n", 0, _LONGEST_HEAD)
     other = data.find(b"\n\r\n", 0, _LONGEST_HEAD)
     is_other = other >= 0 and (end < 0 or other < end)
