@@ -34,15 +34,23 @@ from distal.polygons.volume_samples import (
 
 @dataclass(frozen=True, slots=True)
 class _Layout:
-    """Where the fields of a header are: a form of ``struct``, and bytes from its begin."""
+    """Where the fields of a header are.
+
+    Attributes:
+        bytes: Bytes of the header.
+        rounding: Of a sum of squares of its numbers.
+        fields: A form of ``struct``, and bytes from the begin.
+    """
 
     bytes: int
+    rounding: float
     fields: Mapping[str, tuple[str, int]]
 
 
 _LAYOUTS: Final = {
     348: _Layout(
         352,
+        4e-7,
         {
             "dims": ("8h", 40),
             "type": ("h", 70),
@@ -57,6 +65,7 @@ _LAYOUTS: Final = {
     ),
     540: _Layout(
         544,
+        1e-14,
         {
             "dims": ("8q", 16),
             "type": ("h", 12),
@@ -121,7 +130,7 @@ def _read(file: Any) -> VolumeSamples:
     whole = head + unpacked(file, max(length - layout.bytes, 0) + 1)
     values = _scaled(samples_of(memoryview(whole)[int(begin) :], dtype, sizes), *fields["scaling"])
     unit = _MILLIMETERS.get(fields["units"][0] & 7, 1.0)
-    affine = _affine(fields)
+    affine = _affine(fields, layout.rounding)
     if affine is None:
         spacing = positive([unit * step for step in fields["pixdim"][1:4]])
         return VolumeSamples(checked_samples(values), spacing)
@@ -139,8 +148,13 @@ def _scaled(values: Any, slope: float, shift: float) -> Any:
     return scaled
 
 
-def _affine(fields: Mapping[str, Any]) -> list[tuple[float, ...]] | None:
-    """Return the three rows from indices to the world; None if the file has none."""
+def _affine(fields: Mapping[str, Any], rounding: float) -> list[tuple[float, ...]] | None:
+    """Return the three rows from indices to the world; None if the file has none.
+
+    Args:
+        fields: The header.
+        rounding: Of a sum of its numbers' squares.
+    """
     by_quaternion, by_rows = fields["codes"]
     if by_rows > 0:
         rows = fields["sform"]
@@ -152,7 +166,7 @@ def _affine(fields: Mapping[str, Any]) -> list[tuple[float, ...]] | None:
     if spacing is None:
         raise LoadError("the distances of its samples are 0 or not finite")
     x, y, z = spacing
-    turned = _rotation(*fields["qform"][:3])
+    turned = _rotation(*fields["qform"][:3], rounding)
     shift = fields["qform"][3:]
     return [
         (row[0] * x, row[1] * y, row[2] * z * sign, at)
@@ -160,14 +174,16 @@ def _affine(fields: Mapping[str, Any]) -> list[tuple[float, ...]] | None:
     ]
 
 
-def _rotation(b: float, c: float, d: float) -> tuple[Vector, Vector, Vector]:
+def _rotation(b: float, c: float, d: float, rounding: float) -> tuple[Vector, Vector, Vector]:
     """Return the rows of a rotation, from the last three parts of a unit quaternion."""
     square = b * b + c * c + d * d
     if not square < 1e30:
         raise LoadError("its rotation is not finite")
-    if square > 1.0:  # by rounding: half a turn
+    a = 0.0
+    if square > 1.0 - rounding:  # half a turn: the root of the rounding would be a large part
         b, c, d = (part / math.sqrt(square) for part in (b, c, d))
-    a = math.sqrt(max(1.0 - square, 0.0))
+    else:
+        a = math.sqrt(1.0 - square)
     return (
         (a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)),
         (2 * (b * c + a * d), a * a + c * c - b * b - d * d, 2 * (c * d - a * b)),

@@ -22,6 +22,8 @@ from distal.foreign_files import need
 MOST_SAMPLES: Final = 2**26
 # Bytes that a sample costs at the peak of an import.
 SAMPLE_BYTES: Final = 24
+# The cosine of what is a right angle in a file, whose numbers may have few digits.
+_RIGHT: Final = 1e-4
 Buffer: TypeAlias = bytes | memoryview
 Vector: TypeAlias = tuple[float, float, float]
 
@@ -168,4 +170,8 @@ def matrix_of(samples: VolumeSamples, spacing: Vector | None) -> list[list[float
             )
             for row in range(3)
         ]
-    return [[*(d[row] for d in orientation.directions), middle[row]] for row in range(3)]
+    axes = np.array(orientation.directions).T
+    if np.abs(axes.T @ axes - np.eye(3)).max() < _RIGHT:
+        left, _, right = np.linalg.svd(axes)
+        axes = left @ right  # the nearest matrix of exactly right angles
+    return [[*map(float, row), at] for row, at in zip(axes, middle, strict=True)]

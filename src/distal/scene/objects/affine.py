@@ -20,8 +20,10 @@ from distal.scene.tree.errors import refuse, refuse_kind
 Columns: TypeAlias = list[list[float]]
 Placing: TypeAlias = tuple[Operator, tuple[Any, ...]]
 _HINT: Final = "transform([[1, 0, 0, x], [0, 1, 0, y], [0, 0, 1, z], [0, 0, 0, 1]])"
-# Factors and right angles that differ by less are the rounding of a file's 32 bits.
+# Factors that differ by less are equal but for rounding to 32 bits.
 _EQUAL: Final = 1e-6
+# The cosine of what is a right angle.
+_RIGHT: Final = 1e-14
 # The smallest factor, as a share of the largest one.
 _FLAT: Final = 1e-6
 
@@ -117,7 +119,7 @@ def _decomposed(columns: Columns) -> tuple[Columns, list[float], Columns]:
         for i, j in ((0, 1), (0, 2), (1, 2)):
             across = _dot(u[i], u[j])
             a, b = _dot(u[i], u[i]), _dot(u[j], u[j])
-            if abs(across) <= _EQUAL * math.sqrt(a * b) or across == 0.0:
+            if abs(across) <= _RIGHT * math.sqrt(a * b):
                 continue
             is_done = False
             half = (b - a) / (2.0 * across)
@@ -131,7 +133,11 @@ def _decomposed(columns: Columns) -> tuple[Columns, list[float], Columns]:
         if is_done:
             break
     factors = [math.hypot(*column) for column in u]
-    return v, factors, _upright([[x / (f or 1.0) for x in m] for m, f in zip(u, factors)])
+    return (
+        v,
+        factors,
+        _upright([[x / (f or 1.0) for x in m] for m, f in zip(u, factors, strict=True)]),
+    )
 
 
 def _upright(columns: Columns) -> Columns:

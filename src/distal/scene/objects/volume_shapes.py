@@ -63,7 +63,7 @@ def volume_node(
             is_ordered = path.suffix.lower() != ".npy"
         else:
             samples = volumes.checked_samples(source)
-            is_mask = getattr(source, "dtype", None) == bool
+            is_mask = getattr(getattr(source, "dtype", None), "kind", "") == "b"
             found = volumes.VolumeSamples(samples, None, is_mask=is_mask)
             is_ordered = False
         if found.is_mask:
