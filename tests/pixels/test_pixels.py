@@ -7,8 +7,15 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from distal import AmbientLight, Box, Environment, Heightfield, OrthographicCamera, Scene
-from distal import image_pattern
+from distal import (
+    AmbientLight,
+    Box,
+    Environment,
+    Heightfield,
+    OrthographicCamera,
+    Scene,
+    image_pattern,
+)
 from distal.diagnostics import LoadError
 from distal.pixels.arrays import ARRAY_RULES
 from distal.pixels.modes import MODE_RULES
