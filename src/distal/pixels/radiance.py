@@ -169,4 +169,5 @@ def _with_repeats(raw: memoryview, count: int) -> NDArray[np.uint8]:
     if source[0] < 0:
         raise LoadError("a line of its pixels is damaged")
     counts[enough] -= ends[enough] - count
-    return stored[np.repeat(source[: enough + 1], counts[: enough + 1])]
+    pixels: NDArray[np.uint8] = stored[np.repeat(source[: enough + 1], counts[: enough + 1])]
+    return pixels

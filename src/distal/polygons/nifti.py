@@ -166,8 +166,8 @@ def _affine(fields: Mapping[str, Any], rounding: float) -> list[tuple[float, ...
     if spacing is None:
         raise LoadError("the distances of its samples are 0 or not finite")
     x, y, z = spacing
-    turned = _rotation(*fields["qform"][:3], rounding)
-    shift = fields["qform"][3:]
+    b, c, d, *shift = fields["qform"]
+    turned = _rotation(b, c, d, rounding)
     return [
         (row[0] * x, row[1] * y, row[2] * z * sign, at)
         for row, at in zip(turned, shift, strict=True)
