@@ -143,10 +143,8 @@ SOLIDS = [
     Case(
         "transform",
         {"matrix": [[0.0, -1.5, 0.0, 0.2], [-1.5, 0.0, 0.0, 0.1], [0.0, 0.0, 1.5, -0.3]]},
-        lambda a, b, p, matrix: (
-            1.5 * a((p - arr(matrix)[:, 3]) @ np.linalg.inv(arr(matrix)[:, :3]).T)
-            changed={"matrix": [[[1.5, 0.0, 0.0, 0.4], [0.0, -1.5, 0.0, 0.3], [0.0, 0.0, 1.5, 0.2]]]},
-    ),
+        lambda a, b, p, matrix: 1.5 * a((p - arr(matrix)[:, 3]) @ arr(matrix)[:, :3] / 2.25),
+        changed={"matrix": [[[1.5, 0.0, 0.0, 0.4], [0.0, -1.5, 0.0, 0.3], [0.0, 0.0, 1.5, 0.2]]]},
     ),
     Case(
         "shear",
