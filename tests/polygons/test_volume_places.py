@@ -229,7 +229,7 @@ def test_a_mask_is_inside_where_it_is_true(tmp_path):
     mask = VALUES > 0.5
     np.save(tmp_path / "a.npy", mask)
     places = INDICES - (np.array(COUNTS) - 1) / 2.0
-    for source in (mask, tmp_path / "a.npy"):
+    for source in (mask, mask.tolist(), tmp_path / "a.npy"):
         shape = Shape.from_volume(source)
         assert INDICES[shape(places) < 0.0].tolist() == [list(MARK)]
         # Half a sample beside the marked one is the surface.

@@ -92,7 +92,8 @@ def _of_file(content: bytes, name: str) -> Pixels:
         return Pixels(openexr.read_light(content), encoded=False)
     with _decoder(content, name) as picture:
         rule_of(picture)
-        need_pixels(*picture.size, _PIXEL_BYTES)
+        width, height = picture.size
+        need_pixels(width, height, _PIXEL_BYTES)
         picture.load()
         return Pixels(pixels_of(picture), rule_of(picture).encoded)
 

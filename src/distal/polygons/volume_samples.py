@@ -80,6 +80,12 @@ def checked_samples(values: Any) -> NDArray[np.float32]:
     return np.ascontiguousarray(samples)
 
 
+def of_array(values: Any) -> VolumeSamples:
+    """Return the samples of an array or nested lists; see ``checked_samples``."""
+    samples = checked_samples(values)
+    return VolumeSamples(samples, None, is_mask=np.asarray(values).dtype.kind == "b")
+
+
 def check_count(sizes: Sequence[int]) -> int:
     """Return the number of samples.
 

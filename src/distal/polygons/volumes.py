@@ -25,10 +25,11 @@ from distal.polygons.volume_samples import (
     VolumeSamples,
     checked_samples,
     matrix_of,
+    of_array,
     samples_of,
 )
 
-__all__ = ["VolumeSamples", "checked_samples", "field_of", "matrix_of", "notice_of", "read_volume"]
+__all__ = ["VolumeSamples", "field_of", "matrix_of", "notice_of", "of_array", "read_volume"]
 VOLUME_FORMATS: Final = (".npy", ".nrrd", ".nhdr", ".nii", ".nii.gz")
 _NPY_HEADERS: Final[dict[tuple[int, int], Callable[..., Any]]] = {
     (1, 0): np.lib.format.read_array_header_1_0,

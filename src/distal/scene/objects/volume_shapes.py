@@ -62,9 +62,7 @@ def volume_node(
             found = volumes.read_volume(path, max_memory)
             is_ordered = path.suffix.lower() != ".npy"
         else:
-            samples = volumes.checked_samples(source)
-            is_mask = getattr(getattr(source, "dtype", None), "kind", "") == "b"
-            found = volumes.VolumeSamples(samples, None, is_mask=is_mask)
+            found = volumes.of_array(source)
             is_ordered = False
         if found.is_mask:
             at = _level_of_mask(at)
