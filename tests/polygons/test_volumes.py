@@ -4,6 +4,7 @@ import gzip
 import io
 import struct
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +13,9 @@ from hypothesis import strategies as st
 
 from distal import Shape
 from distal.diagnostics import LoadError
-from distal.polygons.volumes import VOLUME_FORMATS, read_volume
+from distal.polygons.nifti import read_nifti
+from distal.polygons.nrrd import read_nrrd
+from distal.polygons.volumes import read_npy, read_volume
 from distal.scene.tree.errors import SceneValueError
 
 COUNTS = (9, 11, 13)  # along x, y and z
@@ -49,6 +52,12 @@ def npy(values=BALL) -> bytes:
     return file.getvalue()
 
 
+READERS = {
+    ".npy": read_npy,
+    ".nrrd": lambda data: read_nrrd(data, Path("nowhere")),
+    ".nii": read_nifti,
+    ".nii.gz": read_nifti,
+}
 FILES = [
     ("a.npy", npy()),
     ("a.nrrd", nrrd()),
@@ -137,7 +146,7 @@ WRONG = [
     (BALL, {"spacing": (1.0, 2.0)}, "a spacing is one number or three, not 2"),
     (BALL, {"spacing": 0.0}, "a spacing is above 0, not 0"),
     ("none.nrrd", {}, "cannot read 'none.nrrd': No such file or directory"),
-    ("a.dcm", {}, "cannot read 'a.dcm': a volume's suffix is one of .npy, .nrrd, .nii, .nii.gz"),
+    ("a.dcm", {}, "cannot read 'a.dcm': a volume's suffix is one of .npy, .nrrd, .nhdr, .nii, "),
 ]
 
 
@@ -153,8 +162,8 @@ def test_wrong_volumes_are_refused_at_the_line(source, options, message):
     ("name", "data", "message"),
     [
         ("a.nrrd", nrrd()[:-4], "it announces 1,287 samples and contains 1,286: it is truncated"),
-        ("a.nrrd", nrrd(encoding="hex"), "its encoding 'hex' is not read: save it as raw or gzip"),
-        ("a.nrrd", nrrd(more="data file: a.raw"), "its samples are in another file"),
+        ("a.nrrd", nrrd(encoding="hex"), "its encoding 'hex' is not read: save it as raw, gzip"),
+        ("a.nrrd", nrrd(more="data file: a/b.raw"), "its samples are in 'a/b.raw', which is no"),
         ("a.nrrd", nrrd(type="block"), "it is no volume of numbers with one component"),
         ("a.nii", nifti(code=128), "its samples are no real numbers"),
         ("a.nii.gz", gzip.compress(nifti())[:-40], "its compressed part is damaged"),
@@ -184,7 +193,7 @@ def test_damaged_bytes_never_end_in_another_exception(data):
     if data.draw(st.booleans()):
         damaged = damaged[: data.draw(st.integers(0, len(damaged)))]
     try:
-        found = VOLUME_FORMATS[name[1:]](bytes(damaged))
+        found = READERS[name[1:]](bytes(damaged))
     except LoadError as error:
         assert error.message
     else:

@@ -158,12 +158,19 @@ def _nrrd(encoding: str) -> Callable[[], bytes]:
     def made() -> bytes:
         head = (
             "NRRD0004\ntype: float\ndimension: 3\nsizes: 8 7 6\nspacings: 1 1 2\n"
+            f"space: LPS\nspace directions: (0,-1,0) (1,0,0) (0,0.1,2)\nspace origin: (9,8,7)\n"
             f"endian: little\nencoding: {encoding}\n\n"
         ).encode()
         raw = _samples().tobytes()
         return head + (gzip.compress(raw, mtime=0) if encoding == "gzip" else raw)
 
     return made
+
+
+def _radiance(packed: bool = True) -> bytes:
+    head = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 4 +X 12\n"
+    line = b"\2\2\0\x0c" + b"\x8c\x40" * 2 + b"\x0c" + bytes(range(12)) + b"\x8c\x82"
+    return head + (line * 4 if packed else b"\x40\x50\x60\x80\1\1\1\5" * 8)
 
 
 def _nifti() -> bytes:
@@ -363,6 +370,16 @@ SUBJECTS: Final = (
             ("a.tif", "TIFF", "RGB"),
             ("a.tga", "TGA", "RGB"),
         )
+    ),
+    Subject("texture", "a.hdr", lambda: _radiance(), lambda p: texels(p, TextureShape.FLAT)),
+    Subject(
+        "texture", "b.hdr", lambda: _radiance(packed=False), lambda p: texels(p, TextureShape.FLAT)
+    ),
+    Subject(
+        "texture",
+        "a.exr",
+        lambda: exr.encode(_pixels(), {}, _TEXTS, 16),
+        lambda path: texels(path, TextureShape.FLAT),
     ),
     Subject("sound", "a.wav", _wave(2), read_sound),
     Subject("sound", "deep.wav", _wave(3), read_sound),

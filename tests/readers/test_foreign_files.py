@@ -22,8 +22,8 @@ from distal import foreign_files
 from distal.devices.resources import texels
 from distal.diagnostics import LoadError
 from distal.foreign_files import KINDS, memory_of, need, opened, reading, shown, watched
-from distal.images import exr_header
 from distal.ir.types import TextureShape
+from distal.pixels import exr_header
 from distal.polygons.reading import read_mesh
 from distal.polygons.volumes import read_volume
 from distal.scene.objects.lettering import text_outline
@@ -525,6 +525,7 @@ OWN = {
     "loading.py": "the author's scene",
     "mesh/": "writes",
     "notebook/widget.py": "distal's own script",
+    "pixels/": "within the readers of pictures, from bytes",
     "polygons/": "within read_mesh, read_points and read_volume",
     "read_watch.py": "/proc",
     "runtime/fingerprints.py": "files that were read before",

@@ -141,6 +141,12 @@ SOLIDS = [
         lambda a, b, p, source: a(turned_back(p, turn_towards((0.0, 1.0, 0.0), source))),
     ),
     Case(
+        "transform",
+        {"matrix": [[0.0, -1.5, 0.0, 0.2], [-1.5, 0.0, 0.0, 0.1], [0.0, 0.0, 1.5, -0.3]]},
+        lambda a, b, p, matrix: 1.5 * a((p - arr(matrix)[:, 3]) @ arr(matrix)[:, :3] / 2.25),
+        changed={"matrix": [[[1.5, 0.0, 0.0, 0.4], [0.0, -1.5, 0.0, 0.3], [0.0, 0.0, 1.5, 0.2]]]},
+    ),
+    Case(
         "shear",
         {"xy": 0.3, "xz": -0.4, "yz": 0.5},
         lambda a, b, p, xy, xz, yz: a(

@@ -2,48 +2,25 @@
 
 Input: a declared resource (a file's path, an array, nested lists) and its type. Output: texels as
 (height, width, 4), depth or face first for volumes and cubes, in the order of their indices;
-buffers as (n,) or (n, size). Values of pictures are scaled to 0 to 1 and otherwise unchanged.
-Floats have 32 bits if these hold the source's numbers exactly (``float_type``). Does not depend on
+buffers as (n,) or (n, size). Pictures are those of ``distal.pixels``. Floats have 32 bits if these
+hold the source's numbers exactly (``float_type``). Does not depend on
 devices.
 """
 
 from __future__ import annotations
 
-import io
-import struct
 from pathlib import Path
-from typing import Any, Final, assert_never
+from typing import Any, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
 
 from distal.diagnostics import LoadError
-from distal.foreign_files import Memory, need_pixels, opened
+from distal.foreign_files import Memory
 from distal.ir.types import Buffer, Kind, Texture, TextureShape, component_count, kind_of
 from distal.lang.resources import AXES
-
-# Bytes that a pixel costs while its file is read: four floats, the decoder's pixel, and what
-# progressive JPEG keeps.
-_PIXEL_BYTES: Final = 24
-_BAND: Final = 256  # rows that are converted at once
-# Formats of pictures that Pillow decodes itself: its others start programs, or read more files.
-PICTURE_FORMATS: Final = (
-    "PNG",
-    "JPEG",
-    "WEBP",
-    "GIF",
-    "BMP",
-    "TIFF",
-    "TGA",
-    "PPM",
-    "AVIF",
-    "JPEG2000",
-    "DDS",
-    "PCX",
-    "PSD",
-    "QOI",
-    "SGI",
-)
+from distal.pixels.arrays import float_type, numbers_of, with_channels
+from distal.pixels.reading import read_pixels
 
 _COMPONENT: dict[Kind, Any] = {Kind.INT: np.int32, Kind.UINT: np.uint32}
 
@@ -98,7 +75,9 @@ def texels(
         case TextureShape.FLAT:
             return _picture(data, max_memory, step=-1)
         case TextureShape.VOLUME:
-            found = _with_channels(_numbers(data), 3)
+            if isinstance(data, str | Path):
+                raise LoadError(f"a Texture3D takes an array, not the file '{data}'")
+            found = with_channels(numbers_of(data), 3)
             order = [axes.index(axis) for axis in AXES]
             return np.ascontiguousarray(found.transpose(*order, 3))
         case TextureShape.CUBE:
@@ -124,71 +103,7 @@ def _parts(data: Any) -> list[Any]:
 
 def _picture(data: Any, max_memory: Memory | None, step: int = 1) -> NDArray[Any]:
     """Return a picture: (height, width, 4), top row first; the last one with a step of -1."""
-    if not isinstance(data, str | Path):
-        return _with_channels(_numbers(data)[::step], 2)
-    with (
-        opened("texture", data, max_memory=max_memory, option=True) as content,
-        _decoder(content, str(data)) as picture,
-    ):
-        width, height = picture.size
-        need_pixels(width, height, _PIXEL_BYTES)
-        picture.load()
-        pixels = np.empty((height, width, 4), np.float32)
-        for top in range(0, height, _BAND):
-            band = picture.crop((0, top, width, min(top + _BAND, height)))
-            pixels[::step][top : top + _BAND] = np.asarray(band.convert("RGBA"))
-        pixels /= np.float32(255.0)
-        return pixels
-
-
-def _decoder(content: bytes, name: str) -> Any:
-    """Return the picture of a file, of which only the header is read.
-
-    ``Image.open`` refuses large pictures, whoever asked for them; the budget does that here.
-    """
-    from PIL import Image  # noqa: PLC0415 (only a file's data needs it)
-
-    Image.init()
-    for format in PICTURE_FORMATS:
-        make, accept = Image.OPEN.get(format, (None, None))
-        is_likely = accept is None or accept(content[:16])
-        if make is None or isinstance(is_likely, str) or not is_likely:
-            continue
-        try:
-            picture = make(io.BytesIO(content), name)
-        except (SyntaxError, IndexError, TypeError, KeyError, EOFError, struct.error):
-            continue  # as ``Image.open``: it is another format's
-        if picture is not None:
-            return picture
-    raise LoadError("it is no picture of a format that is read")
-
-
-def _numbers(data: Any) -> NDArray[Any]:
-    if isinstance(data, str | Path):
-        raise LoadError(f"a Texture3D takes an array, not the file '{data}'")
-    try:
-        array = np.asarray(data)
-    except ValueError as error:
-        raise LoadError("a texture's rows have one length") from error
-    if array.dtype.kind not in "fiub":
-        raise LoadError("a texture takes numbers")
-    return array
-
-
-def _with_channels(array: NDArray[Any], axes: int) -> NDArray[Any]:
-    """Return RGBA from grey, RGB or RGBA; bytes are scaled to 0 to 1."""
-    if array.ndim == axes:
-        array = np.repeat(array[..., None], 3, axis=-1)
-    if array.ndim != axes + 1 or array.shape[-1] not in (3, 4) or array.size == 0:
-        names = ("height, width", "depth, height, width")[axes - 2]
-        raise LoadError(f"a texture is ({names}), with 3 or 4 channels; not {array.shape}")
-    values = array.astype(float_type(array), order="C")
-    if array.dtype == np.uint8:
-        values /= np.float32(255.0)
-    if values.shape[-1] == 3:
-        opaque = np.ones((*values.shape[:-1], 1), values.dtype)
-        values = np.concatenate([values, opaque], axis=-1)
-    return np.ascontiguousarray(values)
+    return np.ascontiguousarray(read_pixels(data, max_memory).values[::step])
 
 
 def _buffer(data: Any, type: Buffer) -> NDArray[Any]:
@@ -202,11 +117,3 @@ def _buffer(data: Any, type: Buffer) -> NDArray[Any]:
         if array.min() < limits.min or array.max() > limits.max:
             raise LoadError(f"a value of the buffer does not fit {kind.value}")
     return np.ascontiguousarray(array, _COMPONENT.get(kind) or float_type(array))
-
-
-def float_type(array: NDArray[Any]) -> np.dtype[Any]:
-    """Return the type in which the floats of data are held: float32 if it holds them exactly.
-
-    Where a kernel computes in 32 bits, its device rounds what has 64.
-    """
-    return np.dtype(np.float32 if np.can_cast(array.dtype, np.float32) else np.float64)

@@ -9,19 +9,18 @@ lines. Does not depend on scenes. Channels have the names that compositors recog
 from __future__ import annotations
 
 import io
-import os
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.foreign_files import need, reading
-from distal.images.exr_header import read_header
+from distal.foreign_files import reading
 from distal.images.metadata import PREFIX, ReadError
 from distal.packages import imported
+from distal.pixels.exr_header import read_header
+from distal.pixels.openexr import read_channels
 
 BITS: Final = (16, 32)
 
@@ -104,6 +103,8 @@ def head_of(path: Path) -> tuple[tuple[int, int], int, dict[str, str]]:
     with reading("EXR", str(path), 0, error=ReadError), path.open("rb") as file:
         header = read_header(file)
     texts = {key: text for key, text in header.texts.items() if key.startswith(PREFIX)}
+    if "R" not in header.bits:
+        raise ReadError("it has no channel R")
     return header.size, header.bits["R"], texts
 
 
@@ -114,27 +115,5 @@ def decode(data: bytes) -> dict[str, NDArray[Any]]:
         ReadError: The file is broken.
         PackageError: OpenEXR is missing or broken.
     """
-    openexr = imported("OpenEXR")
     with reading("EXR", "the picture", len(data), error=ReadError):
-        header = read_header(io.BytesIO(data))
-        width, height = header.size
-        pixel = sum(header.bits.values()) // 8
-        need(2 * width * height * pixel, f"{width:,} x {height:,} pixels of {pixel} bytes")
-        with _quiet(), openexr.File(io.BytesIO(data), separate_channels=True) as file:
-            return {name: channel.pixels for name, channel in file.channels().items()}
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Suppress what the C++ library prints about a broken file; it also raises an exception."""
-    kept = [os.dup(number) for number in (1, 2)]
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    try:
-        for number in (1, 2):
-            os.dup2(nowhere, number)
-        yield
-    finally:
-        for number, copy in zip((1, 2), kept, strict=True):
-            os.dup2(copy, number)
-            os.close(copy)
-        os.close(nowhere)
+        return read_channels(data)[1]

@@ -190,7 +190,7 @@ def rotated_quaternion_bounds(bounds: Bounds, quaternion: vec4) -> Bounds:
 
 @func
 def rotated_matrix(p: vec3, right: vec3, up: vec3, back: vec3) -> vec3:
-    """Return the point before a rotation given by the images of the x, y and z axes."""
+    """Return the point before a rotation, or a mirror image, of the x, y and z axes."""
     return vec3(dot(right, p), dot(up, p), dot(back, p))
 
 
@@ -318,16 +318,13 @@ def sheared_slope(slope: float, xy: float, xz: float, yz: float) -> float:
 def orthonormal_requirement(
     right: tuple[float, ...], up: tuple[float, ...], back: tuple[float, ...]
 ) -> str | None:
-    """Return why three columns are not a rotation, or None."""
+    """Return why three columns are not a rotation or a mirror image, or None."""
     columns = (tuple(right), tuple(up), tuple(back))
     for i, a in enumerate(columns):
         for j, b in enumerate(columns):
             product = sum(x * y for x, y in zip(a, b, strict=True))
             if not -1e-4 < product - float(i == j) < 1e-4:
                 return "the columns of a rotation must have length 1 and stand at right angles"
-    (rx, ry, rz), (ux, uy, uz), (bx, by, bz) = columns
-    if bx * (ry * uz - rz * uy) + by * (rz * ux - rx * uz) + bz * (rx * uy - ry * ux) < 0.0:
-        return "the columns of a rotation must be right-handed; use mirror for the other kind"
     return None
 
 

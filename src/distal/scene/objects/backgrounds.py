@@ -198,7 +198,8 @@ class Environment(Surroundings):
         return self._directions
 
     def _pixels(self) -> Any:
-        return image_files.texture_light(self._texture, "Environment", self.background.place)
+        found = image_files.texture_light(self._texture, "Environment", self.background.place)
+        return found.astype(np.float32, copy=False)
 
 
 CLASSES: Final = {

@@ -150,23 +150,25 @@ class FromData(Placed):
         level: float | None = None,
         max_memory: int | str | None = None,
     ) -> Shape:
-        """Make a solid from a volume of samples: .npy, .nrrd, .nii, .nii.gz, or an array.
+        """Make a solid from a volume of samples: .npy, .nrrd, .nhdr, .nii, .nii.gz, or an array.
 
-        The middle of the volume is the origin; a solid that goes on beyond the volume is cut off
-        there.
+        The middle of an array is the origin. A file with an orientation is placed where it says, in
+        the coordinates of patients: x to the right, y to the front, z up; lengths with a unit are
+        in millimeters. A solid that goes on beyond the volume is cut off there.
 
         Args:
             source: The path of a file, beside the author's file or in the working folder; or an
                 array of three axes.
-            spacing: The distance of two samples in scene units, or three along x, y and z. None:
-                that of the file, else 1.
+            spacing: The distance of two samples in scene units, or three along x, y and z, in place
+                of that of the file, whose middle then is the origin. None: that of the file, else
+                1.
             axes: What the axes of an array or a .npy file are, from the outermost to the innermost.
                 "zyx": a sample is ``array[z, y, x]``, as scanners store slices; "xyz":
                 ``array[x, y, z]``, as ``numpy.meshgrid(..., indexing="ij")`` makes it. NRRD and
                 NIfTI files say it themselves.
             level: The value at the surface; more is inside. The field is then about the distance
                 only near the surface and where samples change fastest. None: samples are distances,
-                negative inside.
+                negative inside; a mask of bools is inside where it is True.
             max_memory: The most memory that a file may become, as "4 GB" or in bytes. None: by its
                 size, 0.8 GB for a small one; this lifts the limit of time, too.
 
@@ -175,11 +177,11 @@ class FromData(Placed):
                 inside.
         """
         place = author_place()
-        node = volume_node(
+        node, matrix = volume_node(
             source, place, spacing=spacing, axes=axes, level=level, max_memory=max_memory
         )
         made: Shape = cls._of(node)
-        return made
+        return made if matrix is None else made.transform(matrix)
 
     @property
     def imported(self) -> tuple[ImportReport | PointsReport, ...]:

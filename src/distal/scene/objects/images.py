@@ -1,7 +1,7 @@
 """Pictures as linear light, for patterns and environments.
 
 Input: a picture's file, an array, a ``Picture``, or a texture. Output: a texture of linear light:
-files and bytes are encoded for display (sRGB) and are decoded here; floats are already linear. A
+levels are encoded for display (sRGB) and are decoded here; floats are already linear. A
 file that cannot be read is an error at the author's line.
 """
 
@@ -14,11 +14,11 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.devices.resources import texels
 from distal.diagnostics import LoadError, Span
+from distal.foreign_files import Memory
 from distal.images.picture import Picture
-from distal.ir.types import TextureShape
 from distal.lang.resources import Texture2D, TextureCube
+from distal.pixels.reading import Pixels, is_pillow, read_pixels
 from distal.scene.tree.conversion import beside
 from distal.scene.tree.errors import refuse, refuse_kind
 
@@ -71,20 +71,22 @@ def cube_texture(images: Any, what: str, place: Span | None) -> TextureCube:
     return TextureCube([light_of(image, what, place) for image in images])
 
 
-def texture_light(texture: Texture2D, what: str, place: Span | None) -> NDArray[np.float32]:
-    """Return the content of a texture: float32 (height, width, 4), top row first.
+def texture_light(texture: Texture2D, what: str, place: Span | None) -> NDArray[Any]:
+    """Return the content of a texture: (height, width, 4), top row first; see ``Pixels``.
 
     Args:
         texture: The texture.
         what: The name in messages of the object that uses it.
         place: The author's line.
     """
+    return _read(texture.data, what, place, texture.max_memory).values
+
+
+def _read(data: Any, what: str, place: Span | None, max_memory: Memory | None = None) -> Pixels:
     try:
-        found = texels(texture.data, TextureShape.FLAT, max_memory=texture.max_memory)
-        return found.astype(np.float32, copy=False)[::-1]
+        return read_pixels(data, max_memory)
     except LoadError as error:
-        message = str(error)
-        refuse(f"{what}: {message}", place=place)
+        refuse(f"{what}: {error}", place=place)
 
 
 def light_of(image: Any, what: str, place: Span | None) -> NDArray[np.float32]:
@@ -97,18 +99,18 @@ def light_of(image: Any, what: str, place: Span | None) -> NDArray[np.float32]:
     """
     if isinstance(image, Picture):
         return image.linear
-    encoded = isinstance(image, str | os.PathLike)
-    if encoded:
+    is_file = isinstance(image, str | os.PathLike)
+    if is_file:
         image = beside(image, place)
-    elif not hasattr(image, "__len__"):
+    elif not (hasattr(image, "__len__") or is_pillow(image)):
         refuse_kind(
             f"'image of {what}' takes a picture, not {type(image).__name__} {image!r:.40}",
             "a picture's file, an array (height, width, 3), a Picture or a Texture2D",
             place,
         )
-    held = Texture2D(os.fspath(image) if encoded else image)
-    pixels = texture_light(held, what, place)
-    if encoded or getattr(image, "dtype", None) == np.uint8:
+    found = _read(os.fspath(image) if is_file else image, what, place)
+    pixels = found.values.astype(np.float32, copy=False)
+    if found.encoded:
         for band in _bands(pixels):
             band[...] = Picture(band).linear
     check_light(pixels[..., :3], what, place)

@@ -24,6 +24,7 @@ from distal.ir.types import VEC2, VEC3
 from distal.lang.functions import Func
 from distal.lang.render_options import Cancel, Progress, RenderOptions
 from distal.lang.source_places import author_place
+from distal.scene.objects.affine import affine_parts, refuse_mirrored
 from distal.scene.objects.copies import CopyColumns, copied
 from distal.scene.objects.field import PLAIN, BaseShape
 from distal.scene.objects.filling import filled
@@ -105,7 +106,9 @@ class Shape(Meshable, FromData):
         if quaternion is not None:
             return self._with(placing.ROTATE_QUATERNION, quaternion)
         if matrix is not None:
-            return self._with(placing.ROTATE_MATRIX, *_columns(matrix))
+            columns = _columns(matrix)
+            refuse_mirrored(columns, author_place())
+            return self._with(placing.ROTATE_MATRIX, *columns)
         if axis is None or angle is None:
             refuse(
                 "a rotation needs an angle and an axis",
@@ -113,6 +116,28 @@ class Shape(Meshable, FromData):
                 author_place(),
             )
         return self._with(placing.ROTATE, axis=axis, angle=angle)
+
+    def transform(self, matrix: Sequence[Sequence[float]] | ArrayLike) -> Self:
+        """Place by an affine matrix: rotate, scale, shear, mirror and move in one step.
+
+        Exact if the matrix keeps all angles, mirrored or not. Else distances are lower bounds: they
+        are multiplied by the smallest factor by which the matrix stretches.
+
+        Args:
+            matrix: Three rows of four numbers, or four with (0, 0, 0, 1) as the last: the first
+                three columns are the images of the axes, the last one that of the origin.
+
+        Raises:
+            SceneValueError: The matrix has another shape or last row, a number is not finite, or it
+                flattens the shape.
+            SceneTypeError: A number is none, or a parameter.
+        """
+        place = author_place()
+        parts = affine_parts(matrix, place)
+        made = self
+        for operator, numbers in parts:
+            made = made._under(operator, numbers, {}, place)
+        return made
 
     def orient(self, source: Vector, target: Vector | None = None) -> Self:
         """Rotate by the smallest angle that maps direction ``source`` to direction ``target``.

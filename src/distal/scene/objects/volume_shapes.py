@@ -34,8 +34,10 @@ else:
 
 def volume_node(
     source: Any, place: Span | None, *, spacing: Any, axes: Any, level: Any, max_memory: Any = None
-) -> Node:
-    """Return the node of a volume; see ``Shape.from_volume``.
+) -> tuple[Node, list[list[float]] | None]:
+    """Return the node of a volume about the origin, and the matrix that places it, or None.
+
+    See ``Shape.from_volume``.
 
     Args:
         source: The path of a file, or an array.
@@ -60,8 +62,10 @@ def volume_node(
             found = volumes.read_volume(path, max_memory)
             is_ordered = path.suffix.lower() != ".npy"
         else:
-            found = volumes.VolumeSamples(volumes.checked_samples(source), None)
+            found = volumes.of_array(source)
             is_ordered = False
+        if found.is_mask:
+            at = _level_of_mask(at)
         step = given or found.spacing or (1.0, 1.0, 1.0)
         field = volumes.field_of(found.values, AXES if is_ordered else axes, step, at)
         x, y, z = (along / field.scale for along in step)
@@ -70,7 +74,7 @@ def volume_node(
         refuse(error.message, None, place)
     except (TypeError, ValueError) as error:
         refuse(str(error), "spacing=0.5, or spacing=(0.5, 0.5, 1.0) along x, y and z", place)
-    if level is None and field.scale < 1.0:
+    if at is None and field.scale < 1.0:
         warn(
             f"neighboring samples differ by up to {1.0 / field.scale:.3g} times their distance, so "
             "they are no distances: they are divided by that; give spacing= if it is another one, "
@@ -80,8 +84,25 @@ def volume_node(
     name = Path(source).name if isinstance(source, str | PathLike) else "array"
     notice(volumes.notice_of(name, field, step))
     if parts is not None:
-        return brick_node(Buffer(parts.numbers), parts, field.size, field.scale, place)
-    return grid_node(Texture3D(field.values, wrap="clamp"), field.size, field.scale, place)
+        node = brick_node(Buffer(parts.numbers), parts, field.size, field.scale, place)
+    else:
+        volume = Texture3D(field.values, wrap="clamp")
+        node = grid_node(volume, field.size, field.scale, place)
+    return node, volumes.matrix_of(found, given)
+
+
+def _level_of_mask(level: float | None) -> float:
+    """Return the level of bools, whose surface is halfway between inside and outside.
+
+    Raises:
+        LoadError: The author gives one.
+    """
+    if level is not None:
+        raise LoadError(
+            "a mask of bools is inside where it is True and has no level: leave level= out, or "
+            "write mask.astype(float)"
+        )
+    return 0.5
 
 
 Size = tuple[float, float, float]

@@ -2,7 +2,7 @@
 
 Input: a file. Output: its size, the bits of its channels, its texts; or a ``ValueError`` that
 explains the fault. OpenEXR's C++ ends the process on some broken files, so no file is passed to it
-unless its header is one that ``exr.encode`` writes.
+unless its header passes the checks here: one part of scan lines, and every row in the file.
 
 Source: "OpenEXR File Layout" of the format's documentation.
 """
@@ -31,12 +31,16 @@ class ExrHeader:
     """The relevant content of a header.
 
     Attributes:
-        size: Width and height in pixels.
+        size: Width and height of its data in pixels.
+        corner: Where the upper left pixel of its data is: column and row.
+        display: What a picture shows: the first column and row, and the last.
         bits: Bits of each channel by name.
         texts: The text attributes.
     """
 
     size: tuple[int, int] = (0, 0)
+    corner: tuple[int, int] = (0, 0)
+    display: tuple[int, int, int, int] = (0, 0, 0, 0)
     bits: dict[str, int] = field(default_factory=dict)
     texts: dict[str, str] = field(default_factory=dict)
 
@@ -52,11 +56,15 @@ def read_header(file: BinaryIO) -> ExrHeader:
     if magic != _MAGIC or version & 0xFF != _VERSION:
         raise ValueError("it is of another version")
     if version & ~0xFF & ~_LONG_NAMES:
-        raise ValueError("it has tiles, depths or several parts")
+        raise ValueError(
+            "it has tiles, depths or several parts: save it as one picture of scan lines"
+        )
     values = _attributes(file)
-    header = ExrHeader(size=_size(values), bits=_channels(values))
-    if "R" not in header.bits:
-        raise ValueError("it has no channel R")
+    corner, size = _window(values, "dataWindow")
+    left, top = _window(values, "displayWindow")[0]
+    across, down = _window(values, "displayWindow")[1]
+    header = ExrHeader(size, corner, (left, top, left + across - 1, top + down - 1))
+    header.bits = _channels(values)
     header.texts = {
         name: data.decode("utf-8", "replace")
         for name, (kind, data) in values.items()
@@ -103,12 +111,15 @@ def _value(
     return struct.unpack(form, data)
 
 
-def _size(values: dict[str, tuple[str, bytes]]) -> tuple[int, int]:
-    left, top, right, bottom = _value(values, "dataWindow", "box2i", "<4i")
+def _window(
+    values: dict[str, tuple[str, bytes]], name: str
+) -> tuple[tuple[int, int], tuple[int, int]]:
+    """Return the upper left corner of a window, and its size."""
+    left, top, right, bottom = _value(values, name, "box2i", "<4i")
     width, height = right - left + 1, bottom - top + 1
     if not (0 < width <= LARGEST_SIDE_PX and 0 < height <= LARGEST_SIDE_PX):
         raise ValueError(f"it claims {width}x{height} pixels")
-    return width, height
+    return (left, top), (width, height)
 
 
 def _rows_in_chunk(values: dict[str, tuple[str, bytes]]) -> int:
@@ -128,8 +139,10 @@ def _channels(values: dict[str, tuple[str, bytes]]) -> dict[str, int]:
             raise ValueError("its channels are garbled")
         name = data[place:end]
         number, _, across, down = struct.unpack_from("<iIii", data, end + 1)
-        if number not in _BITS or (across, down) != (1, 1):
+        if number not in _BITS or across < 1 or down < 1:
             raise ValueError("its channels are garbled")
+        if (across, down) != (1, 1):
+            raise ValueError("not every pixel has all channels: save it as R, G and B")
         found[name.decode("utf-8", "replace")] = _BITS[number]
         place += len(name) + 17
     if not found:
