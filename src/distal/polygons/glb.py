@@ -7,16 +7,19 @@ Source: glTF 2.0 Specification, Khronos.
 
 from __future__ import annotations
 
+import base64
+import binascii
 import json
+import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.diagnostics import LoadError
-from distal.foreign_files import check_time
+from distal.diagnostics import LoadError, printable
+from distal.foreign_files import check_time, need
 from distal.polygons.triangles import MeshSize, SourceTriangles, checked, colored
 
 _COMPONENTS: Final = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
@@ -24,15 +27,29 @@ _WIDTHS: Final = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
 # What a number of a color is divided by.
 _LEVELS: Final = {5121: 255.0, 5123: 65535.0, 5126: 1.0}
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
-_COMPRESSED: Final = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
+_COMPRESSED: Final = (
+    "KHR_draco_mesh_compression",
+    "EXT_meshopt_compression",
+    "KHR_meshopt_compression",
+)
+_INSTANCES: Final = "EXT_mesh_gpu_instancing"
+# Extensions that a file may require: quantized numbers are read, others do not change triangles.
+_READ: Final = re.compile(
+    "KHR_mesh_quantization|KHR_lights_punctual|KHR_xmp(_json_ld)?|(KHR|EXT|MSFT)_texture_.*"
+    "|KHR_materials_.*"
+)
+# What a whole number that is normalized is divided by.
+_NORMAL: Final = {5120: 127.0, 5121: 255.0, 5122: 32767.0, 5123: 65535.0}
+_DATA: Final = re.compile(r"data:[^,]{0,200};base64,")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class _File:
-    """The two chunks of a file."""
+    """The two chunks of a file, and its other buffers by number."""
 
     content: dict[str, Any]
     data: bytes
+    buffers: dict[int, bytes] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,7 +110,12 @@ def read_glb(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
     file = _chunks(data)
     for name in _list(file.content, "extensionsRequired"):
         if name in _COMPRESSED:
-            raise LoadError(f"it is compressed by {name}: save it without compression")
+            raise _compressed(name)
+        if not isinstance(name, str) or not _READ.fullmatch(name):
+            raise LoadError(
+                f"it requires the extension {printable(name, 60)}, which is not read: "
+                "save it without"
+            )
     meshes = _Meshes(file, with_colors=with_colors)
     placed = list(_placed(file))
     total = MeshSize()
@@ -107,6 +129,16 @@ def read_glb(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
     if not copies:
         raise LoadError("there is no triangle")
     return _copied(copies)
+
+
+def _compressed(name: str) -> LoadError:
+    return LoadError(f"it is compressed by {name}: save it without compression")
+
+
+def _extension(entry: dict[str, Any], name: str) -> bool:
+    """Whether an entry of the JSON uses an extension."""
+    extensions = entry.get("extensions", {})
+    return isinstance(extensions, dict) and name in extensions
 
 
 def _copied(copies: list[tuple[_GlbPart, NDArray[np.float64]]]) -> SourceTriangles:
@@ -190,7 +222,8 @@ def _placed(file: _File) -> Iterator[tuple[int, NDArray[np.float64]]]:
     if scenes:
         roots = _list(_entry(file.content, "scenes", file.content.get("scene", 0)), "nodes")
     else:
-        roots = list(range(len(nodes)))
+        inner = {str(c) for n in nodes if isinstance(n, dict) for c in _list(n, "children")}
+        roots = [number for number in range(len(nodes)) if str(number) not in inner]
     waiting = [(root, np.eye(4)) for root in reversed(roots)]
     seen: set[int] = set()
     while waiting:
@@ -201,7 +234,17 @@ def _placed(file: _File) -> Iterator[tuple[int, NDArray[np.float64]]]:
         seen.add(number)
         with np.errstate(all="ignore"):
             matrix = above @ _matrix(node)
+        if _extension(node, _INSTANCES):
+            raise LoadError(
+                f"node {number} is copied by {_INSTANCES}, which is not read: "
+                "save each copy as a node"
+            )
         if "mesh" in node:
+            if "skin" in node:
+                raise LoadError(
+                    f"node {number} is bent by a skin, which is not read: apply its pose (the "
+                    "armature) and save it without"
+                )
             yield node["mesh"], matrix
         waiting += [(child, matrix) for child in reversed(_list(node, "children"))]
 
@@ -238,12 +281,18 @@ def _primitive(
     mode = primitive.get("mode", _TRIANGLES)
     if mode not in (_TRIANGLES, _STRIP, _FAN):
         return None
-    rows = _accessor(file, primitive["attributes"].get("POSITION"), "VEC3")
+    if _extension(primitive, _COMPRESSED[0]):
+        raise _compressed(_COMPRESSED[0])
+    number = primitive["attributes"].get("POSITION")
+    rows = _accessor(file, number, "VEC3")
     numbers = _accessor(file, primitive["indices"], "SCALAR") if "indices" in primitive else None
     count = len(rows if numbers is None else numbers)
     size.add(MeshSize(len(rows), count // 3 if mode == _TRIANGLES else max(count - 2, 0)))
     size.check()
     points = rows.astype(np.float64)
+    entry = _entry(file.content, "accessors", number)
+    if entry.get("normalized") is True and entry["componentType"] in _NORMAL:
+        points = np.maximum(points / _NORMAL[entry["componentType"]], -1.0)
     order = np.arange(count) if numbers is None else numbers.reshape(-1).astype(np.int64)
     if len(order) and order.max() >= len(points):
         raise LoadError(f"a triangle names point {order.max()} of {len(points)}")
@@ -265,21 +314,81 @@ def _accessor(file: _File, number: Any, kind: str) -> NDArray[Any]:
     component = entry.get("componentType")
     if entry.get("type") != kind or component not in _COMPONENTS:
         raise LoadError(f"accessor {number} is no {kind} of numbers")
-    if "sparse" in entry or "bufferView" not in entry:
-        raise LoadError(f"accessor {number} is sparse, which is not read: save it again without")
-    view = _entry(file.content, "bufferViews", entry["bufferView"])
-    buffer = _entry(file.content, "buffers", view.get("buffer"))
-    if "uri" in buffer:
-        raise LoadError("its numbers are in another file: save it as one file")
+    if kind == "SCALAR" and np.dtype(_COMPONENTS[component]).kind != "u":
+        raise LoadError(f"accessor {number} has indices that are no whole numbers from 0")
     dtype, width = np.dtype(_COMPONENTS[component]), _WIDTHS[kind]
+    count = _whole(entry, "count", None)
+    where = f"accessor {number}"
+    if "bufferView" in entry:
+        rows = _rows(file, entry, dtype, width, count, where)
+    else:
+        need(count * width * dtype.itemsize, f"{count:,} zeros of {where}")
+        rows = np.zeros((count, width), dtype)
+    if "sparse" not in entry:
+        return rows
+    sparse = entry["sparse"]
+    parts = [sparse.get(key) if isinstance(sparse, dict) else None for key in ("indices", "values")]
+    indices, values = parts
+    if not isinstance(indices, dict) or not isinstance(values, dict):
+        raise LoadError(f"{where} is sparse without indices or values")
+    if indices.get("componentType") not in (5121, 5123, 5125):
+        raise LoadError(f"{where} is sparse, and its indices are no whole numbers")
+    changed = _whole(sparse, "count", None)
+    places = np.dtype(_COMPONENTS[indices["componentType"]])
+    at = _rows(file, indices, places, 1, changed, where).reshape(-1)
+    if len(at) and int(at.max()) >= count:
+        raise LoadError(f"{where} changes its row {at.max()} of {count}")
+    need(2 * rows.size * dtype.itemsize, f"{count:,} rows of {where}")
+    rows = rows.copy()
+    rows[at] = _rows(file, values, dtype, width, changed, where)
+    return rows
+
+
+def _rows(
+    file: _File, entry: dict[str, Any], dtype: np.dtype[Any], width: int, count: int, where: str
+) -> NDArray[Any]:
+    """Return rows of numbers of a view, (count, width).
+
+    Args:
+        file: The file.
+        entry: What names the view, and where its rows begin in it.
+        dtype: The type of its numbers.
+        width: How many a row has.
+        count: The number of rows.
+        where: What they are, for messages.
+    """
+    view = _entry(file.content, "bufferViews", entry.get("bufferView"))
+    for name in _COMPRESSED:
+        if _extension(view, name):
+            raise _compressed(name)
+    data = _buffer(file, view.get("buffer"))
     size = dtype.itemsize * width
-    count, stride = _whole(entry, "count", None), _whole(view, "byteStride", size)
+    stride = _whole(view, "byteStride", size)
     begin = _whole(view, "byteOffset", 0) + _whole(entry, "byteOffset", 0)
-    if stride < size or (count and begin + (count - 1) * stride + size > len(file.data)):
-        raise LoadError(f"it is truncated: accessor {number} goes beyond the numbers")
+    if stride < size or (count and begin + (count - 1) * stride + size > len(data)):
+        raise LoadError(f"it is truncated: {where} goes beyond the numbers")
     if count == 0:
         return np.zeros((0, width), dtype)
-    return np.ndarray((count, width), dtype, file.data, begin, (stride, dtype.itemsize))
+    return np.ndarray((count, width), dtype, data, begin, (stride, dtype.itemsize))
+
+
+def _buffer(file: _File, number: Any) -> bytes:
+    """Return the bytes of a buffer: the second chunk, or what is in the JSON."""
+    entry = _entry(file.content, "buffers", number)
+    uri = entry.get("uri")
+    if uri is None:
+        if number != 0:
+            raise LoadError(f"its buffer {number} has no numbers")
+        return file.data
+    if number not in file.buffers:
+        head = _DATA.match(uri) if isinstance(uri, str) else None
+        if head is None:
+            raise LoadError("its numbers are in another file: save it as one file")
+        try:
+            file.buffers[number] = base64.b64decode(uri[head.end() :], validate=True)
+        except (binascii.Error, ValueError):
+            raise LoadError(f"the text of its buffer {number} is damaged") from None
+    return file.buffers[number]
 
 
 # Checked entries of the JSON
