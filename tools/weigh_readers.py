@@ -117,7 +117,11 @@ def by_lib3mf(path: Path) -> Triangles:
     items = model.GetBuildItems()
     while items.MoveNext():
         item = items.GetCurrent()
-        matrix = np.array(item.GetObjectTransform().Fields) if item.HasObjectTransform() else np.eye(4, 3)
+        matrix = (
+            np.array(item.GetObjectTransform().Fields)
+            if item.HasObjectTransform()
+            else np.eye(4, 3)
+        )
         place(item.GetObjectResource(), matrix, 0)
     if not rows:
         raise Refused("nothing")
@@ -131,11 +135,25 @@ READERS: dict[str, tuple[Callable[[Path], Triangles], tuple[str, ...]]] = {
     "plyfile": (by_plyfile, (".ply",)),
     "lib3mf": (by_lib3mf, (".3mf", ".stl")),
 }
-MODULES = {"distal": "distal", "trimesh": "trimesh", "meshio": "meshio", "plyfile": "plyfile", "lib3mf": "lib3mf"}
-KINDS = ("reads right", "refuses right", "refuses what could be read", "wrong reason", "reads wrong silently")
+MODULES = {
+    "distal": "distal",
+    "trimesh": "trimesh",
+    "meshio": "meshio",
+    "plyfile": "plyfile",
+    "lib3mf": "lib3mf",
+}
+KINDS = (
+    "reads right",
+    "refuses right",
+    "refuses what could be read",
+    "wrong reason",
+    "reads wrong silently",
+)
 
 
-def verdict(read: Callable[[Path], Triangles], variant: Any, folder: Path, *, is_own: bool) -> tuple[str, str]:
+def verdict(
+    read: Callable[[Path], Triangles], variant: Any, folder: Path, *, is_own: bool
+) -> tuple[str, str]:
     """Return one of ``KINDS``, and what was said."""
     path = folder / f"a{variant.suffix}"
     path.write_bytes(variant.data)

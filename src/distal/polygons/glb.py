@@ -240,6 +240,12 @@ def _placed(file: _File) -> Iterator[tuple[int, NDArray[np.float64]]]:
                 "save each copy as a node"
             )
         if "mesh" in node:
+            mesh = _entry(file.content, "meshes", node["mesh"])
+            if any(_list(node if "weights" in node else mesh, "weights")):
+                raise LoadError(
+                    f"node {number} is moved by morph targets, which are not read: apply them and "
+                    "save it without"
+                )
             if "skin" in node:
                 raise LoadError(
                     f"node {number} is bent by a skin, which is not read: apply its pose (the "
