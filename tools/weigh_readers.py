@@ -3,15 +3,14 @@
     python tools/weigh_readers.py [--all]
 
 Prints for each reader and format how many variants it reads right, refuses where that is right,
-refuses where they could be read, reads wrong without a word, and in which it ends by another
-exception. ``--all`` prints each variant that is not right. Libraries that are not installed are left
-out; decision 106 has the table.
+refuses where they could be read, or reads wrong without a word. ``--all`` prints each variant that
+is not right. Libraries that are not installed are left out; decision 106 has the table.
 """
+
+# ruff: noqa: PLC0415 -- a library that is not there is left out
 
 from __future__ import annotations
 
-import io
-import os
 import re
 import sys
 import tempfile
@@ -29,32 +28,35 @@ from tests.readers.mesh_variants import VARIANTS, Triangles, is_right
 SUFFIXES = (".stl", ".obj", ".ply", ".glb", ".3mf")
 
 
-class Refused(Exception):
+class RefusedError(Exception):
     """The reader says that it cannot read a file."""
 
 
 def own(path: Path) -> Triangles:
+    """Read by distal."""
     from distal.diagnostics import LoadError
     from distal.polygons.reading import read_mesh
 
     try:
         mesh = read_mesh(path)
     except LoadError as error:
-        raise Refused(str(error)) from None
+        raise RefusedError(str(error)) from None
     return mesh.points[mesh.triangles]
 
 
 def by_trimesh(path: Path) -> Triangles:
+    """Read by trimesh, each geometry in its place."""
     import trimesh
 
     scene = trimesh.load_scene(str(path), process=False)
     found = [g for g in scene.dump() if isinstance(g, trimesh.Trimesh)]
     if not found:
-        raise Refused("nothing")
+        raise RefusedError("nothing")
     return np.concatenate([np.asarray(each.triangles, np.float64) for each in found])
 
 
 def by_meshio(path: Path) -> Triangles:
+    """Read by meshio; polygons as fans."""
     import meshio
 
     mesh = meshio.read(str(path))
@@ -64,11 +66,15 @@ def by_meshio(path: Path) -> Triangles:
         for i in range(1, cells.shape[1] - 1):
             rows.append(cells[:, [0, i, i + 1]])
     if not rows:
-        raise Refused("nothing")
-    return np.asarray(mesh.points, np.float64)[np.concatenate(rows)]
+        raise RefusedError("nothing")
+    points = np.asarray(mesh.points, np.float64)
+    if points.shape[1] != 3:
+        raise RefusedError("points of two numbers")
+    return points[np.concatenate(rows)]
 
 
 def by_plyfile(path: Path) -> Triangles:
+    """Read by plyfile; polygons as fans."""
     from plyfile import PlyData
 
     data = PlyData.read(str(path))
@@ -78,11 +84,12 @@ def by_plyfile(path: Path) -> Triangles:
     lists = face["vertex_indices" if "vertex_indices" in names else "vertex_index"]
     rows = [(f[0], f[i], f[i + 1]) for f in lists for i in range(1, len(f) - 1)]
     if not rows:
-        raise Refused("nothing")
+        raise RefusedError("nothing")
     return points[np.array(rows)]
 
 
 def by_lib3mf(path: Path) -> Triangles:
+    """Read by lib3mf, each object of the build in its place."""
     from lib3mf import get_wrapper
 
     wrapper = get_wrapper()
@@ -94,7 +101,7 @@ def by_lib3mf(path: Path) -> Triangles:
 
     def place(resource: Any, matrix: np.ndarray, deep: int) -> None:
         if deep > 32:
-            raise Refused("ring")
+            raise RefusedError("ring")
         if resource.IsComponentsObject():
             thing = model.GetComponentsObjectByID(resource.GetResourceID())
             for i in range(thing.GetComponentCount()):
@@ -124,7 +131,7 @@ def by_lib3mf(path: Path) -> Triangles:
         )
         place(item.GetObjectResource(), matrix, 0)
     if not rows:
-        raise Refused("nothing")
+        raise RefusedError("nothing")
     return np.concatenate(rows)
 
 
@@ -162,7 +169,7 @@ def verdict(
             warnings.simplefilter("ignore")
             found = read(path)
         if not len(found):
-            raise Refused("nothing")
+            raise RefusedError("nothing")
     except (Exception, SystemExit) as error:
         said = f"{type(error).__name__}: {error}".replace("\n", " ")
         if variant.right is not None and not variant.reason:
@@ -176,6 +183,7 @@ def verdict(
 
 
 def main() -> None:
+    """Print the comparison."""
     shows = "--all" in sys.argv
     only = [a for a in sys.argv[1:] if not a.startswith("-")]
     with tempfile.TemporaryDirectory() as folder:
@@ -191,10 +199,7 @@ def main() -> None:
                 counts: Counter[str] = Counter()
                 lines = []
                 for variant in (v for v in VARIANTS if v.suffix == suffix):
-                    sys.stdout.flush()
-                    kept = os.dup(1)
                     kind, said = verdict(read, variant, Path(folder), is_own=name == "distal")
-                    os.close(kept)
                     counts[kind] += 1
                     if kind not in KINDS[:2]:
                         lines.append(f"    {kind}: {variant.name}: {said[:150]}")

@@ -1,8 +1,11 @@
 """Variants of mesh files as programs write them, with what is right for each.
 
 Output: ``VARIANTS``: bytes, and the triangles that they hold, or words of the reason for which they
-are refused. ``tools/weigh_readers.py`` runs libraries over them; ``test_mesh_variants`` the readers.
+are refused. ``test_mesh_variants`` gives them to distal's readers, ``tools/weigh_readers.py`` also to
+those of libraries.
 """
+
+# ruff: noqa: E501, UP031, RUF005 -- a table of texts, and sums of arrays
 
 from __future__ import annotations
 
@@ -605,7 +608,7 @@ def _ply() -> None:
     add("element without properties", _ply_file(extra="element nothing 0\n"))
     add("end of lines CRLF, text", _ply_file().replace(b"\n", b"\r\n"))
     add("end of lines CR, text", _ply_file().replace(b"\n", b"\r"))
-    head, end, rest = _ply_file(little).partition(b"end_header\n")
+    head, _, rest = _ply_file(little).partition(b"end_header\n")
     add(
         "end of lines CRLF, header of binary",
         head.replace(b"\n", b"\r\n") + b"end_header\r\n" + rest,

@@ -8,8 +8,8 @@ for polygons that are not quite plane. First the fans are tried, about each corn
 at once; what no fan fills is cut into ears. Bridges to holes, points on straight edges and points
 twice are allowed. A polygon that crosses itself is filled by some triangles between its corners.
 
-Source: Meisters, Polygons have ears, 1975; Sutherland, Sproull and Schumacker, A characterization of
-ten hidden-surface algorithms, 1974 (Newell's normal).
+Source: Meisters, Polygons have ears, 1975; Sutherland, Sproull and Schumacker, A characterization
+of ten hidden-surface algorithms, 1974 (Newell's normal).
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def _filled(points: NDArray[Any], counts: Integers, indices: Integers) -> Intege
     triangles = _fans(starts, counts, indices, np.zeros(len(counts), np.int64))
     open_rows = np.flatnonzero(counts > 3)
     # What names a missing point is refused later; until then it must not be looked up.
-    if len(open_rows) and 0 <= indices.min() and indices.max() < len(points):
+    if len(open_rows) and indices.min() >= 0 and indices.max() < len(points):
         open_rows = open_rows[~_fits(points, starts[open_rows], counts[open_rows], indices, 0)]
         for turn in range(1, _MOST_FANS):
             if not len(open_rows):

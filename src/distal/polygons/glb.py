@@ -234,25 +234,28 @@ def _placed(file: _File) -> Iterator[tuple[int, NDArray[np.float64]]]:
         seen.add(number)
         with np.errstate(all="ignore"):
             matrix = above @ _matrix(node)
-        if _extension(node, _INSTANCES):
-            raise LoadError(
-                f"node {number} is copied by {_INSTANCES}, which is not read: "
-                "save each copy as a node"
-            )
         if "mesh" in node:
-            mesh = _entry(file.content, "meshes", node["mesh"])
-            if any(_list(node if "weights" in node else mesh, "weights")):
-                raise LoadError(
-                    f"node {number} is moved by morph targets, which are not read: apply them and "
-                    "save it without"
-                )
-            if "skin" in node:
-                raise LoadError(
-                    f"node {number} is bent by a skin, which is not read: apply its pose (the "
-                    "armature) and save it without"
-                )
+            _check_unmoved(file, number, node)
             yield node["mesh"], matrix
         waiting += [(child, matrix) for child in reversed(_list(node, "children"))]
+
+
+def _check_unmoved(file: _File, number: int, node: dict[str, Any]) -> None:
+    """Check that a node's mesh is where its matrix says.
+
+    Raises:
+        LoadError: It is copied, bent or moved in a way that is not read.
+    """
+    mesh = _entry(file.content, "meshes", node["mesh"])
+    if _extension(node, _INSTANCES):
+        message = f"is copied by {_INSTANCES}, which is not read: save each copy as a node"
+    elif "skin" in node:
+        message = "is bent by a skin, which is not read: apply its pose and save it without"
+    elif any(_list(node if "weights" in node else mesh, "weights")):
+        message = "is moved by morph targets, which are not read: apply them and save it without"
+    else:
+        return
+    raise LoadError(f"node {number} {message}")
 
 
 def _matrix(node: dict[str, Any]) -> NDArray[np.float64]:

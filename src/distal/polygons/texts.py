@@ -45,9 +45,12 @@ def numbers(words: Sequence[bytes]) -> list[float]:
     except ValueError:
         found = []
     # Python's own numbers may have underscores, those of files never.
-    if len(found) == len(words) and b"_" not in b"".join(words):
-        if all(-1e300 < value < 1e300 for value in found):
-            return found
+    if (
+        len(found) == len(words)
+        and b"_" not in b"".join(words)
+        and all(-1e300 < value < 1e300 for value in found)
+    ):
+        return found
     raise LoadError(next(filter(None, map(_wrong, words)), "a number is missing"))
 
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 import io
 import posixpath
 import zipfile
-from urllib.parse import unquote
 from dataclasses import dataclass, field
 from typing import Final
+from urllib.parse import unquote
 
 import numpy as np
 from numpy.typing import NDArray
