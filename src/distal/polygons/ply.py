@@ -286,7 +286,10 @@ def _row_by_row(element: _Element, reader: _Rest) -> dict[str, Any]:
             dtype = np.dtype(reader.order + each.type)
             values[each.name].append(_take(reader, element, dtype, length))
     lists = {
-        name: (np.array(lengths[name], np.int64), np.concatenate([*values[name]]))
+        name: (
+            np.array(lengths[name], np.int64),
+            np.concatenate([np.zeros(0, "i1"), *values[name]]),
+        )
         for name in lengths
     }
     return {**lists, **{name: np.array(rows, np.float64) for name, rows in plain.items()}}

@@ -94,6 +94,10 @@ def read_three_mf(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
             return _read(_Archive(archive, with_colors))
     except zipfile.BadZipFile as error:
         raise LoadError(f"it is no whole zip archive, as 3MF is: {error}") from None
+    except (ValueError, NotImplementedError) as error:  # places or ways that do not exist
+        if isinstance(error, LoadError | UnicodeError):
+            raise
+        raise LoadError(f"it is no whole zip archive, as 3MF is: {error}") from None
 
 
 def _read(whole: _Archive) -> SourceTriangles:

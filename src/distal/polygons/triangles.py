@@ -167,7 +167,8 @@ def welded(places: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np
     Args:
         places: (n, 3).
     """
-    rows = np.ascontiguousarray(places) + np.float32(0.0)  # -0 becomes 0
+    with np.errstate(invalid="ignore"):  # ``checked`` finds what is no number
+        rows = np.ascontiguousarray(places) + np.float32(0.0)  # -0 becomes 0
     bits = rows.view(np.uint32).astype(np.uint64)
     keys = bits[:, 0] * _HASH[0] ^ bits[:, 1] * _HASH[1] ^ bits[:, 2] * _HASH[2]
     _, first, which = np.unique(keys, return_index=True, return_inverse=True)
