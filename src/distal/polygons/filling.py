@@ -185,41 +185,18 @@ def _ears(places: NDArray[np.float64]) -> Integers:
 
 
 def _is_empty(near: NDArray[np.float64], ear: int) -> bool:
-    """Whether no other part of a polygon lies in the triangle at one of its corners."""
-    count = len(near)
-    if count == 3:
-        return True
-    a, b, c = near[ear - 1], near[ear], near[(ear + 1) % count]
-    others = np.delete(near, [ear - 1, ear, (ear + 1) % count], axis=0)
-    # Points of bridges lie on a corner; whether their edges run through the ear, the diagonal says.
-    apart = (others != a).any(axis=1) & (others != b).any(axis=1) & (others != c).any(axis=1)
+    """Whether no other corner of a polygon lies in the triangle at one of its corners, or on it.
+
+    Then no edge does either: it would have to cross a side of the triangle that is an edge itself.
+    Points at the triangle's own corners are those of bridges, whose edges run outside of it.
+    """
+    ring = [ear - 1, ear, (ear + 1) % len(near)]
+    a, b, c = near[ring]
+    others = np.delete(near, ring, axis=0)
     inside = np.ones(len(others), bool)
     for begin, end in ((a, b), (b, c), (c, a)):
-        inside &= _cross(end - begin, others - begin) >= -_FLAT
-    if (inside & apart).any():
-        return False
-    begins, ends = near, np.roll(near, -1, axis=0)
-    sides = _cross(c - a, begins - a), _cross(c - a, ends - a)
-    crossing = (np.minimum(*sides) < -_FLAT) & (np.maximum(*sides) > _FLAT)
-    along = _cross(ends - begins, a - begins), _cross(ends - begins, c - begins)
-    crossing &= (np.minimum(*along) < -_FLAT) & (np.maximum(*along) > _FLAT)
-    if crossing.any():
-        return False
-    # An edge from a point at b, a bridge, runs into the ear without a corner in it.
-    for at in np.flatnonzero((near == b).all(axis=1)).tolist():
-        for to in (near[at - 1], near[(at + 1) % count]):
-            if _cross(a - b, to - b) < -_FLAT and _cross(c - b, to - b) > _FLAT:
-                return False
-    return _opens(near, ear - 1, c) and _opens(near, (ear + 1) % count, a)
-
-
-def _opens(near: NDArray[np.float64], at: int, to: NDArray[np.float64]) -> bool:
-    """Whether a diagonal from a corner begins on the inside of the polygon."""
-    here, before, behind = near[at], near[at - 1], near[(at + 1) % len(near)]
-    ahead = _cross(behind - here, to - here) >= -_FLAT
-    aback = _cross(to - here, before - here) >= -_FLAT
-    convex = _cross(here - before, behind - here) > 0.0
-    return bool(ahead and aback) if convex else bool(ahead or aback)
+        inside &= (_cross(end - begin, others - begin) >= -_FLAT) & (others != begin).any(axis=1)
+    return not inside.any()
 
 
 def _cross(first: NDArray[np.float64], second: NDArray[np.float64]) -> Any:
