@@ -8,31 +8,38 @@ Source: glTF 2.0 Specification, Khronos.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+import re
 from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.diagnostics import LoadError
+from distal.diagnostics import LoadError, printable
 from distal.foreign_files import check_time
+from distal.polygons.glb_numbers import (
+    COMPRESSED,
+    GlbFile,
+    accessor,
+    compressed,
+    entry,
+    has_extension,
+    list_of,
+    numbers_of,
+    scaled,
+)
+from distal.polygons.glb_pose import joint_matrices, morphed, skinned
 from distal.polygons.triangles import MeshSize, SourceTriangles, checked, colored
 
-_COMPONENTS: Final = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
-_WIDTHS: Final = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
 # What a number of a color is divided by.
 _LEVELS: Final = {5121: 255.0, 5123: 65535.0, 5126: 1.0}
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
-_COMPRESSED: Final = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
-
-
-@dataclass(frozen=True, slots=True)
-class _File:
-    """The two chunks of a file."""
-
-    content: dict[str, Any]
-    data: bytes
+_INSTANCES: Final = "EXT_mesh_gpu_instancing"
+# Extensions that a file may require: quantized numbers are read, others do not change triangles.
+_READ: Final = re.compile(
+    "KHR_mesh_quantization|KHR_lights_punctual|KHR_xmp(_json_ld)?|(KHR|EXT|MSFT)_texture_.*"
+    "|KHR_materials_.*"
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,43 +51,76 @@ class _GlbPart:
     colors: NDArray[np.float32] | None
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Placement:
+    """A node with a mesh.
+
+    Attributes:
+        mesh: The number of the mesh.
+        matrix: From the mesh to the scene; a skin's points are in the scene already.
+        weights: Those of morph targets.
+        skin: The number of its skin; None without.
+    """
+
+    mesh: int
+    matrix: NDArray[np.float64]
+    weights: tuple[float, ...]
+    skin: int | None
+
+    @property
+    def pose(self) -> tuple[int, tuple[float, ...], int | None]:
+        """What the points of the mesh depend on."""
+        return self.mesh, self.weights, self.skin
+
+
 class _Meshes:
-    """The meshes of a file, each parsed once.
+    """The meshes of a file, each parsed once for each pose.
 
     Primitives may share what an accessor holds, and nodes may share meshes, so all are counted
     before they are copied.
     """
 
-    def __init__(self, file: _File, *, with_colors: bool) -> None:
-        self._file, self._with_colors = file, with_colors
-        self._parts: dict[int, list[_GlbPart]] = {}
-        self._sizes: dict[int, MeshSize] = {}
+    def __init__(
+        self, file: GlbFile, worlds: dict[int, NDArray[np.float64]], *, with_colors: bool
+    ) -> None:
+        self._file, self._worlds, self._with_colors = file, worlds, with_colors
+        self._parts: dict[Any, list[_GlbPart]] = {}
         self._all = MeshSize()
 
-    def parts(self, number: Any) -> list[_GlbPart]:
+    def parts(self, placed: _Placement) -> list[_GlbPart]:
         """Return the parts of a mesh that have triangles."""
-        entry = _entry(self._file.content, "meshes", number)
-        if number not in self._parts:
-            read = (self._part(each) for each in _list(entry, "primitives"))
-            parts = self._parts[number] = [part for part in read if part is not None]
-            size = self._sizes[number] = MeshSize(parts=0)
-            for part in parts:
-                size.add(MeshSize(len(part.points), len(part.corners)))
-        return self._parts[number]
+        if placed.pose not in self._parts:
+            item = entry(self._file.content, "meshes", placed.mesh)
+            joints = None
+            if placed.skin is not None:
+                joints = joint_matrices(self._file, placed.skin, self._worlds)
+            read = (self._part(each, placed, joints) for each in list_of(item, "primitives"))
+            self._parts[placed.pose] = [part for part in read if part is not None]
+        return self._parts[placed.pose]
 
-    def size(self, number: Any) -> MeshSize:
+    def size(self, placed: _Placement) -> MeshSize:
         """Return the size of a mesh."""
-        self.parts(number)
-        return self._sizes[number]
+        size = MeshSize(parts=0)
+        for part in self.parts(placed):
+            size.add(MeshSize(len(part.points), len(part.corners)))
+        return size
 
-    def _part(self, primitive: Any) -> _GlbPart | None:
+    def _part(
+        self, primitive: Any, placed: _Placement, joints: NDArray[np.float64] | None
+    ) -> _GlbPart | None:
         check_time()
         shape = _primitive(self._file, primitive, self._all)
         if shape is None or not len(shape[1]):
             return None
         points, corners = shape
-        count = len(points)
-        colors = _colors(self._file, primitive, count) if self._with_colors else None
+        colors = _colors(self._file, primitive, len(points)) if self._with_colors else None
+        with np.errstate(all="ignore"):  # ``checked`` finds what is not finite
+            points = morphed(self._file, primitive, points, placed.weights)
+            if joints is not None:
+                points = skinned(self._file, primitive["attributes"], points, joints)
+        # A skeleton that mirrors its mesh turns the triangles around, as a node does.
+        if joints is not None and float(np.linalg.det(joints[0, :3, :3])) < 0.0:
+            corners = corners[:, ::-1]
         return _GlbPart(points, corners, colors)
 
 
@@ -91,19 +131,23 @@ def read_glb(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
         LoadError: The file is no GLB, is truncated, or is compressed.
     """
     file = _chunks(data)
-    for name in _list(file.content, "extensionsRequired"):
-        if name in _COMPRESSED:
-            raise LoadError(f"it is compressed by {name}: save it without compression")
-    meshes = _Meshes(file, with_colors=with_colors)
-    placed = list(_placed(file))
+    for name in list_of(file.content, "extensionsRequired"):
+        if name in COMPRESSED:
+            raise compressed(name)
+        if not isinstance(name, str) or not _READ.fullmatch(name):
+            raise LoadError(
+                f"it requires the extension {printable(name, 60)}, which is not read: "
+                "save it without"
+            )
+    placed, worlds = _placed(file)
+    meshes = _Meshes(file, worlds, with_colors=with_colors)
     total = MeshSize()
-    for number, _ in placed:
-        total.add(meshes.size(number))
-    numbers = {number for number, _ in placed}
-    first = meshes.size(placed[0][0]) if placed else total
-    is_copied = len(numbers) == 1 < len(placed)
+    for each in placed:
+        total.add(meshes.size(each))
+    first = meshes.size(placed[0]) if placed else total
+    is_copied = len({each.pose for each in placed}) == 1 < len(placed)
     total.check(f"{len(placed):,} copies of {first.triangles:,} triangles" if is_copied else None)
-    copies = [(part, matrix) for number, matrix in placed for part in meshes.parts(number)]
+    copies = [(part, each.matrix) for each in placed for part in meshes.parts(each)]
     if not copies:
         raise LoadError("there is no triangle")
     return _copied(copies)
@@ -132,33 +176,33 @@ def _copied(copies: list[tuple[_GlbPart, NDArray[np.float64]]]) -> SourceTriangl
     return colored(mesh, np.concatenate(shades), is_light=True)
 
 
-def _colors(file: _File, primitive: Any, count: int) -> NDArray[np.float32] | None:
+def _colors(file: GlbFile, primitive: Any, count: int) -> NDArray[np.float32] | None:
     """Return the linear colors of a primitive's points; None without them.
 
     They are those of its points times that of its material; pictures are left out.
     """
     number = primitive["attributes"].get("COLOR_0")
     known = "material" in primitive
-    material = _entry(file.content, "materials", primitive["material"]) if known else {}
+    material = entry(file.content, "materials", primitive["material"]) if known else {}
     surface = material.get("pbrMetallicRoughness", {})
     is_colored = isinstance(surface, dict) and "baseColorFactor" in surface
     if number is None and not is_colored:
         return None
     shown = np.ones((count, 3), np.float32)
     if is_colored:
-        shown *= _numbers(surface, "baseColorFactor", 4, ())[:3].astype(np.float32)
+        shown *= numbers_of(surface, "baseColorFactor", 4, ())[:3].astype(np.float32)
     if number is not None:
-        entry = _entry(file.content, "accessors", number)
-        kind = "VEC3" if entry.get("type") == "VEC3" else "VEC4"
-        rows = _accessor(file, number, kind)
-        if entry["componentType"] not in _LEVELS or len(rows) != count:
+        item = entry(file.content, "accessors", number)
+        kind = "VEC3" if item.get("type") == "VEC3" else "VEC4"
+        rows = accessor(file, number, kind)
+        if item["componentType"] not in _LEVELS or len(rows) != count:
             raise LoadError(f"accessor {number} has no color for each point")
         with np.errstate(all="ignore"):
-            shown *= rows[:, :3].astype(np.float32) / np.float32(_LEVELS[entry["componentType"]])
+            shown *= rows[:, :3].astype(np.float32) / np.float32(_LEVELS[item["componentType"]])
     return np.clip(np.nan_to_num(shown, nan=0.0), 0.0, 1.0)
 
 
-def _chunks(data: bytes) -> _File:
+def _chunks(data: bytes) -> GlbFile:
     if data[:4] != b"glTF" or len(data) < 20:
         raise LoadError("it does not begin with the header of GLB")
     if int.from_bytes(data[4:8], "little") != 2:
@@ -180,36 +224,60 @@ def _chunks(data: bytes) -> _File:
     if not isinstance(content, dict):
         raise LoadError("its JSON is no object")
     binary = chunks[1][1] if len(chunks) > 1 and chunks[1][0] == b"BIN\0" else b""
-    return _File(content, binary)
+    return GlbFile(content, binary)
 
 
-def _placed(file: _File) -> Iterator[tuple[int, NDArray[np.float64]]]:
-    """Yield the mesh and the matrix of each node of the scene that has a mesh."""
-    nodes = _list(file.content, "nodes")
-    scenes = _list(file.content, "scenes")
+def _placed(file: GlbFile) -> tuple[list[_Placement], dict[int, NDArray[np.float64]]]:
+    """Return the nodes of the scene that have a mesh, and the matrices of all its nodes."""
+    nodes = list_of(file.content, "nodes")
+    scenes = list_of(file.content, "scenes")
     if scenes:
-        roots = _list(_entry(file.content, "scenes", file.content.get("scene", 0)), "nodes")
+        roots = list_of(entry(file.content, "scenes", file.content.get("scene", 0)), "nodes")
     else:
-        roots = list(range(len(nodes)))
+        inner = {str(c) for n in nodes if isinstance(n, dict) for c in list_of(n, "children")}
+        roots = [number for number in range(len(nodes)) if str(number) not in inner]
     waiting = [(root, np.eye(4)) for root in reversed(roots)]
-    seen: set[int] = set()
+    placed: list[_Placement] = []
+    worlds: dict[int, NDArray[np.float64]] = {}
     while waiting:
         number, above = waiting.pop()
-        node = _entry(file.content, "nodes", number)
-        if number in seen:
+        node = entry(file.content, "nodes", number)
+        if number in worlds:
             raise LoadError(f"node {number} is in the scene twice")
-        seen.add(number)
         with np.errstate(all="ignore"):
-            matrix = above @ _matrix(node)
+            matrix = worlds[number] = above @ _matrix(node)
         if "mesh" in node:
-            yield node["mesh"], matrix
-        waiting += [(child, matrix) for child in reversed(_list(node, "children"))]
+            placed.append(_placement(file, number, node, matrix))
+        waiting += [(child, matrix) for child in reversed(list_of(node, "children"))]
+    return placed, worlds
+
+
+def _placement(
+    file: GlbFile, number: int, node: dict[str, Any], matrix: NDArray[np.float64]
+) -> _Placement:
+    """Return how a node places its mesh.
+
+    Raises:
+        LoadError: It is copied, or its weights are no numbers.
+    """
+    if has_extension(node, _INSTANCES):
+        raise LoadError(
+            f"node {number} is copied by {_INSTANCES}, which is not read: save each copy as a node"
+        )
+    mesh = entry(file.content, "meshes", node["mesh"])
+    source = node if "weights" in node else mesh
+    weights = numbers_of(source, "weights", len(list_of(source, "weights")), ())
+    skin = node.get("skin")
+    if skin is not None:
+        entry(file.content, "skins", skin)
+        matrix = np.eye(4)
+    return _Placement(node["mesh"], matrix, tuple(weights.tolist()), skin)
 
 
 def _matrix(node: dict[str, Any]) -> NDArray[np.float64]:
     if "matrix" in node:
-        return _numbers(node, "matrix", 16, ()).reshape(4, 4).T
-    x, y, z, w = _numbers(node, "rotation", 4, (0.0, 0.0, 0.0, 1.0)).tolist()
+        return numbers_of(node, "matrix", 16, ()).reshape(4, 4).T
+    x, y, z, w = numbers_of(node, "rotation", 4, (0.0, 0.0, 0.0, 1.0)).tolist()
     turn = np.array(
         [
             [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
@@ -218,19 +286,19 @@ def _matrix(node: dict[str, Any]) -> NDArray[np.float64]:
         ]
     )
     matrix = np.eye(4)
-    matrix[:3, :3] = turn * _numbers(node, "scale", 3, (1.0, 1.0, 1.0))
-    matrix[:3, 3] = _numbers(node, "translation", 3, (0.0, 0.0, 0.0))
+    matrix[:3, :3] = turn * numbers_of(node, "scale", 3, (1.0, 1.0, 1.0))
+    matrix[:3, 3] = numbers_of(node, "translation", 3, (0.0, 0.0, 0.0))
     return matrix
 
 
 def _primitive(
-    file: _File, primitive: Any, size: MeshSize
+    file: GlbFile, primitive: Any, size: MeshSize
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]] | None:
     """Return the points and triangles of a primitive; None for lines and points.
 
     Args:
         file: The file.
-        primitive: Its entry.
+        primitive: Its item.
         size: That of all primitives; this one is added to it.
     """
     if not isinstance(primitive, dict) or not isinstance(primitive.get("attributes"), dict):
@@ -238,12 +306,13 @@ def _primitive(
     mode = primitive.get("mode", _TRIANGLES)
     if mode not in (_TRIANGLES, _STRIP, _FAN):
         return None
-    rows = _accessor(file, primitive["attributes"].get("POSITION"), "VEC3")
-    numbers = _accessor(file, primitive["indices"], "SCALAR") if "indices" in primitive else None
-    count = len(rows if numbers is None else numbers)
-    size.add(MeshSize(len(rows), count // 3 if mode == _TRIANGLES else max(count - 2, 0)))
+    if has_extension(primitive, COMPRESSED[0]):
+        raise compressed(COMPRESSED[0])
+    points = scaled(file, primitive["attributes"].get("POSITION"), "VEC3")
+    numbers = accessor(file, primitive["indices"], "SCALAR") if "indices" in primitive else None
+    count = len(points if numbers is None else numbers)
+    size.add(MeshSize(len(points), count // 3 if mode == _TRIANGLES else max(count - 2, 0)))
     size.check()
-    points = rows.astype(np.float64)
     order = np.arange(count) if numbers is None else numbers.reshape(-1).astype(np.int64)
     if len(order) and order.max() >= len(points):
         raise LoadError(f"a triangle names point {order.max()} of {len(points)}")
@@ -257,63 +326,3 @@ def _primitive(
     strip = np.stack([order[:-2], order[1:-1], order[2:]], axis=1)
     strip[1::2] = strip[1::2, [1, 0, 2]]
     return points, strip
-
-
-def _accessor(file: _File, number: Any, kind: str) -> NDArray[Any]:
-    """Return the rows of an accessor, (count, width)."""
-    entry = _entry(file.content, "accessors", number)
-    component = entry.get("componentType")
-    if entry.get("type") != kind or component not in _COMPONENTS:
-        raise LoadError(f"accessor {number} is no {kind} of numbers")
-    if "sparse" in entry or "bufferView" not in entry:
-        raise LoadError(f"accessor {number} is sparse, which is not read: save it again without")
-    view = _entry(file.content, "bufferViews", entry["bufferView"])
-    buffer = _entry(file.content, "buffers", view.get("buffer"))
-    if "uri" in buffer:
-        raise LoadError("its numbers are in another file: save it as one file")
-    dtype, width = np.dtype(_COMPONENTS[component]), _WIDTHS[kind]
-    size = dtype.itemsize * width
-    count, stride = _whole(entry, "count", None), _whole(view, "byteStride", size)
-    begin = _whole(view, "byteOffset", 0) + _whole(entry, "byteOffset", 0)
-    if stride < size or (count and begin + (count - 1) * stride + size > len(file.data)):
-        raise LoadError(f"it is truncated: accessor {number} goes beyond the numbers")
-    if count == 0:
-        return np.zeros((0, width), dtype)
-    return np.ndarray((count, width), dtype, file.data, begin, (stride, dtype.itemsize))
-
-
-# Checked entries of the JSON
-
-
-def _list(mapping: dict[str, Any], key: str) -> list[Any]:
-    found = mapping.get(key, [])
-    if not isinstance(found, list):
-        raise LoadError(f"'{key}' in its JSON is no list")
-    return found
-
-
-def _entry(content: dict[str, Any], key: str, number: Any) -> dict[str, Any]:
-    entries = _list(content, key)
-    if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < len(entries):
-        raise LoadError(f"'{key}' in its JSON has no entry {number!r:.20}")
-    entry = entries[number]
-    if not isinstance(entry, dict):
-        raise LoadError(f"entry {number} of '{key}' in its JSON is no object")
-    return entry
-
-
-def _whole(mapping: dict[str, Any], key: str, default: int | None) -> int:
-    value = mapping.get(key, default)
-    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value < 2**40:
-        raise LoadError(f"'{key}' in its JSON is no count")
-    return value
-
-
-def _numbers(
-    mapping: dict[str, Any], key: str, count: int, default: tuple[float, ...]
-) -> NDArray[np.float64]:
-    values = mapping.get(key, default)
-    known = isinstance(values, list | tuple) and len(values) == count
-    if not known or not all(type(v) in (int, float) and abs(v) < 1e30 for v in values):
-        raise LoadError(f"'{key}' in its JSON is not {count} numbers")
-    return np.array(values, np.float64)

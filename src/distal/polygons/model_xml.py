@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 from xml.parsers import expat
 
-from distal.diagnostics import LoadError
+from distal.diagnostics import LoadError, printable
 from distal.foreign_files import check_time
 from distal.polygons.triangles import PART_BYTES, MeshSize
 
@@ -27,6 +27,15 @@ _GROUPS: Final = {f"{_MATERIAL}colorgroup", f"{_CORE}basematerials"}
 _COLORS: Final = {f"{_MATERIAL}color": "color", f"{_CORE}base": "displaycolor"}
 _DEEPEST: Final = 100  # elements within elements
 _LOOK: Final = 2**14  # elements between two looks at the sizes
+_REQUIRED: Final = "requiredextensions"
+# Namespaces that a model may require: what they add to a mesh is read, or is no part of its shape.
+_READ: Final = {
+    _CORE[:-1],
+    _PATH.partition("}")[0],
+    _MATERIAL[:-1],
+    "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07",
+}
+_BEAMS: Final = "http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02}beamlattice"
 _KEPT_BYTES: Final = 1024  # of an element whose attributes are kept
 _LONGEST: Final = 2**20  # bytes of a tag: expat keeps all of one
 
@@ -44,6 +53,7 @@ class ModelObject:
         colors: For each triangle the attributes pid, p1, p2 and p3; empty without colors.
         components: Attributes of each component.
         is_mesh: Whether it has a mesh.
+        has_beams: Whether it has a lattice of beams.
     """
 
     attributes: Attributes
@@ -52,6 +62,7 @@ class ModelObject:
     colors: list[tuple[str | None, ...]] = field(default_factory=list)
     components: list[Attributes] = field(default_factory=list)
     is_mesh: bool = False
+    has_beams: bool = False
 
 
 @dataclass(slots=True)
@@ -85,8 +96,10 @@ class _Elements:
         model: What came so far.
     """
 
-    def __init__(self, size: MeshSize, *, with_colors: bool) -> None:
+    def __init__(self, size: MeshSize, line: Callable[[], int], *, with_colors: bool) -> None:
         self.model = Model()
+        self._line = line
+        self._spaces: dict[str, str] = {}
         self._size, self._with_colors = size, with_colors
         self._path: list[str] = []
         self._object: ModelObject | None = None
@@ -97,6 +110,7 @@ class _Elements:
             f"{_CORE}vertex": self._vertex,
             f"{_CORE}triangle": self._triangle,
             f"{_CORE}mesh": self._mesh,
+            _BEAMS: self._beams,
             f"{_CORE}component": self._component,
             f"{_CORE}object": self._new_object,
             f"{_CORE}item": self.model.items.append,
@@ -110,6 +124,7 @@ class _Elements:
         """An element begins."""
         if not self._path:
             self.model.attributes = attributes
+            self._check_required(attributes.get(_REQUIRED, ""))
         if len(self._path) >= _DEEPEST:
             raise LoadError(f"its elements are more than {_DEEPEST} deep")
         self._path.append(name)
@@ -119,6 +134,10 @@ class _Elements:
             self._count += 1
             if self._count % _LOOK == 0:
                 self.check()
+
+    def space(self, prefix: str | None, address: str) -> None:
+        """A namespace begins."""
+        self._spaces.setdefault(prefix or "", address)
 
     def end(self, name: str) -> None:
         """An element ends."""
@@ -147,6 +166,19 @@ class _Elements:
         self._object = ModelObject(attributes)
         self.model.objects.append(self._object)
 
+    def _check_required(self, prefixes: str) -> None:
+        for prefix in prefixes.split():
+            address = self._spaces.get(prefix, prefix)
+            if address not in _READ:
+                raise LoadError(
+                    f"it requires the extension {printable(address, 100)}, which is not read: "
+                    "save it without"
+                )
+
+    def _beams(self, _: Attributes) -> None:
+        if self._object is not None:
+            self._object.has_beams = True
+
     def _mesh(self, _: Attributes) -> None:
         if self._object is not None:
             self._object.is_mesh = True
@@ -154,21 +186,32 @@ class _Elements:
     def _vertex(self, attributes: Attributes) -> None:
         if self._object is not None:
             try:
-                self._object.points.extend([float(attributes[name]) for name in "xyz"])
+                row = [float(attributes[name]) for name in "xyz"]
             except (KeyError, ValueError):
-                raise LoadError("a vertex has no numbers x, y, z") from None
+                raise self._wrong("vertex", "xyz", attributes) from None
+            if any("_" in attributes[name] for name in "xyz"):  # as Python writes numbers
+                raise self._wrong("vertex", "xyz", attributes)
+            self._object.points.extend(row)
 
     def _triangle(self, attributes: Attributes) -> None:
         if self._object is None:
             return
+        names = ("v1", "v2", "v3")
         try:
-            row = [int(attributes["v1"]), int(attributes["v2"]), int(attributes["v3"])]
-            self._object.corners.extend(row)
+            self._object.corners.extend([int(attributes[name]) for name in names])
         except (KeyError, ValueError, OverflowError):
-            raise LoadError("a triangle has no numbers v1, v2, v3") from None
+            raise self._wrong("triangle", names, attributes) from None
         if self._with_colors:
             get = attributes.get
             self._object.colors.append((get("pid"), get("p1"), get("p2"), get("p3")))
+
+    def _wrong(self, what: str, names: Iterable[str], attributes: Attributes) -> LoadError:
+        shown = " ".join(f"{n}={attributes[n]!r:.20}" for n in names if n in attributes)
+        need = ", ".join(names)
+        return LoadError(
+            f"line {self._line()} of its model: a {what} has no numbers {need}"
+            + (f": {printable(shown)}" if shown else "")
+        )
 
     def _component(self, attributes: Attributes) -> None:
         if self._object is not None:
@@ -193,7 +236,8 @@ def read_model(chunks: Iterable[bytes], size: MeshSize, *, with_colors: bool) ->
         LoadError: It is no XML, has a document type, or is larger than the file may become.
     """
     parser = expat.ParserCreate(namespace_separator="}")
-    elements = _Elements(size, with_colors=with_colors)
+    elements = _Elements(size, lambda: parser.CurrentLineNumber, with_colors=with_colors)
+    parser.StartNamespaceDeclHandler = elements.space
     parser.StartElementHandler = elements.start
     parser.EndElementHandler = elements.end
     parser.StartDoctypeDeclHandler = elements.doctype

@@ -1,19 +1,25 @@
-"""Reads PLY: text and binary, little and big endian; properties of other programs are left out.
+"""Reads PLY: polygons and strips, as text and binary, little and big endian.
+
+Properties of other programs are left out.
 
 Input: bytes. Output: a mesh.
 """
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
+from itertools import islice
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.diagnostics import LoadError
+from distal.diagnostics import LoadError, printable
 from distal.foreign_files import check_time, need
-from distal.polygons.triangles import SourceTriangles, checked, colored, fans
+from distal.polygons.filling import filled, strips
+from distal.polygons.texts import line_of, numbers, text_of
+from distal.polygons.triangles import SourceTriangles, checked, colored
 
 _TYPES: Final = {
     **dict.fromkeys(("char", "int8"), "i1"),
@@ -32,6 +38,9 @@ _COLORS: Final = ("red", "green", "blue")
 _LOOK: Final = 2**14  # rows between two looks at the budget
 _LIST_BYTES: Final = 200  # of a list, without its numbers
 _INDICES: Final = ("vertex_indices", "vertex_index")
+_STRIPS: Final = "tristrips"
+_KEPT: Final = {*_ORIENTED, *_COLORS}  # what is no list and is read of rows of different lengths
+_END: Final = re.compile(rb"(?<=[\r\n])end_header[ \t]*(\r\n|\r|\n|$)")
 
 
 @dataclass(slots=True)
@@ -56,6 +65,12 @@ class _Rest:
     order: str
     at: int = 0
     words: list[bytes] | None = None  # the numbers of a text file
+    text: bytes = b""  # in which they are
+
+    def line(self, number: int) -> int:
+        """Return the line of one of the words."""
+        word = next(islice(re.finditer(rb"\S+", self.text), number, None))
+        return line_of(self.data, len(self.data) - len(self.text) + word.start())
 
 
 def read_ply(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
@@ -66,32 +81,52 @@ def read_ply(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
     """
     elements, reader = _header(data)
     points: NDArray[np.float64] | None = None
-    triangles: NDArray[np.int64] | None = None
+    faces: tuple[NDArray[np.int64], NDArray[np.int64]] | None = None
+    striped: NDArray[np.int64] | None = None
     shades: dict[str, NDArray[np.float32]] = {}
     for element in elements:
         columns = _columns(element, reader)
-        given = _colors(element, columns) if with_colors else None
-        if given is not None:
-            shades[element.name] = given
+        shown = _colors(element, columns) if with_colors else None
+        if shown is not None:
+            shades[element.name] = shown
         if element.name == "vertex":
             missing = [axis for axis in "xyz" if not _is_plain(element, axis)]
             if missing:
                 raise LoadError(f"its points have no {missing[0]}")
             points = np.stack([columns[axis] for axis in "xyz"], axis=1).astype(np.float64)
         elif element.name == "face":
-            name = next((name for name in _INDICES if name in columns), None)
-            if name is None or _is_plain(element, name):
-                raise LoadError("its polygons have no lists vertex_indices")
-            triangles = fans(*columns[name])
-            corners = np.maximum(columns[name][0] - 2, 0)
-            if given is not None and len(given) == len(corners):
-                shades[element.name] = np.repeat(given, corners, axis=0)
-    if points is None or triangles is None:
-        raise LoadError("it has points only, no polygons" if points is not None else "no points")
-    mesh = checked(points, triangles)
-    if "face" in shades and len(shades["face"]) == len(mesh.triangles):
-        return colored(mesh, shades["face"], of="triangles")
+            faces = _corners(element, columns)
+        elif element.name == _STRIPS:
+            striped = strips(*_corners(element, columns))
+    if points is None:
+        raise LoadError("it has no points")
+    triangles = [] if faces is None else [filled(points, *faces)]
+    triangles += [] if striped is None else [striped]
+    if not sum(map(len, triangles)):
+        raise LoadError("it has points only, no polygons")
+    mesh = checked(points, np.concatenate(triangles))
+    if faces is not None and "face" in shades:
+        # Strips have no colors of their own.
+        white = np.ones((len(mesh.triangles) - len(triangles[0]), 3), np.float32)
+        rows = np.repeat(shades["face"], np.maximum(faces[0] - 2, 0), axis=0)
+        return colored(mesh, np.concatenate([rows, white]), of="triangles")
     return colored(mesh, shades["vertex"]) if "vertex" in shades else mesh
+
+
+def _corners(
+    element: _Element, columns: dict[str, Any]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the lengths and the numbers of an element's lists of points."""
+    name = next((name for name in _INDICES if name in columns), None)
+    if name is None or _is_plain(element, name):
+        what = "strips" if element.name == _STRIPS else "polygons"
+        raise LoadError(f"its {what} have no lists vertex_indices")
+    lengths, values = columns[name]
+    if values.dtype.kind == "f" and not (values == np.rint(values)).all():
+        raise LoadError("an index of a point is no whole number")
+    if not (np.abs(values.astype(np.float64)) < 2.0**31).all():
+        raise LoadError("an index of a point is no 32-bit number")
+    return lengths, values.astype(np.int64)
 
 
 def _is_plain(element: _Element, name: str) -> bool:
@@ -129,12 +164,17 @@ def read_ply_points(data: bytes) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def _header(data: bytes) -> tuple[list[_Element], _Rest]:
-    end = data.find(b"end_header", 0, 65536)
-    if not data.startswith(b"ply") or end < 0:
+    data = text_of(data)
+    end = _END.search(data, 0, 65536)
+    if not data.startswith(b"ply") or end is None:
         raise LoadError("it does not begin with the header of PLY")
+    begin = end.end()
+    # Where lines end in CR alone, a LF is the first byte of the numbers.
+    if end[1] == b"\r\n" and data[3:5] != b"\r\n" and data[3:4] == b"\r":
+        begin -= 1
     order: str | None = None
     elements: list[_Element] = []
-    for line in data[:end].decode("ascii", "replace").splitlines()[1:]:
+    for line in data[: end.start()].decode("ascii", "replace").splitlines()[1:]:
         match line.split():
             case ["format", name, _] if name in _ORDERS:
                 order = _ORDERS[name]
@@ -152,16 +192,17 @@ def _header(data: bytes) -> tuple[list[_Element], _Rest]:
                 raise LoadError(f"its header has the invalid line '{line:.60}'")
     if order is None:
         raise LoadError("its header names no format")
-    newline = data.find(b"\n", end)
-    start = len(data) if newline < 0 else newline + 1
-    reader = _Rest(data, order, start)
+    reader = _Rest(data, order, begin)
     if not order:
-        reader.words, reader.at = data[start:].split(), 0
+        reader.text = data[begin:]
+        reader.words, reader.at = reader.text.split(), 0
     return elements, reader
 
 
 def _columns(element: _Element, reader: _Rest) -> dict[str, Any]:
     """Return an array for each property; a list is (lengths, values)."""
+    if not element.properties and element.rows == 0:
+        return {}
     if not element.properties:
         raise LoadError(f"'{element.name:.20}' has no properties")
     if reader.words is not None:
@@ -199,7 +240,7 @@ def _uniform(rows: NDArray[Any], each: _Property, lengths: dict[str, int]) -> An
     if not each.count:
         return rows[each.name]
     counts = np.full(len(rows), lengths[each.name], np.int64)
-    return counts, rows[each.name].astype(np.int64).reshape(-1)
+    return counts, rows[each.name].reshape(-1)
 
 
 def _first_lengths(element: _Element, reader: _Rest) -> dict[str, int] | None:
@@ -220,32 +261,38 @@ def _first_lengths(element: _Element, reader: _Rest) -> dict[str, int] | None:
 
 
 def _row_by_row(element: _Element, reader: _Rest) -> dict[str, Any]:
-    """Read rows whose lists differ in length; only lists are kept."""
-    found: dict[str, tuple[list[int], list[NDArray[Any]]]] = {
-        each.name: ([], []) for each in element.properties if each.count
+    """Read rows whose lists differ in length; of what is no list, that of ``_KEPT``."""
+    lengths: dict[str, list[int]] = {each.name: [] for each in element.properties if each.count}
+    values: dict[str, list[NDArray[Any]]] = {name: [] for name in lengths}
+    plain: dict[str, list[float]] = {
+        each.name: [] for each in element.properties if not each.count and each.name in _KEPT
     }
     for row in range(element.rows):
         if row % _LOOK == 0:
             check_time()
-            need(row * len(found) * _LIST_BYTES, f"{row:,} rows of lists of different lengths")
+            count = len(lengths) + len(plain)
+            need(row * count * _LIST_BYTES, f"{row:,} rows of lists of different lengths")
         for each in element.properties:
             if not each.count:
+                if each.name in plain:
+                    plain[each.name].append(_number(reader, reader.at, each.type))
                 reader.at += np.dtype(each.type).itemsize
                 continue
             length = int(_number(reader, reader.at, each.count))
             reader.at += np.dtype(each.count).itemsize
-            dtype = np.dtype(reader.order + each.type)
             if length < 0:
                 raise LoadError(f"a list of '{element.name:.20}' has a negative length")
-            found[each.name][0].append(length)
-            found[each.name][1].append(_take(reader, element, dtype, length))
-    return {
+            lengths[each.name].append(length)
+            dtype = np.dtype(reader.order + each.type)
+            values[each.name].append(_take(reader, element, dtype, length))
+    lists = {
         name: (
-            np.array(lengths, np.int64),
-            np.concatenate([np.zeros(0), *values]).astype(np.int64),
+            np.array(lengths[name], np.int64),
+            np.concatenate([np.zeros(0, "i1"), *values[name]]),
         )
-        for name, (lengths, values) in found.items()
+        for name in lengths
     }
+    return {**lists, **{name: np.array(rows, np.float64) for name, rows in plain.items()}}
 
 
 def _number(reader: _Rest, at: int, type: str) -> Any:
@@ -283,15 +330,30 @@ def _text_columns(element: _Element, reader: _Rest, words: list[bytes]) -> dict[
         message = f"it is truncated: '{element.name:.20}' has {element.rows} rows"
         raise LoadError(message) from None
     except ValueError:
-        raise LoadError(f"it has {words[at][:20]!r} where a number is expected") from None
+        raise _wrong_word(words, reader, at) from None
+    if b"_" in b"".join(words[reader.at : at]):  # Python reads these in numbers
+        raise _wrong_word(words, reader, reader.at)
     reader.at = at
     return {
-        name: (np.array(lengths[name], np.int64), _whole(values)) if name in lengths else values
+        name: (np.array(lengths[name], np.int64), values) if name in lengths else values
         for name, values in ((n, np.array(v, np.float64)) for n, v in columns.items())
     }
 
 
-def _whole(values: NDArray[np.float64]) -> NDArray[np.int64]:
-    if not (np.abs(values) < 2.0**31).all():
-        raise LoadError("an index of a point is no 32-bit number")
-    return values.astype(np.int64)
+def _wrong_word(words: list[bytes], reader: _Rest, begin: int) -> LoadError:
+    """Return the error of the first word that is no number."""
+    for at in range(begin, len(words)):
+        try:
+            float(words[at])
+        except ValueError:
+            break
+        if b"_" in words[at]:
+            break
+    else:
+        at = begin  # the length of a list
+    try:
+        numbers([words[at]])
+    except LoadError as error:
+        return LoadError(f"line {reader.line(at)}: {error.message}")
+    shown = printable(words[at][:20].decode("ascii", "replace"))
+    return LoadError(f"line {reader.line(at)}: '{shown}' is no length of a list")

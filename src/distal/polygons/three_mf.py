@@ -12,17 +12,21 @@ import posixpath
 import zipfile
 from dataclasses import dataclass, field
 from typing import Final
+from urllib.parse import unquote
 
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.diagnostics import LoadError
+from distal.diagnostics import LoadError, printable
 from distal.foreign_files import TooLargeError, check_time
 from distal.lang.units import UNITS
 from distal.polygons.model_xml import Model, ModelObject, path_of, read_model
 from distal.polygons.triangles import MeshSize, SourceTriangles, checked, colored
 
 _MODEL: Final = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
+# Objects of these types are solids; those of the last two are no part of what is made.
+_SOLID: Final = ("model", "solidsupport")
+_BESIDE: Final = ("support", "other")
 _METHODS: Final = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # Open Packaging Conventions
 _CHUNK: Final = 2**16  # bytes of XML
 _DEEPEST: Final = 32  # components within components
@@ -40,13 +44,16 @@ _METERS: Final = {
 class _Object:
     """An object: a mesh, or other objects with the matrices that place them.
 
-    Colors are those of the triangles' corners, (m, 3, 3); None without them.
+    Colors are those of the triangles' corners, (m, 3, 3); None without them. ``left_out`` says why
+    an object has no triangles.
     """
 
     points: NDArray[np.float64]
     triangles: NDArray[np.int64]
     components: list[tuple[tuple[str, str], NDArray[np.float64]]]
     colors: NDArray[np.float32] | None = None
+    left_out: str = ""
+    is_beside: bool = False
 
 
 @dataclass(slots=True)
@@ -59,7 +66,9 @@ class _Archive:
         models: The models by name.
         size: What is in all of them.
         objects: Their objects by the name of the model and their own.
+        names: Their names in the archive, by what names them: without regard to capitals.
         placed: Each placed object, and its matrix.
+        left_out: Why placed objects have no triangles.
         total: Points and triangles of all these.
     """
 
@@ -68,7 +77,9 @@ class _Archive:
     models: dict[str, Model] = field(default_factory=dict)
     size: MeshSize = field(default_factory=MeshSize)
     objects: dict[tuple[str, str], _Object] = field(default_factory=dict)
+    names: dict[str, str] = field(default_factory=dict)
     placed: list[tuple[_Object, NDArray[np.float64]]] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
     total: MeshSize = field(default_factory=MeshSize)
 
 
@@ -83,9 +94,14 @@ def read_three_mf(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
             return _read(_Archive(archive, with_colors))
     except zipfile.BadZipFile as error:
         raise LoadError(f"it is no whole zip archive, as 3MF is: {error}") from None
+    except (ValueError, NotImplementedError) as error:  # places or ways that do not exist
+        if isinstance(error, LoadError | UnicodeError):
+            raise
+        raise LoadError(f"it is no whole zip archive, as 3MF is: {error}") from None
 
 
 def _read(whole: _Archive) -> SourceTriangles:
+    whole.names = {_key(name): name for name in reversed(whole.archive.namelist())}
     path = _start(whole)
     root = _model(whole, path)
     unit = root.attributes.get("unit", "millimeter")
@@ -96,7 +112,10 @@ def _read(whole: _Archive) -> SourceTriangles:
         _place(whole, key, _matrix(item.get("transform")), 0)
     whole.total.check()
     if not any(len(each.triangles) for each, _ in whole.placed):
-        raise LoadError("there is no triangle in its build")
+        if not root.items:
+            raise LoadError("its build is empty: add its objects to the plate and save it again")
+        reasons = "; ".join(dict.fromkeys(whole.left_out))
+        raise LoadError(f"there is no triangle in its build{reasons and ': ' + reasons:.400}")
     return _joined(whole.placed, _METERS[unit])
 
 
@@ -127,7 +146,7 @@ def _joined(placed: list[tuple[_Object, NDArray[np.float64]]], meters: float) ->
 def _start(whole: _Archive) -> str:
     """Return the name of the model that the whole starts with."""
     names = whole.archive.namelist()
-    if "_rels/.rels" in names:
+    if "_rels/.rels" in whole.names:
         for relation in _parsed(whole, "_rels/.rels").relations:
             if relation.get("Type") == _MODEL:
                 return relation.get("Target", "").lstrip("/")
@@ -151,7 +170,7 @@ def _model(whole: _Archive, path: str) -> Model:
 
 def _parsed(whole: _Archive, path: str) -> Model:
     try:
-        entry = whole.archive.getinfo(path)
+        entry = whole.archive.getinfo(whole.names[_key(path)])
     except KeyError:
         raise LoadError(f"it lacks the part '{path:.60}'") from None
     if entry.compress_type not in _METHODS:
@@ -204,15 +223,22 @@ def _object(source: ModelObject, path: str, palettes: dict[str, list[list[float]
         ((_beside(path_of(each), path), each.get("objectid", "")), _matrix(each.get("transform")))
         for each in source.components
     ]
+    name = printable(source.attributes.get("id", ""), 20)
     kind = source.attributes.get("type", "model")
-    if not source.is_mesh or kind not in ("model", "solidsupport"):
-        return _Object(np.zeros((0, 3)), np.zeros((0, 3), np.int64), components)
+    if not source.is_mesh or kind not in _SOLID:
+        reason = f"its object '{name}' has the type '{printable(kind, 20)}', which is no solid"
+        if kind == "surface":
+            reason += ": save it as 'model'"
+        reason = "" if kind in _SOLID else reason
+        return _Object(
+            np.zeros((0, 3)), np.zeros((0, 3), np.int64), components, None, reason, kind in _BESIDE
+        )
     points = np.frombuffer(source.points, np.float64).reshape(-1, 3)
     triangles = np.frombuffer(source.corners, np.int64).reshape(-1, 3)
     if len(triangles) and not 0 <= triangles.min() <= triangles.max() < len(points):
-        name = source.attributes.get("id")
-        raise LoadError(f"a triangle of object {name!r:.20} names a missing point")
-    return _Object(points, triangles, components, _colors(source, palettes))
+        raise LoadError(f"a triangle of object '{name}' names a missing point")
+    reason = f"its object '{name}' has beams, which are not read" if source.has_beams else ""
+    return _Object(points, triangles, components, _colors(source, palettes), reason)
 
 
 def _place(whole: _Archive, key: tuple[str, str], matrix: NDArray[np.float64], deep: int) -> None:
@@ -227,8 +253,12 @@ def _place(whole: _Archive, key: tuple[str, str], matrix: NDArray[np.float64], d
     # Those without triangles cost as much time as others.
     whole.total.add(MeshSize(len(found.points), len(found.triangles)))
     whole.total.check()
+    if found.left_out and not found.is_beside:
+        raise LoadError(found.left_out)
     if len(found.triangles):
         whole.placed.append((found, matrix))
+    elif found.left_out:
+        whole.left_out.append(found.left_out)
     for child, inner in found.components:
         _place(whole, child, _after(inner, matrix), deep + 1)
 
@@ -251,6 +281,11 @@ def _matrix(text: str | None) -> NDArray[np.float64]:
     if numbers.shape != (12,) or not (np.abs(numbers) < 1e30).all():
         raise LoadError(f"the transform '{text:.40}' is not 12 numbers")
     return numbers.reshape(4, 3)
+
+
+def _key(path: str) -> str:
+    """Return a name of a part as those that are equal by the conventions have it."""
+    return unquote(path).replace("\\", "/").lstrip("/").lower()
 
 
 def _beside(path: str | None, default: str) -> str:

@@ -167,7 +167,8 @@ def welded(places: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np
     Args:
         places: (n, 3).
     """
-    rows = np.ascontiguousarray(places) + np.float32(0.0)  # -0 becomes 0
+    with np.errstate(invalid="ignore"):  # ``checked`` finds what is no number
+        rows = np.ascontiguousarray(places) + np.float32(0.0)  # -0 becomes 0
     bits = rows.view(np.uint32).astype(np.uint64)
     keys = bits[:, 0] * _HASH[0] ^ bits[:, 1] * _HASH[1] ^ bits[:, 2] * _HASH[2]
     _, first, which = np.unique(keys, return_index=True, return_inverse=True)
@@ -175,24 +176,6 @@ def welded(places: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np
     if not np.array_equal(points[which], rows, equal_nan=True):  # two points had one key
         points, which = np.unique(rows, axis=0, return_inverse=True)
     return points, which.reshape(-1).astype(np.int64)
-
-
-def fans(counts: NDArray[np.int64], indices: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return triangles that fill polygons, each a fan about its first point.
-
-    Args:
-        counts: The number of corners of each polygon; those with fewer than 3 are left out.
-        indices: The corners of all polygons, one after the other.
-    """
-    starts = np.cumsum(counts) - counts
-    pieces = np.maximum(counts - 2, 0)
-    MeshSize(0, int(pieces.sum())).check()
-    which = np.repeat(np.arange(len(counts)), pieces)
-    step = np.arange(len(which)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    first = starts[which]
-    places = np.stack([first, first + step + 1, first + step + 2], axis=1)
-    found: NDArray[np.int64] = indices[places].reshape(-1, 3)
-    return found
 
 
 def _array(values: Any, name: str, kinds: str) -> NDArray[Any]:
