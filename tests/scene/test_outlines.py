@@ -151,9 +151,9 @@ def test_text_is_laid_out():
 
 
 PATHS = [
-    ("", "this is no SVG path: it does not start with M"),
-    ("L 1 2", "this is no SVG path: it does not start with M"),
-    ("M 0 0 W 1", "this is no SVG path: it holds 'W'"),
+    ("", "this SVG path encloses nothing"),
+    ("L 1 2", "this SVG path cannot be read: it does not start with M at character 1, 'L 1 2'"),
+    ("M 0 0 W 1", "this SVG path cannot be read: it has no command at character 7, 'W 1'"),
     ("M 0 0 L 1e999 0 L 1 1 Z", "this SVG path holds a number that is not finite"),
     ("M 0 0 L 5 5", "this SVG path encloses nothing"),
     ("M 0 0 L 5 0 L 3 0", "this SVG path encloses nothing"),
