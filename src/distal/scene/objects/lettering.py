@@ -226,8 +226,8 @@ def _face(font: str | os.PathLike[str] | None, letters: set[str], place: Span | 
                 if not other.lacks(letters):
                     return other
     shown = ", ".join(repr(c) for c in missing[:8])
-    has = "the font has" if font is not None else "no font that is known has"
-    refuse(f"{has} no {shown}", "name another with font=", place)
+    has = "the font has no" if font is not None else "no font that is known has"
+    refuse(f"{has} {shown}", "name another with font=", place)
 
 
 def _file_of(font: str | os.PathLike[str], place: Span | None) -> str:

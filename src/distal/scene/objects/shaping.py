@@ -33,6 +33,8 @@ JOINERS: Final = "\u200c\u200d"
 # Without a glyph and without a width: where a line may be broken, and a mark of the byte order.
 _INVISIBLE: Final = dict.fromkeys(map(ord, "\u200b\u2060\ufeff\u00ad"))
 _LINE_ENDS: Final = ("\r\n", "\r", "\u2028", "\u2029", "\x85")
+_PAIRS: Final = dict(("()", "[]", "{}", "<>", "\u00ab\u00bb", "\u2039\u203a"))
+_MIRRORED: Final = {**_PAIRS, **{close: begin for begin, close in _PAIRS.items()}}
 _TAB: Final = 4  # letters
 
 
@@ -85,7 +87,7 @@ class Shaper:
 
         The direction of the line is that of its first letter that has one.
         """
-        for backwards, letters in _runs(imported("bidi").get_display(line)):
+        for backwards, letters in _runs(mirrored(imported("bidi").get_display(line))):
             buffer = self._harfbuzz.Buffer()
             buffer.add_str(letters[::-1] if backwards else letters)
             buffer.guess_segment_properties()
@@ -112,6 +114,36 @@ def shaper_of(data: bytes, line: str, place: Span | None) -> Shaper:
             "pip install 'distal[text]'",
             place,
         )
+
+
+def mirrored(shown: str) -> str:
+    """Return a line in the order in which it is shown, with its brackets turned to what they hold.
+
+    A pair stands in a part from right to left if its second bracket is shown first; a bracket
+    without the other if both letters beside it do.
+    """
+    letters, waiting = list(shown), list[int]()
+    for i, letter in enumerate(shown):
+        if letter not in _MIRRORED:
+            continue
+        other = next((j for j in reversed(waiting) if shown[j] == _MIRRORED[letter]), None)
+        if other is None:
+            waiting.append(i)
+            continue
+        del waiting[waiting.index(other) :]
+        if letter in _PAIRS:
+            letters[i], letters[other] = shown[other], letter
+    for i in waiting:
+        beside = [*_strong(shown[i::-1]), *_strong(shown[i:])]
+        if beside and all(kind in _BACKWARDS for kind in beside):
+            letters[i] = _MIRRORED[shown[i]]
+    return "".join(letters)
+
+
+def _strong(letters: str) -> list[str]:
+    """Return the direction of the first letter that has one, if there is such a letter."""
+    kinds = (unicodedata.bidirectional(c) for c in letters)
+    return [k for k in kinds if k in ("L", *_BACKWARDS)][:1]
 
 
 def _runs(shown: str) -> list[tuple[bool, str]]:

@@ -120,7 +120,16 @@ def draw_path(text: str, pen: Any, arc: Any) -> None:
             case "Q" | "T":
                 pen.qCurveTo(*map(_pair, points))
             case "A" if numbers[0] and numbers[1] and points[0] != here:
-                _draw_arc(pen, arc(here, *numbers[:3], *map(bool, numbers[3:5]), points[0]))
+                _draw_arc(
+                    pen,
+                    arc(
+                        here,
+                        *map(abs, numbers[:2]),
+                        numbers[2],
+                        *map(bool, numbers[3:5]),
+                        points[0],
+                    ),
+                )
             case _:
                 if points[0] != here:
                     pen.lineTo(_pair(points[0]))
