@@ -182,7 +182,7 @@ TEXTS = [
     (("a",), {"align": "middle"}, "align is 'left', 'center' or 'right', not 'middle'"),
     (("a",), {"font": "no such font"}, "there is no font 'no such font' on this machine"),
     (("a",), {"font": "missing.ttf"}, "there is no font file 'missing.ttf'"),
-    (("\U000f0000",), {}, "no font that is known has no '\\U000f0000'"),
+    (("\U000f0000",), {}, "no font that is known has '\\U000f0000'"),
 ]
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from distal import Box, CompileError, Curve, Rectangle
+from distal.scene.checks.validation import check
 
 BENT = np.array([(0, 0, 0), (2, 0, 0), (2.3, 1, 0.4), (1, 2, -0.3), (-0.5, 1, 0.3)])
 RANDOM = np.random.default_rng(5)
@@ -83,3 +84,18 @@ def test_a_path_that_cannot_be_swept_is_refused(path, message):
     with pytest.raises(CompileError) as error:
         Rectangle(0.2, 0.1).sweep(path)
     assert message in str(error.value) and "test_sweep_paths.py" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Box(1, 1, 1).translate(-3, 0, 0).symmetry("x"), "is empty: its box has no volume"),
+        (lambda: Rectangle(1, 1).translate(-3, 0).revolve(), "is empty: its box has no volume"),
+        (lambda: Box(1, 1, 1) & Box(1, 1, 1).translate(9, 0, 0), "is empty: its box has no volume"),
+        (lambda: Rectangle(1, 1).translate(-3, 0).symmetry("x"), "is empty: its box has no area"),
+    ],
+)
+def test_a_check_says_what_keeps_nothing(make, message):
+    said = [f.diagnostic.message for f in check(make()).findings]
+    assert any(message in text for text in said)
+    assert not any("is empty" in f.diagnostic.message for f in check(Box(1, 1, 1)).findings)

@@ -33,7 +33,9 @@ JOINERS: Final = "\u200c\u200d"
 # Without a glyph and without a width: where a line may be broken, and a mark of the byte order.
 _INVISIBLE: Final = dict.fromkeys(map(ord, "\u200b\u2060\ufeff\u00ad"))
 _LINE_ENDS: Final = ("\r\n", "\r", "\u2028", "\u2029", "\x85")
-_PAIRS: Final = dict(("()", "[]", "{}", "<>", "\u00ab\u00bb", "\u2039\u203a"))
+_PAIRS: Final = {
+    begin: close for begin, close in ("()", "[]", "{}", "<>", "\u00ab\u00bb", "\u2039\u203a")
+}
 _MIRRORED: Final = {**_PAIRS, **{close: begin for begin, close in _PAIRS.items()}}
 _TAB: Final = 4  # letters
 
