@@ -74,6 +74,8 @@ PACKAGES: Final = (
     Package("anywidget", "notebook", "sliders in notebooks"),
     Package("pyoidn", "denoise", "removing noise"),
     Package("fonttools", "text", "letters of fonts", "fontTools"),
+    Package("uharfbuzz", "text", "letters that join or combine"),
+    Package("python-bidi", "text", "text from right to left", "bidi"),
     Package("markdown-it-py", "lessons", "pages of lessons", "markdown_it"),
     Package("pygments", "lessons", "pages of lessons"),
     Package("manifold3d", "mesh", "meshes with fewer triangles"),

@@ -634,12 +634,3 @@ def test_trees_that_share_shapes_stay_small():
     assert shape.node.parts == 1024
     points = np.array([[3.25, 0.0, 0.0], [-2.0, 0.0, 0.0], [10.0, 1.5, 0.0], [14.0, 0.0, 0.0]])
     assert shape(points) == pytest.approx([-0.25, 1.5, 1.0, 3.5])
-
-
-def test_a_tree_too_deep_is_told():
-    shape = Sphere(0.5)
-    for _ in range(2000):
-        shape = (shape | Sphere(0.1)).translate(0.001, 0, 0)
-    with pytest.raises(CompileError) as caught:
-        Scene(shape).render(size=(8, 8))
-    assert "too deeply nested" in str(caught.value)

@@ -151,9 +151,9 @@ def test_text_is_laid_out():
 
 
 PATHS = [
-    ("", "this is no SVG path: it does not start with M"),
-    ("L 1 2", "this is no SVG path: it does not start with M"),
-    ("M 0 0 W 1", "this is no SVG path: it holds 'W'"),
+    ("", "this SVG path encloses nothing"),
+    ("L 1 2", "this SVG path cannot be read: it does not start with M at character 1, 'L 1 2'"),
+    ("M 0 0 W 1", "this SVG path cannot be read: it has no command at character 7, 'W 1'"),
     ("M 0 0 L 1e999 0 L 1 1 Z", "this SVG path holds a number that is not finite"),
     ("M 0 0 L 5 5", "this SVG path encloses nothing"),
     ("M 0 0 L 5 0 L 3 0", "this SVG path encloses nothing"),
@@ -182,7 +182,7 @@ TEXTS = [
     (("a",), {"align": "middle"}, "align is 'left', 'center' or 'right', not 'middle'"),
     (("a",), {"font": "no such font"}, "there is no font 'no such font' on this machine"),
     (("a",), {"font": "missing.ttf"}, "there is no font file 'missing.ttf'"),
-    (("\U000f0000",), {}, "no font that is known has no '\\U000f0000'"),
+    (("\U000f0000",), {}, "no font that is known has '\\U000f0000'"),
 ]
 
 

@@ -13,9 +13,34 @@ from __future__ import annotations
 
 from distal.fields.constants import PI
 from distal.fields.extents import hull_of, turned
-from distal.fields.guarantees import LOWER_BOUND, Bounds, Growth, Limit, operator
+from distal.fields.guarantees import (
+    LOWER_BOUND,
+    Bounds,
+    Bounds2,
+    Growth,
+    Limit,
+    Operator,
+    operator,
+)
 from distal.fields.ordering import larger_first
-from distal.lang import abs, atan2, cos, dot, func, length, mat3, max, min, round, sin, vec2, vec3
+from distal.lang import (
+    Buffer,
+    abs,
+    atan2,
+    cos,
+    dot,
+    func,
+    length,
+    mat3,
+    max,
+    min,
+    round,
+    sin,
+    size,
+    vec2,
+    vec3,
+    vec4,
+)
 
 
 @func
@@ -35,6 +60,39 @@ def mirrored_bounds(bounds: Bounds, normal: vec3, offset: float) -> Bounds:
     there = turned(bounds, image)
     shift = normal * (2.0 * offset)
     return hull_of(bounds, Bounds(there.low + shift, there.high + shift))
+
+
+@func
+def mirrored_in_turn(p: vec3, planes: Buffer[vec4]) -> vec3:
+    """Mirror a point to the side of each plane that its normal points to, one after the other."""
+    q = p
+    for i in range(size(planes)):
+        q = mirrored(q, planes[i].xyz, planes[i].w)
+    return q
+
+
+@func
+def mirrored_in_turn_bounds(bounds: Bounds, planes: Buffer[vec4]) -> Bounds:
+    """Return the box around all mirror images; the last plane mirrors the shape itself."""
+    around = bounds
+    for i in range(size(planes)):
+        plane = planes[size(planes) - 1 - i]
+        around = mirrored_bounds(around, plane.xyz, plane.w)
+    return around
+
+
+@func
+def mirrored_flat_in_turn(p: vec2, planes: Buffer[vec4]) -> vec2:
+    """Mirror a point of the plane z = 0 likewise."""
+    return mirrored_in_turn(vec3(p, 0.0), planes).xy
+
+
+@func
+def mirrored_flat_in_turn_bounds(bounds: Bounds2, planes: Buffer[vec4]) -> Bounds2:
+    """Return the rectangle around all mirror images."""
+    box = Bounds(vec3(bounds.low, 0.0), vec3(bounds.high, 0.0))
+    around = mirrored_in_turn_bounds(box, planes)
+    return Bounds2(around.low.xy, around.high.xy)
 
 
 @func
@@ -136,6 +194,21 @@ MIRROR = operator(
     keeps=LOWER_BOUND,
     bounds=mirrored_bounds,
     limits={"normal": Limit.UNIT},
+    growth=Growth.TURNED,
+)
+# Many mirrors in a row, which ``scene.lowering.nesting`` makes: authors write each by itself.
+MIRRORS = Operator(
+    "mirrors",
+    point=mirrored_in_turn,
+    keeps=LOWER_BOUND,
+    bounds=mirrored_in_turn_bounds,
+    growth=Growth.TURNED,
+)
+MIRRORS_FLAT = Operator(
+    "flat mirrors",
+    point=mirrored_flat_in_turn,
+    keeps=LOWER_BOUND,
+    bounds=mirrored_flat_in_turn_bounds,
     growth=Growth.TURNED,
 )
 SYMMETRY = operator(

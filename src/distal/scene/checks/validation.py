@@ -263,10 +263,21 @@ def _findings(i: int, row: ShapeReport, rows: Sequence[ShapeReport]) -> Iterator
             message = f"{described(row.node)} has the slope {row.declared.slope:.3g}"
         yield finding(Severity.NOTE, ErrorCode.SLOPE_RAISED, message)
     inner = [rows[c] for c in row.children]
+    if _is_empty(row) and not any(map(_is_empty, inner)) and row.children:
+        kind = "area" if row.node.flat else "volume"
+        message = f"{described(row.node)} is empty: its box has no {kind}"
+        hint = "the side that is kept, or that both have in common, holds nothing"
+        yield finding(Severity.WARNING, ErrorCode.NO_INSIDE, message, hint)
     if not row.declared.finite and all(r.declared.finite for r in inner):
         yield _endless(row, finding)
     if isinstance(row.node.rule, Operator):
         yield from _of_operator(row, [r.node for r in inner], finding)
+
+
+def _is_empty(row: ShapeReport) -> bool:
+    n = 2 if row.node.flat else 3
+    own = row.declared
+    return any(low >= high for low, high in zip(own.low[:n], own.high[:n], strict=True))
 
 
 def _proofs(

@@ -27,6 +27,7 @@ from distal.lang.presentable import Presentable
 from distal.lang.runtime_access import executor, viewing
 from distal.lang.source_places import author_place
 from distal.scene.lowering.derived import BoundsOf, GradientOf
+from distal.scene.lowering.nesting import shallow
 from distal.scene.lowering.parts.table import rolled_for
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.lowering.slope_limit import check_gradient, check_slope
@@ -91,7 +92,7 @@ class BaseShape(Composed, Presentable):
                 "repeat, array and mirror show many copies for the price of one",
                 node.place,
             )
-        self.__dict__["node"] = with_bounds_of_places(node)
+        self.__dict__["node"] = with_bounds_of_places(shallow(node))
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a {type(self).__name__} does not change; make another")

@@ -1,9 +1,10 @@
 """Layout of text as outlines: chooses a font and places its glyphs.
 
 Input: a text, a font's name or file. Output: a ``DrawnOutline``. Glyph distances are the font's
-widths and kerning. There are no ligatures, and all text runs from left to right. The default font
-is the one inside Pillow, which is the same on every machine; if it lacks a letter, the first known
-font of the machine that has all letters is used.
+widths and kerning, without ligatures. Lines with letters that join, combine or run from right to
+left are laid out by ``shaping``. The default font is the one inside Pillow, which is the same on
+every machine; if it lacks a letter, the first known font of the machine that has all letters is
+used.
 """
 
 from __future__ import annotations
@@ -30,6 +31,13 @@ from distal.scene.objects.outlines import (
     made_of,
     outline_pen,
 )
+from distal.scene.objects.shaping import (
+    Shaper,
+    lines_of,
+    needs_shaping,
+    shaper_of,
+    shown_letters,
+)
 from distal.scene.tree.conversion import beside
 from distal.scene.tree.errors import refuse, refuse_kind
 
@@ -54,7 +62,8 @@ def text_outline(
     r"""Return the outline of a text; the middle of its capital letters is at y = 0.
 
     Args:
-        text: The text; "\n" starts a new line.
+        text: The text; "\n", "\r\n" and "\r" start a new line, a tab goes on at the next
+            multiple of 4 letters.
         font: The font's file, or the name of an installed font; None for a default font.
         size: Font size; capital letters are about 0.7 times as high.
         align: Position of x = 0 in each line: "left", "center" or "right".
@@ -73,10 +82,10 @@ def text_outline(
     for name, value in (("size", size), ("line_spacing", line_spacing)):
         if not 0.0 < value < math.inf:
             refuse(f"{name} must be above 0, not {value}", None, place)
-    lines = text.split("\n")
-    if not text.strip():
+    lines = lines_of(text, place)
+    if not "".join(lines).strip():
         refuse("a text needs a letter", None, place)
-    face = _face(font, set("".join(lines)), place)
+    face = _face(font, shown_letters("".join(lines)), place)
     scale = size / face.units
     middle = 0.5 * (face.capitals * scale - (len(lines) - 1) * line_spacing * size)
     edges: list[Edge] = []
@@ -99,11 +108,13 @@ class Face:
     Args:
         font: The font, of fontTools.
         name: The name of its file.
-        size: The size of its file in bytes.
+        data: The bytes of its file.
     """
 
-    def __init__(self, font: Any, name: str = "", size: int = 0) -> None:
-        self._name, self._size = name, size
+    def __init__(self, font: Any, name: str, data: bytes) -> None:
+        self._name, self._data = name, data
+        self._shaper: Shaper | None = None
+        self._order = font.getGlyphName
         self._glyphs = font.getGlyphSet()
         self._names: dict[int, str] = font.getBestCmap() or {}
         self._kerning = _Kerning(font)
@@ -120,8 +131,10 @@ class Face:
 
         Glyphs are decoded when they are drawn, so a font that is damaged may fail here.
         """
+        if needs_shaping(line) and self._shaper is None:
+            self._shaper = shaper_of(self._data, line, place)
         try:
-            with reading("font", self._name, self._size):
+            with reading("font", self._name, len(self._data)):
                 return watched(lambda: self._laid_out(line, place))
         except LoadError as error:
             refuse(error.message, None, place)
@@ -129,17 +142,28 @@ class Face:
     def _laid_out(self, line: str, place: Span | None) -> tuple[list[Edge], float]:
         at = 0.0
         edges: list[Edge] = []
-        before = None
-        for letter in line:
-            name = self._names[ord(letter)]
-            at += self._kerning.between(before, name) if before else 0.0
+        for name, before, offset, advance in self._placed(line):
+            at += before
             pen = outline_pen(self._glyphs, place)
             self._glyphs[name].draw(pen)
             need((len(edges) + len(pen.edges)) * EDGE_BYTES, f"{len(edges):,} edges and more")
-            edges += [tuple(at + p for p in edge) for edge in pen.finished()]
-            at += self._glyphs[name].width
-            before = name
+            edges += [tuple(at + offset + p for p in edge) for edge in pen.finished()]
+            at += advance
         return edges, at
+
+    def _placed(self, line: str) -> Iterator[tuple[str, float, complex, float]]:
+        """Yield the glyphs of a line: name, kerning before it, offset and advance."""
+        if needs_shaping(line):
+            assert self._shaper is not None
+            for number, advance, right, up in self._shaper.glyphs(line):
+                yield self._order(number), 0.0, complex(right, up), float(advance)
+            return
+        before = None
+        for letter in line:
+            name = self._names[ord(letter)]
+            kerning = self._kerning.between(before, name) if before else 0.0
+            yield name, kerning, 0j, self._glyphs[name].width
+            before = name
 
 
 class _Kerning:
@@ -202,8 +226,8 @@ def _face(font: str | os.PathLike[str] | None, letters: set[str], place: Span | 
                 if not other.lacks(letters):
                     return other
     shown = ", ".join(repr(c) for c in missing[:8])
-    has = "the font has" if font is not None else "no font that is known has"
-    refuse(f"{has} no {shown}", "name another with font=", place)
+    has = "the font has no" if font is not None else "no font that is known has"
+    refuse(f"{has} {shown}", "name another with font=", place)
 
 
 def _file_of(font: str | os.PathLike[str], place: Span | None) -> str:
@@ -246,7 +270,7 @@ def _open_file(file: str, changed: int) -> Face:
     with opened("font", file, name=name) as data:
         if data.startswith(_PACKED):  # each table may unpack to any length, in one call
             raise LoadError("it is a packed font of web pages (WOFF): convert it to .ttf or .otf")
-        return watched(lambda: Face(fonts.TTFont(BytesIO(data), fontNumber=0), name, len(data)))
+        return watched(lambda: Face(fonts.TTFont(BytesIO(data), fontNumber=0), name, data))
 
 
 @lru_cache(maxsize=1)
@@ -256,7 +280,7 @@ def _pillows_face() -> Face | None:
     data = getattr(images.load_default(10), "font_bytes", None)
     if not data:
         return None
-    return Face(font_tools("ttLib", None).TTFont(BytesIO(data)), "of Pillow", len(data))
+    return Face(font_tools("ttLib", None).TTFont(BytesIO(data)), "of Pillow", data)
 
 
 @lru_cache(maxsize=1)

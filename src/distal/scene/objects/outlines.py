@@ -8,7 +8,6 @@ error at the author's line. Paths and fonts are read by fontTools, an optional p
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias
@@ -20,6 +19,7 @@ from distal.foreign_files import need, reading, watched
 from distal.lang.resources import Buffer
 from distal.lang.source_places import author_place
 from distal.packages import PackageError, imported
+from distal.scene.objects.svg_grammar import draw_path
 from distal.scene.tree.errors import refuse, refuse_kind
 
 # A line (two points), a quadratic Bézier curve (three) or a cubic one (four); y points up.
@@ -32,7 +32,6 @@ TOLERANCE: Final = 1.0 / 4000.0
 EDGE_BYTES: Final = 400  # of an edge and its points
 _LOOK: Final = 1024  # edges between two looks at their number
 STRAIGHT: Final = 1e-6
-_NOT_IN_A_PATH: Final = re.compile(r"[^MmZzLlHhVvCcSsQqTtAa0-9eE+\-.,\s]")
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,17 +68,12 @@ def svg_path(path: str, *, size: float | None = None, place: Span | None = None)
     place = place or author_place()
     if not isinstance(path, str):
         refuse_kind(f"an SVG path is a text, not {path!r:.40}", 'write "M 0 0 L 1 0 …"', place)
-    strange = _NOT_IN_A_PATH.search(path)
-    if strange or path.strip()[:1] not in ("M", "m"):
-        what = f"holds {strange[0]!r}" if strange else "does not start with M"
-        hint = "give the attribute d of a <path>: M 0 0 L 1 0 …"
-        refuse(f"this is no SVG path: it {what}", hint, place)
     pen = outline_pen(None, place)
-    parser = font_tools("svgLib.path", place)
-    hint = "M, L, Q and A take 2, 2, 4 and 7 numbers"
+    arc = font_tools("svgLib.path.arc", place).EllipticalArc
+    hint = "give the attribute d of a <path>: M 0 0 L 1 0 …"
     try:
         with reading("drawing", "this SVG path", len(path)):
-            watched(lambda: parser.parse_path(path, pen))
+            watched(lambda: draw_path(path, pen, arc))
             upright = [tuple(p.conjugate() for p in edge) for edge in pen.finished()]
     except LoadError as error:
         refuse(error.message, hint, place)

@@ -32,6 +32,7 @@ from distal.scene.objects.from_data import FromData
 from distal.scene.objects.heights import seen_heights
 from distal.scene.objects.meshable import Meshable
 from distal.scene.objects.outlined import Outlined
+from distal.scene.objects.path_corners import path_corners
 from distal.scene.objects.turns import warn_of_degrees
 from distal.scene.tree.errors import refuse
 
@@ -581,8 +582,23 @@ class Shape2D(Outlined):
         return self._solid(extrude.EXTRUDE_TAPERED, height, top)
 
     def sweep(self, points: Points, up: Vector = (0.0, 1.0, 0.0)) -> Shape:
-        """Sweep along the polyline through (n, 3) points; ``up`` is the outline's y axis."""
-        return self._solid(path.SWEEP, points, up)
+        """Sweep along the polyline through (n, 3) points.
+
+        Points that repeat the one before count once. A path whose last point is its first is
+        closed: it has a joint there, and no ends.
+
+        Args:
+            points: The points, in order.
+            up: The direction of the outline's y axis at the start, as far as possible.
+
+        Raises:
+            SceneValueError: The path has no length or turns back on itself, or the outline comes
+                back turned along a closed path.
+        """
+        place = author_place()
+        corners, closed = path_corners(points, place)
+        made: Shape = self._under(path.SWEEP, (corners,), {"up": up, "closed": closed}, place)
+        return made
 
     def sweep_bezier(
         self,

@@ -20,9 +20,10 @@ from distal.lang.immutable import Immutable
 from distal.lang.source_places import author_place
 from distal.scene.objects.copies import CopyColumns, copied
 from distal.scene.objects.field import BaseShape
+from distal.scene.objects.path_corners import path_corners
 from distal.scene.objects.shapes import CLASSES
 from distal.scene.points.curves import points_along
-from distal.scene.points.frames import across, quaternions, rolled, seam_turn, untwisted
+from distal.scene.points.frames import across, quaternions, rolled, untwisted
 from distal.scene.points.parabolas import Parabolas, parabolas_of
 from distal.scene.points.requests import positive
 from distal.scene.tree.conversion import Asked, number
@@ -38,8 +39,6 @@ Floats = NDArray[np.float64]
 _FRACTION: Final = 5e-4
 # Straight pieces of each parabola, along which frames are carried and outlines are swept.
 _STRAIGHT: Final = 4
-# The turn of an outline, in radians, below which it meets itself: rounding of plane curves.
-_MEETS: Final = 1e-6
 # Frames are carried in steps by this many for each copy at least.
 _STEPS: Final = 8
 _LEAST_STEPS: Final = 512
@@ -168,17 +167,8 @@ class Curve(Immutable):
         corners = self._corners()
         if self.closed:
             corners[-1] = corners[0]
-            turn = seam_turn(corners)
-            if abs(turn) > _MEETS:
-                refuse(
-                    "an outline along this closed curve does not meet itself: it comes back turned "
-                    f"by {math.degrees(turn):.3g} degrees",
-                    "tube(radius) is round; or leave a gap: end=0.999 * tau",
-                    place,
-                )
-        made: Shape = outline._under(
-            path.SWEEP, (corners,), {"up": up, "closed": self.closed}, place
-        )
+        corners, closed = path_corners(corners, place, "curve")
+        made: Shape = outline._under(path.SWEEP, (corners,), {"up": up, "closed": closed}, place)
         return made
 
     def frames(

@@ -59,21 +59,6 @@ def untwisted(points: Floats, aheads: Floats, up: Floats, *, closed: bool) -> Fl
     return rolled(found, aheads, -turn * share)
 
 
-def seam_turn(corners: Floats) -> float:
-    """Return the angle by which a frame comes back turned that the joints of a path mirror.
-
-    Args:
-        corners: The points of a closed path, (n, 3); the last one is the first one.
-    """
-    ways = np.diff(corners, axis=0)
-    aheads = ways / np.linalg.norm(ways, axis=1, keepdims=True)
-    first = side = across(aheads[0], np.array((0.0, 1.0, 0.0)))
-    for ahead, turned in zip(aheads, np.roll(aheads, -1, axis=0), strict=True):
-        plane = (ahead + turned) / max(float(np.linalg.norm(ahead + turned)), _LEAST)
-        side = side - 2.0 * float(side @ plane) * plane
-    return math.atan2(float(np.cross(first, side) @ aheads[0]), float(first @ side))
-
-
 def _mirrored(step: Floats, ahead: Floats, following: Floats, side: Floats) -> Floats:
     """Return a direction across the curve at the next point, by two mirrors."""
     square = float(step @ step)

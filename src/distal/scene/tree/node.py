@@ -28,13 +28,14 @@ class GrowingChildren:
     holds the list in ``_last``, from which the first to append takes it.
     """
 
-    __slots__ = ("_count", "_last", "_nodes", "parts")
+    __slots__ = ("_count", "_last", "_nodes", "nesting", "parts")
 
-    def __init__(self, nodes: list[Node], parts: int) -> None:
+    def __init__(self, nodes: list[Node], parts: int, nesting: int) -> None:
         self._nodes = nodes
         self._count = len(nodes)
         self._last = [nodes]
         self.parts = parts
+        self.nesting = nesting
 
     def children(self) -> tuple[Node, ...]:
         """Return the children."""
@@ -47,7 +48,9 @@ class GrowingChildren:
         except IndexError:
             own = self._nodes[: self._count]
         own.extend(nodes)
-        return GrowingChildren(own, self.parts + sum([node.parts for node in nodes]))
+        parts = self.parts + sum([node.parts for node in nodes])
+        nesting = max(self.nesting, *[node.nesting + 1 for node in nodes])
+        return GrowingChildren(own, parts, nesting)
 
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True, init=False)
@@ -66,6 +69,7 @@ class Node:
         label: The author's name for the shape, or "".
         parts: Number of primitives evaluated for one distance; a primitive evaluated twice counts
             twice.
+        nesting: The largest number of operators from here down to a primitive.
     """
 
     rule: Rule
@@ -78,6 +82,7 @@ class Node:
     cut_material: Any = None
     label: str = ""
     parts: int = field(init=False, default=1)
+    nesting: int = field(init=False, default=0)
     _growing: GrowingChildren | None = field(init=False, repr=False, default=None)
     _derived: dict[str, Any] | None = field(init=False, repr=False, default=None)
 
@@ -125,14 +130,20 @@ class Node:
             assert isinstance(children, GrowingChildren)
             _set_growing(self, children)
             _set_parts(self, children.parts)
+            _set_nesting(self, children.nesting)
 
     def __post_init__(self) -> None:
         # Subclasses have the __init__ of a dataclass, which calls this method.
         children = self.children
         if len(children) == 1:
             _set_parts(self, children[0].parts)
+            _set_nesting(self, children[0].nesting + 1)
+        elif children:
+            _set_parts(self, sum([child.parts for child in children]))
+            _set_nesting(self, max([child.nesting for child in children]) + 1)
         else:
-            _set_parts(self, sum([child.parts for child in children]) if children else 1)
+            _set_parts(self, 1)
+            _set_nesting(self, 0)
 
     def __getattr__(self, name: str) -> Any:
         # The slot of the children is empty until they are read, if the union still grows.
@@ -150,7 +161,7 @@ class Node:
         """
         own = self._growing
         if own is None:
-            own = GrowingChildren(list(self.children), self.parts)
+            own = GrowingChildren(list(self.children), self.parts, self.nesting)
         return own.followed_by(nodes)
 
     def with_material(self, material: Any) -> Node:
@@ -273,5 +284,6 @@ _set_material: Final = _SLOTS["material"].__set__
 _set_cut_material: Final = _SLOTS["cut_material"].__set__
 _set_label: Final = _SLOTS["label"].__set__
 _set_parts: Final = _SLOTS["parts"].__set__
+_set_nesting: Final = _SLOTS["nesting"].__set__
 _set_growing: Final = _SLOTS["_growing"].__set__
 _set_derived: Final = _SLOTS["_derived"].__set__
