@@ -76,7 +76,7 @@ def compile(
     if output is None:
         answer(text.rstrip("\n"))
         return
-    write_files(output, artifact, text, with_interface=True)
+    write_files(output, artifact, text, target.value)
 
 
 @application.command()

@@ -28,7 +28,8 @@ def resource(source: Any, type: Texture | Buffer) -> dict[str, Any]:
     Raises:
         LoadError: A file cannot be read, or the data has the wrong shape for the resource.
     """
-    data = load(source, type)
+    with np.errstate(over="ignore"):  # what is too large becomes infinite, and is refused as such
+        data = load(source, type)
     return _buffer(data) if isinstance(type, Buffer) else _texture(data, type)
 
 

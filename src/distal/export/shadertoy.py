@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from distal.backends import TEXT_TARGETS, emit
-from distal.compiler.driver import TEXT_TABLE_FROM, run_passes
+from distal.backends import TEXT_TARGETS
+from distal.compiler.driver import text_of
 from distal.diagnostics import CompileError
 from distal.error_codes import ErrorCode
 from distal.export import texts
@@ -95,13 +95,14 @@ def _pass(
 ) -> ShaderPass:
     target = TEXT_TARGETS[TARGET]
     values = checked_values(seen.parameters, options.params)
-    module = texts.with_values(lower(image, table_from=TEXT_TABLE_FROM), values)
-    shaped = run_passes(module, target)
-    artifact = emit(shaped, target)
-    channels = tuple(_channel(r, tabs) for r in shaped.resources)
+    module = texts.with_values(lower(image, table_from=None), values)
+    artifact = text_of(module, target)
+    sources = {resource.name: resource for resource in module.resources}
+    read = [sources[entry["name"]] for entry in artifact.interface["textures"]]
+    channels = tuple(_channel(r, tabs) for r in read)
     listed = "".join(f" * iChannel{i}: {c}.\n" for i, c in enumerate(channels))
     use = f"/*\n * The tab {tab} of a shader on shadertoy.com.\n{listed} */\n\n"
-    wraps = tuple(r.wrap for r in shaped.resources)
+    wraps = tuple(r.wrap for r in read)
     return ShaderPass(tab, use + artifact.text.lstrip("\n"), channels, wraps)
 
 

@@ -12,13 +12,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from distal.backends import TEXT_TARGETS, emit
+from distal.backends import TEXT_TARGETS
 from distal.backends.base import Artifact
 from distal.backends.clike.module_text import comment_text
 from distal.backends.targets import Declares
-from distal.compiler.driver import TEXT_TABLE_FROM, run_passes
+from distal.compiler.driver import TEXT_TABLE_FROM, text_of
 from distal.diagnostics import readable
 from distal.export.exported import Exported
+from distal.export.host_data import refuse_passes, with_data
 from distal.export.page_options import TextOptions
 from distal.file_writer import SaveError, replacement
 from distal.frontend import lower
@@ -95,69 +96,88 @@ def _broken(text: str) -> list[str]:
 
 
 def write(seen: Viewable, path: Path, target: str, options: TextOptions) -> Exported:
-    """Write the text, the files it needs, and its interface if the host has to set inputs.
+    """Write the text and the files that belong to it.
 
     Args:
         seen: The object to show.
         path: The file.
         target: The text target, as for ``distal.compile``.
         options: The view, time and parameters.
+
+    Raises:
+        CompileError: The text cannot hold all that the picture reads.
+        SaveError: The file system reports an error, or another file is where one would go.
     """
-    description = TEXT_TARGETS[target]
     artifact = text(seen, target, options)
-    # Only for targets where the text declares the parameters; elsewhere the host sets its inputs.
-    with_interface = description.parameters is Declares.TEXT
-    beside = write_files(path, artifact, artifact.text, with_interface=with_interface)
-    return Exported(path, {}, beside)
+    return Exported(path, {}, write_files(path, artifact, artifact.text, target))
 
 
 def text(seen: Viewable, target: str, options: TextOptions) -> Artifact:
-    """Return the text with its header, the vertex stage and the interface.
+    """Return the text with its header, the vertex stage and the complete interface.
 
     Args:
         seen: The object to show.
         target: The text target.
         options: The view and parameters.
+
+    Raises:
+        CompileError: The text cannot hold all that the picture reads.
     """
     values = checked_values(seen.parameters, options.params)
     image = seen.image(options.view, encoded=True)
     description = TEXT_TARGETS[target]
-    text_of = image.text() if isinstance(image, Composed) else image
-    module = lower(text_of, table_from=TEXT_TABLE_FROM if description.buffers else None)
-    artifact = emit(run_passes(with_values(module, values), description), description)
+    of_text = image.text() if isinstance(image, Composed) else image
+    module = lower(of_text, table_from=TEXT_TABLE_FROM if description.buffers else None)
+    refuse_passes(module)
+    artifact = with_data(text_of(with_values(module, values), description), module)
     name = readable(seen.file.name) if seen.file is not None else ""
     return replace(artifact, text=with_header(artifact, target, name))
 
 
-def write_files(
-    path: Path, artifact: Artifact, text: str, *, with_interface: bool
-) -> tuple[Path, ...]:
-    """Write a text and the files that belong to it: its vertex stage, its interface.
+def write_files(path: Path, artifact: Artifact, text: str, target: str) -> tuple[Path, ...]:
+    """Write a text and the files that belong to it: its vertex stage, its interface, its pictures.
 
     Args:
         path: The file of the text.
         artifact: The compiled text, its vertex stage and interface.
         text: The text to write.
-        with_interface: Whether to write the interface.
+        target: Its target.
 
     Returns:
         The other files.
 
     Raises:
-        SaveError: The file system reports an error.
+        SaveError: The file system reports an error, or another file is where one would go.
     """
-    files = {}
-    if with_interface:
-        files[path.with_suffix(".json")] = json.dumps(artifact.interface, indent=2)
-    if artifact.vertex is not None:
-        files[path.with_suffix(".vert")] = artifact.vertex
+    others = beside(artifact, target)
+    files = {path.with_name(name.format(path.stem)): content for name, content in others.items()}
     if path in files:
         kind = "interface" if path.suffix == ".json" else "vertex stage"
         raise SaveError(f"cannot write {path}: its {kind} goes there; give it another suffix")
-    for place, content in {**files, path: text}.items():
+    for place, content in {**files, path: text_bytes(text)}.items():
         with replacement(place) as file:
-            file.write(content.rstrip("\n").encode() + b"\n")
+            file.write(content)
     return tuple(files)
+
+
+def text_bytes(text: str) -> bytes:
+    """Return a text as it is written to a file."""
+    return text.rstrip("\n").encode() + b"\n"
+
+
+def beside(artifact: Artifact, target: str) -> dict[str, bytes]:
+    """Return the files that belong to a text, by name; "{}" is the stem of the text's file.
+
+    Args:
+        artifact: The compiled text with its complete interface.
+        target: Its target.
+    """
+    files = {}
+    if TEXT_TARGETS[target].is_described:
+        files["{}.json"] = text_bytes(json.dumps(artifact.interface, indent=2))
+    if artifact.vertex is not None:
+        files["{}.vert"] = text_bytes(artifact.vertex)
+    return files
 
 
 def with_values(module: Module, values: Mapping[str, Any]) -> Module:
