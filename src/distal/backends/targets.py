@@ -39,7 +39,6 @@ class TextTarget(Target):
         textures: The kinds of textures that it can read.
         most_textures: The largest number of textures; None: no limit of the target's own.
         live: Whether the host has what changes with each frame: the keyboard, earlier frames ...
-        only_files: Whether the host reads textures from files of pictures alone.
     """
 
     backend: ClassVar[str]
@@ -51,7 +50,6 @@ class TextTarget(Target):
     textures: frozenset[TextureShape] = ALL_SHAPES
     most_textures: int | None = None
     live: bool = False
-    only_files: bool = False
 
     @property
     def host(self) -> str:

@@ -7,7 +7,6 @@ CompileError with the author's line and the targets that hold it.
 from __future__ import annotations
 
 from collections.abc import Collection
-from os import PathLike
 from typing import Final
 
 from distal.backends import TEXT_TARGETS
@@ -83,8 +82,6 @@ def _lack(resource: ResourceDeclaration, target: TextTarget) -> str | None:
         return None if target.live else source.shown
     if type.shape not in target.textures:
         return _SHAPES[type.shape]
-    if target.only_files and not isinstance(getattr(source, "data", None), str | PathLike):
-        return "textures made of data, only files"
     return None
 
 

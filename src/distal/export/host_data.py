@@ -15,12 +15,15 @@ from dataclasses import replace
 from math import isfinite
 from typing import TYPE_CHECKING, Any, Final
 
+from distal.backends import TEXT_TARGETS
 from distal.backends.base import Artifact
+from distal.backends.targets import TextTarget
+from distal.compiler.carried import PAGE
 from distal.diagnostics import CompileError, LoadError
 from distal.error_codes import ErrorCode
 from distal.export.tables import plain_resource, table
 from distal.ir.nodes import Module, ResourceDeclaration
-from distal.ir.types import Buffer, Texture
+from distal.ir.types import TEXTURE_2D, Buffer, Texture
 from distal.lang.lazy_module import LazyModule
 from distal.lang.live_textures import LastFrame, LiveTexture
 from distal.passes.author_places import place_of_resource
@@ -33,7 +36,9 @@ else:
 # What a consumer needs of an entry of a page's data; the type is in the interface.
 _KEYS: Final = ("size", "components", "grey", "format", "data")
 _DATA: Final = "data"
+_LIVE: Final = "live"
 _FLOAT: Final = "float32"
+_BYTES: Final = "rgba8"
 
 
 def with_data(artifact: Artifact, module: Module) -> Artifact:
@@ -51,7 +56,30 @@ def with_data(artifact: Artifact, module: Module) -> Artifact:
     for key in ("textures", "buffers"):
         entries = interface.get(key, ())
         interface[key] = [_complete(entry, sources.get(entry["name"]), module) for entry in entries]
+    target = TEXT_TARGETS[interface["target"]]
+    if not target.is_described:
+        for entry in interface["textures"]:
+            _check_picture(entry, module, target)
     return replace(artifact, interface=interface)
+
+
+def _check_picture(entry: Mapping[str, Any], module: Module, target: TextTarget) -> None:
+    """Check that a texture can be a picture in a file beside a text.
+
+    Raises:
+        CompileError: It is no flat picture of 8 bits, for a host that reads no other.
+    """
+    if _LIVE in entry or (entry["type"] == str(TEXTURE_2D) and entry["format"] == _BYTES):
+        return
+    is_flat = entry["type"] == str(TEXTURE_2D)
+    has = "numbers that 8 bits cannot hold" if is_flat else f"the type {entry['type']}"
+    able = [t.name for t in TEXT_TARGETS.values() if t.is_described and t.texel_fetch]
+    raise CompileError.at(
+        ErrorCode.TARGET,
+        f"{target.host} reads pictures of 8 bits from files, and '{entry['name']}' has {has}",
+        place_of_resource(module, entry["name"]),
+        f"targets that have it: {', '.join((*able, PAGE))}",
+    )
 
 
 def refuse_passes(module: Module) -> None:
@@ -78,7 +106,7 @@ def _complete(
     else:
         assert resource is not None, entry["name"]
         if isinstance(resource.source, LiveTexture):
-            return {**entry, "live": resource.source.kind}
+            return {**entry, _LIVE: resource.source.kind}
         found = _data_of(resource, module)
     plain = {key: value for key, value in entry.items() if key != "values"}
     return plain | {key: found[key] for key in _KEYS if key in found}

@@ -70,7 +70,7 @@ class IsfHeader:
         }
         resources = {r.name: namer.name(r.name) for r in module.resources}
         if resources:
-            paths = {resources[r.name]: {"PATH": _file_name(r)} for r in module.resources}
+            paths = {name: {"PATH": f"{name}.png"} for name in resources.values()}
             described["IMPORTED"] = paths
         names = frozenset(i["NAME"] for i in inputs).union(
             resources.values(), *map(isf_picture_names, resources.values())
@@ -172,9 +172,9 @@ def _point(
     }
 
 
-def _file_name(resource: ResourceDeclaration) -> str:
-    """Return the name of a texture's file, which the host looks for beside the shader."""
-    return readable(PurePath(resource.source.data).name)
+def imported(name: str, file: str) -> str:
+    """Return the entry of a picture in the JSON: its name in the shader, and its file beside it."""
+    return json.dumps({name: {"PATH": file}})[1:-1]
 
 
 class IsfWriter(Glsl100Writer):

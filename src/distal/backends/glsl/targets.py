@@ -211,7 +211,7 @@ _ISF = replace(
     host_prefixes=ISF_PREFIXES,
     host_parts=ISF_PARTS,
     textures=_FLAT,
-    only_files=True,
+    textures_by="IMPORTED",
     declares_textures=False,
     described=True,
 )
