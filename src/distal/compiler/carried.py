@@ -18,6 +18,7 @@ from distal.ir.nodes import (
     Binary,
     BinaryOp,
     Const,
+    EntryKind,
     Expr,
     Module,
     Origin,
@@ -55,11 +56,12 @@ def check_resources(resources: Collection[ResourceDeclaration], of: Module, on: 
         if (lacks := _lack(resource, on)) is None:
             continue
         able = [t.name for t in TEXT_TARGETS.values() if _lack(resource, t) is None]
+        able += [PAGE] if of.kind is EntryKind.IMAGE else []
         raise CompileError.at(
             ErrorCode.TARGET,
             f"{on.host} has no {lacks}, and '{resource.name}' is read here",
             place_of_resource(of, resource.name),
-            f"targets that have it: {', '.join((*able, PAGE))}",
+            f"targets that have it: {', '.join(able)}",
         )
     if on.most_textures is not None and len(resources) > on.most_textures:
         names = [resource.name for resource in resources]

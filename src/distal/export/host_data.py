@@ -34,7 +34,7 @@ else:
     resources = LazyModule("distal.export.resources")  # needs NumPy
 
 # What a consumer needs of an entry of a page's data; the type is in the interface.
-_KEYS: Final = ("size", "components", "grey", "format", "data")
+_KEYS: Final = ("size", "components", "format", "data")
 _DATA: Final = "data"
 _LIVE: Final = "live"
 _FLOAT: Final = "float32"
@@ -108,8 +108,10 @@ def _complete(
         if isinstance(resource.source, LiveTexture):
             return {**entry, _LIVE: resource.source.kind}
         found = _data_of(resource, module)
+    if "grey" in found:
+        found = {**found, "components": 1}  # of three equal numbers, one is stored
     plain = {key: value for key, value in entry.items() if key != "values"}
-    return plain | {key: found[key] for key in _KEYS if key in found}
+    return plain | {key: found[key] for key in _KEYS}
 
 
 def _data_of(resource: ResourceDeclaration, module: Module) -> dict[str, Any]:

@@ -79,8 +79,10 @@ def place_of_uniform(module: Module, uniform: str) -> Span | None:
     for function in module.functions:
         for stmt in statements_in(function.body):
             for e in nodes_in(*expressions(stmt)):
-                if isinstance(e, Uniform) and e.name == uniform and is_author_place(e.span):
-                    return e.span
+                if not (isinstance(e, Uniform) and e.name == uniform):
+                    continue
+                if (place := _first((e.span, stmt.span))) is not None:
+                    return place
     return None
 
 

@@ -61,7 +61,7 @@ def _refusal(target: Target, lacks: str, blame: Blame, hint: str) -> CompileErro
     span = blame.span
     if span is not None and is_library(span.file):
         # The author did not write that line, and cannot change it; ``run`` finds one that needs it.
-        needs = ", which noise and random numbers of the library need"
+        needs = ", which the library needs here"
         return CompileError.at(
             ErrorCode.TARGET, f"{target.name} has no {lacks}{needs}", None, _OTHER_TARGET
         )
