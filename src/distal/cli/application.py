@@ -20,8 +20,8 @@ from distal.backends import TEXT_TARGETS
 from distal.cli import COMMANDS, SHORT
 from distal.cli.arguments import UsageError, check_is_not_scene, read_scene
 from distal.cli.base import SceneArgument, answer, application, load, reporting
-from distal.cli.messages import say
 from distal.cli.exit_codes import ExitCode
+from distal.cli.messages import say
 from distal.cli.surroundings import check_cache
 from distal.compiler.driver import COMPILE_TARGETS, IR_TARGET
 from distal.diagnostics import readable

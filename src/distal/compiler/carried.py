@@ -157,8 +157,8 @@ def _value(e: Expr) -> float | None:
         case Splat(operand):
             return _value(operand)
         case Unary(UnaryOp.NEGATE, operand):
-            value = _value(operand)
-            return None if value is None else -value
+            negated = _value(operand)
+            return None if negated is None else -negated
         case Binary(op, left, right):
             a, b = _value(left), _value(right)
             return None if a is None or b is None else _applied(op, a, b)

@@ -83,8 +83,8 @@ def with_header(artifact: Artifact, target: str, file: str, stem: str = "") -> s
     if described.name == _ISF:
         for texture in textures:
             name = texture["uniform"]
-            made = (f"{name}.png", picture_name(texture, stem) or "")
-            text = text.replace(*(isf.imported(name, file) for file in made), 1)
+            file = picture_name(texture, stem) or ""
+            text = text.replace(isf.imported(name, f"{name}.png"), isf.imported(name, file), 1)
     return _placed(text, comment)
 
 

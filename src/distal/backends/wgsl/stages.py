@@ -156,9 +156,7 @@ def _copy(name: str, source: str, layout: StructLayout, names: Mapping[str, str]
     return [f"    {name}.{member} = {source}.{member};" for member in members]
 
 
-def _input_lines(
-    binding: int, name: str, source: str, type: str, *, is_copied: bool
-) -> list[str]:
+def _input_lines(binding: int, name: str, source: str, type: str, *, is_copied: bool) -> list[str]:
     """Return the binding of a struct of uniforms, and the private variable for its copy."""
     here = f"@group(0) @binding({binding}) var<uniform>"
     if not is_copied:

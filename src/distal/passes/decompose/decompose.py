@@ -47,6 +47,7 @@ from distal.ir.nodes import (
 from distal.ir.nodes import Field as FieldNode
 from distal.ir.types import INT, Kind, Scalar, Texture, TextureShape, Type, Vector, kind_of
 from distal.ir.walk import map_statement, rebuild, rewrite
+from distal.passes.author_places import author_place
 from distal.passes.call_order import in_call_order
 from distal.passes.context import Context
 from distal.passes.decompose.edges import (
@@ -59,7 +60,6 @@ from distal.passes.decompose.edges import (
 )
 from distal.passes.decompose.indices import assignments, picked_element, settled_index
 from distal.passes.decompose.limits import Blame, constant_loop, refuse_expression, refuse_statement
-from distal.passes.author_places import author_place
 from distal.passes.naming import FreshNames, local_names, module_names
 from distal.passes.ranges import Ranges, declared_ranges
 
@@ -85,9 +85,7 @@ def run(module: Module, context: Context) -> Module:
     return replace(linker.module, functions=functions)
 
 
-def _decomposed(
-    linker: _Linker, context: Context, function: Function, module: Module
-) -> Function:
+def _decomposed(linker: _Linker, context: Context, function: Function, module: Module) -> Function:
     """Return a function without what the target lacks.
 
     Raises:
