@@ -7,7 +7,7 @@ errors: nobody can change a line of the library.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 from distal.diagnostics import Span
 from distal.ir.nodes import Call, Expr, Function, FunctionRef, Module, Resource, Uniform
@@ -20,6 +20,16 @@ def is_author_place(span: Span | None) -> bool:
     return span is not None and not is_library(span.file)
 
 
+def _files_of(module: Module) -> set[str]:
+    """Return the author's files: of functions and statements, not of expressions.
+
+    Equal expressions are one object, which may have the place of another scene's.
+    """
+    spans = [f.span for f in module.functions]
+    spans += [stmt.span for f in module.functions for stmt in statements_in(f.body)]
+    return {span.file for span in spans if span is not None and not is_library(span.file)}
+
+
 def author_place(module: Module, function: str) -> Span | None:
     """Return the place of a function in the author's code, or the nearest that calls it.
 
@@ -30,6 +40,7 @@ def author_place(module: Module, function: str) -> Span | None:
     Returns:
         The place; None if the author wrote none of the functions from there to the entry.
     """
+    files = _files_of(module)
     functions = {f.name: f for f in module.functions}
     callers = defaultdict(list)
     for each in module.functions:
@@ -41,7 +52,7 @@ def author_place(module: Module, function: str) -> Span | None:
         if here is not None and is_author_place(here.span):
             return here.span
         for caller in callers[name]:
-            if (place := _place_of_call(caller, name)) is not None:
+            if (place := _place_of_call(caller, name, files)) is not None:
                 return place
             if caller.name not in done:
                 done.add(caller.name)
@@ -56,6 +67,7 @@ def place_of_resource(module: Module, resource: str) -> Span | None:
         module: The module.
         resource: The resource's name.
     """
+    files = _files_of(module)
     readers = []
     for function in module.functions:
         for stmt in statements_in(function.body):
@@ -64,9 +76,9 @@ def place_of_resource(module: Module, resource: str) -> Span | None:
                 continue
             readers.append(function.name)
             spans = (*(e.span for e in read if e.name == resource), stmt.span)
-            if (place := _first(spans)) is not None:
+            if (place := _first(spans, files)) is not None:
                 return place
-    return _first(author_place(module, name) for name in dict.fromkeys(readers))
+    return _first((author_place(module, name) for name in dict.fromkeys(readers)), files)
 
 
 def place_of_uniform(module: Module, uniform: str) -> Span | None:
@@ -76,18 +88,19 @@ def place_of_uniform(module: Module, uniform: str) -> Span | None:
         module: The module.
         uniform: The uniform's name.
     """
+    files = _files_of(module)
     for function in module.functions:
         for stmt in statements_in(function.body):
             for e in nodes_in(*expressions(stmt)):
                 if not (isinstance(e, Uniform) and e.name == uniform):
                     continue
-                if (place := _first((e.span, stmt.span))) is not None:
+                if (place := _first((e.span, stmt.span), files)) is not None:
                     return place
     return None
 
 
-def _first(spans: Iterable[Span | None]) -> Span | None:
-    return next((span for span in spans if is_author_place(span)), None)
+def _first(spans: Iterable[Span | None], files: Collection[str]) -> Span | None:
+    return next((span for span in spans if span is not None and span.file in files), None)
 
 
 def _calls(function: Function) -> set[str]:
@@ -102,13 +115,13 @@ def _callee(e: Expr) -> str | None:
     return e.name if isinstance(e, FunctionRef) else None
 
 
-def _place_of_call(caller: Function, callee: str) -> Span | None:
+def _place_of_call(caller: Function, callee: str, files: Collection[str]) -> Span | None:
     """Return the author's place of a call: its own, or that of a number that it is given."""
     for stmt in statements_in(caller.body):
         for e in nodes_in(*expressions(stmt)):
             if _callee(e) != callee:
                 continue
-            place = _first((e.span, stmt.span, *(part.span for part in nodes_in(e))))
+            place = _first((e.span, stmt.span, *(part.span for part in nodes_in(e))), files)
             if place is not None:
                 return place
     return None
