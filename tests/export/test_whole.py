@@ -18,6 +18,7 @@ from PIL import Image
 
 import distal
 from distal.backends import TEXT_TARGETS
+from distal.ir.types import TextureShape
 from tests import egl, gpu
 from tests.export import consumer
 from tests.pictures.comparison import difference
@@ -364,7 +365,7 @@ def test_pictures_beside_a_text_are_never_the_authors(tmp_path):
 def test_the_guide_says_what_each_target_carries():
     """Its table is that of the declarations."""
     guide = (Path(__file__).parents[2] / "docs/guide/web.md").read_text(encoding="utf-8")
-    kinds = {"flat": "2D", "cube": "cube", "volume": "3D"}
+    kinds = {TextureShape.FLAT: "2D", TextureShape.CUBE: "cube", TextureShape.VOLUME: "3D"}
     for name, target in TEXT_TARGETS.items():
         shapes = [
             word for shape, word in kinds.items() if shape in {s.value for s in target.textures}
