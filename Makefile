@@ -105,7 +105,7 @@ sweep: $(VENV)/.setup-test
 	DISTAL_RANDOM_PROGRAMS=$(SWEEP) $(BIN)/python -m pytest -n $(WORKERS) -rs \
 		tests/parts tests/smooth tests/tape tests/unit/backends
 	GALLIVM_PERF= DISTAL_ALL_PICTURES=1 $(BIN)/python -m pytest -n $(WORKERS) -rs \
-		tests/pictures/test_targets.py
+		tests/pictures/test_targets.py tests/export/test_whole.py
 	DISTAL_ALL_PICTURES=1 $(BIN)/python -m pytest -rs tests/site/test_playground.py
 
 sweep-fields: $(VENV)/.setup-test

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 # The hand-written public names by module; ``tools/gen_stubs.py`` reads them, too.
 _HAND_WRITTEN = {
     "distal.backends.base": ("Artifact",),
-    "distal.compiler.driver": ("compile",),
     "distal.diagnostics": ("CompileError", "LoadError"),
     "distal.images.height_map": ("HeightMap",),
     "distal.images.picture": ("Picture",),
@@ -27,6 +26,7 @@ _HAND_WRITTEN = {
     "distal.lang.places": ("cell", "place", "random_by_cell"),
     "distal.lang.units": ("cm", "foot", "inch", "metre", "mm"),
     "distal.example_files": ("gallery",),
+    "distal.export.compiling": ("compile",),
     "distal.loading": ("load",),
     "distal.scene.looks.look": ("Look",),
     "distal.scene.objects.alternatives": ("choose",),

@@ -4,7 +4,6 @@ from typing import overload
 from distal.scene.objects.argument_types import Color, Image, Number, Points, Varying, Vector
 from distal.scene.tree.calls import Pattern
 from distal.backends.base import Artifact as Artifact
-from distal.compiler.driver import compile as compile
 from distal.diagnostics import CompileError as CompileError
 from distal.diagnostics import LoadError as LoadError
 from distal.images.height_map import HeightMap as HeightMap
@@ -19,6 +18,7 @@ from distal.lang.units import inch as inch
 from distal.lang.units import metre as metre
 from distal.lang.units import mm as mm
 from distal.example_files import gallery as gallery
+from distal.export.compiling import compile as compile
 from distal.loading import load as load
 from distal.scene.looks.look import Look as Look
 from distal.scene.objects.alternatives import choose as choose

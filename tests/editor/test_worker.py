@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import io
 import json
 import os
 import queue
@@ -10,6 +12,7 @@ import subprocess
 import sys
 import threading
 import time
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -263,10 +266,28 @@ def test_texts_exports_and_writes_are_answered(child: Child) -> None:
 def test_a_picture_with_frames_is_exported_to_all_tabs(child: Child) -> None:
     text = (ROOT / "examples/frames/coral.py").read_text(encoding="utf-8")
     made = child.ask("export", text, format="shadertoy")["result"]
-    tabs = re.findall(r"The tab (.*) of a shader on shadertoy", made["text"])
-    assert tabs == ["Buffer A", "Buffer B", "Buffer C", "Buffer D", "Image"]
-    assert made["text"].count("void mainImage(") == 5
-    assert made["name"] == "scene.shadertoy.txt"
+    assert made["name"] == "scene.shadertoy.zip"
+    files = unpacked(made)
+    texts = [files[name] for name in files if name.endswith(".glsl")]
+    tabs = [re.findall(r"The tab (.*) of a shader on shadertoy", text) for text in texts]
+    assert tabs == [["Buffer A"], ["Buffer B"], ["Buffer C"], ["Buffer D"], ["Image"]]
+    assert all(text.count("void mainImage(") == 1 for text in texts)
+    assert [each["code"].strip() for each in json.loads(files["scene.json"])["renderpass"]] == [
+        text.strip() for text in texts
+    ]
+
+
+def test_a_text_is_exported_with_the_files_that_it_needs(child: Child) -> None:
+    made = child.ask("export", format="glsl-330")["result"]
+    assert made["name"] == "scene.glsl-330.zip" and made["media_type"] == "application/zip"
+    files = unpacked(made)
+    assert list(files) == ["scene.txt", "scene.json", "scene.vert"]
+    assert json.loads(files["scene.json"])["target"] == "glsl-330"
+
+
+def unpacked(made: dict[str, Any]) -> dict[str, str]:
+    with zipfile.ZipFile(io.BytesIO(base64.b64decode(made["base64"]))) as archive:
+        return {name: archive.read(name).decode() for name in archive.namelist()}
 
 
 def test_pixels_and_checks_are_answered(child: Child) -> None:

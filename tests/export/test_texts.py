@@ -169,12 +169,16 @@ def test_textures(scene, tmp_path, target):
     text = TEXTURED if target == "isf" else TEXTURED.replace('wrap="clamp"', 'wrap="repeat"')
     picture = scene(text, "dots.py")
     written = exported(picture, tmp_path, target)
+    # What the host is given is what was written beside the text.
+    beside = {p.name: np.asarray(Image.open(p).convert("RGBA")) for p in tmp_path.glob("out.*.png")}
+    assert len(beside) == 2 and all((p == texels).all() for p in beside.values())
+    assert all(name in written for name in beside)
     bottom_first = np.ascontiguousarray(texels[::-1])
     names = {"shadertoy": "iChannel{}", "glslcanvas": "u_tex{}"}
     bound = {names[target].format(i): bottom_first for i in range(2)} if target in names else {}
     if target == "isf":
         imported = hosts.isf_header(written)["IMPORTED"]
-        assert [one["PATH"] for one in imported.values()] == ["dots.png", "dots.png"]
+        assert [one["PATH"] for one in imported.values()] == ["out.dots.png", "out.edge.png"]
         bound = dict.fromkeys(imported, bottom_first)
     shown = HOSTS[target](written, SIZE, textures=bound)
     found = difference(picture.render(SIZE, samples=1).array, shown)
@@ -182,14 +186,6 @@ def test_textures(scene, tmp_path, target):
     seam = 2.0 * 1.7 / 64.0 if target == "isf" else 0.0
     assert found.mean <= 1.0
     assert found.far_off <= seam + 0.002
-
-
-def test_isf_imports_files_alone(scene, tmp_path):
-    data = TEXTURED.replace('Texture2D("dots.png")', "Texture2D([[[0.0, 0.5, 1.0]]])")
-    data = data.replace('Texture2D("dots.png", wrap="clamp")', "Texture2D([[[0.0, 0.5, 1.0]]])")
-    picture = scene(data, "dots.py")
-    with pytest.raises(distal.CompileError, match="the texture 'dots' is made of data"):
-        picture.export(tmp_path / "a.fs")
 
 
 @pytest.mark.parametrize(

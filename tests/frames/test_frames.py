@@ -301,7 +301,7 @@ def test_a_gradient_by_the_pixel_is_a_derivative_on_screen() -> None:
 
 
 def test_texts_for_hosts_without_frames_are_refused() -> None:
-    for target, host in (("isf", "ISF"), ("glslcanvas", "glslCanvas")):
+    for target, host in (("isf", "ISF 2"), ("glslcanvas", "glslCanvas")):
         with pytest.raises(CompileError, match=f"{host} has no earlier frames"):
             distal.compile(sampled, target)
 

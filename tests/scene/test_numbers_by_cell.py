@@ -243,11 +243,9 @@ def test_a_target_without_whole_numbers_of_that_kind_says_so():
     with pytest.raises(distal.CompileError) as found:
         distal.compile(Scene(random), target="glsl-es100")
     (diagnostic,) = found.value.diagnostics
-    assert diagnostic.message == (
-        "glsl-es100 has no unsigned integers, which noise and random numbers of the library need"
-    )
+    assert diagnostic.message == "glsl-es100 has no unsigned integers, which the library needs here"
     assert diagnostic.hint == "compile for another target, such as glsl-es300"
-    assert diagnostic.span is None
+    assert "random_by_cell(seed=3)" in diagnostic.span.text
     by_cell = Sphere(0.1 + 0.05 * cell.x).repeat(1.0, 0.0, 1.0, count=(3, 1, 3))
     assert "cell" in distal.compile(Scene(by_cell), target="glsl-es100").text
 

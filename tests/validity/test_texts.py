@@ -47,7 +47,7 @@ REFUSED = {
     ("textures", "glsl-es100"): "glsl-es100 has no single texels",
     ("crowded", "glsl-es100"): "glsl-es100 has no unsigned integers",
     ("far_loops", "glsl-es100"): "glsl-es100 needs loop bounds",
-    ("buffers", "glsl-es100"): "GLSL ES 1.00 has no buffers",
+    ("buffers", "glsl-es100"): "WebGL 1 has no buffers",
     ("buffers", "shadertoy"): "Shadertoy has no buffers",
 }
 

@@ -9,9 +9,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import ClassVar
+from typing import ClassVar, Final
 
 from distal.ir.target import Target
+from distal.ir.types import TextureShape
+
+ALL_SHAPES: Final = frozenset(TextureShape)
 
 
 class Declares(Enum):
@@ -33,6 +36,9 @@ class TextTarget(Target):
         suffix: The suffix of exported files; None if another target has the suffix.
         parameters: Who declares the author's parameters.
         textures_by: How a user provides textures, if the text does not declare them.
+        textures: The kinds of textures that it can read.
+        most_textures: The largest number of textures; None: no limit of the target's own.
+        live: Whether the host has what changes with each frame: the keyboard, earlier frames ...
     """
 
     backend: ClassVar[str]
@@ -41,3 +47,16 @@ class TextTarget(Target):
     suffix: str | None = None
     parameters: Declares = Declares.TEXT
     textures_by: str = ""
+    textures: frozenset[TextureShape] = ALL_SHAPES
+    most_textures: int | None = None
+    live: bool = False
+
+    @property
+    def host(self) -> str:
+        """The name of the host, for messages."""
+        return self.place.partition(",")[0]
+
+    @property
+    def is_described(self) -> bool:
+        """Whether a description of its interface, with all values, belongs to a text."""
+        return self.parameters is Declares.TEXT

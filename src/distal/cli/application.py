@@ -16,15 +16,17 @@ import typer
 from typer.models import CommandInfo
 
 import distal
+from distal.backends import TEXT_TARGETS
 from distal.cli import COMMANDS, SHORT
 from distal.cli.arguments import UsageError, check_is_not_scene, read_scene
 from distal.cli.base import SceneArgument, answer, application, load, reporting
 from distal.cli.exit_codes import ExitCode
+from distal.cli.messages import say
 from distal.cli.surroundings import check_cache
 from distal.compiler.driver import COMPILE_TARGETS, IR_TARGET
 from distal.diagnostics import readable
 from distal.example_files import EXAMPLE_PREFIX, all_examples
-from distal.export.texts import with_header, write_files
+from distal.export.texts import files_of
 from distal.file_writer import check_destination
 
 for _name in COMMANDS:
@@ -72,11 +74,14 @@ def compile(
         check_destination(output)
     check_cache()
     artifact = distal.compile(load(scene), target=target.value, after=after)
-    text = with_header(artifact, target.value, _file_name(scene))
-    if output is None:
-        answer(text.rstrip("\n"))
+    stem = "out" if output is None else output.stem
+    files = files_of(artifact, target.value, _file_name(scene), stem, described=True)
+    if output is not None:
+        files.write(output)
         return
-    write_files(output, artifact, text, with_interface=True)
+    answer(files.text.rstrip("\n"))
+    if target.value in TEXT_TARGETS:
+        say("note: this is the text alone; with -o FILE, what it reads is written beside it")
 
 
 @application.command()

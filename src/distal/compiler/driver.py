@@ -14,6 +14,8 @@ from typing import Final
 
 from distal.backends import emit, get_target, target_names
 from distal.backends.base import Artifact
+from distal.backends.targets import TextTarget
+from distal.compiler.carried import check_numbers, check_resources
 from distal.compiler.kept_texts import kept_text
 from distal.compiler.prelude_library import PreludeLibrary
 from distal.diagnostics import CompileError
@@ -101,9 +103,16 @@ def _is_in_sample(module: Module) -> bool:
     return drawn % VERIFIED_ONE_OF == 0
 
 
-@paused_collection()
 def compile(obj: Func | Composed, target: str = "glsl-es300", after: str | None = None) -> Artifact:
-    """Compile a scene, an ``@image`` or a ``@func`` to the text of a target.
+    """Return the text of a scene, an ``@image`` or a ``@func``; arguments as for ``compiled``."""
+    return compiled(obj, target, after)[0]
+
+
+@paused_collection()
+def compiled(
+    obj: Func | Composed, target: str, after: str | None = None
+) -> tuple[Artifact, Module]:
+    """Return the text of a target, and the module before the passes, which has the data.
 
     Args:
         obj: What to compile. For a ``@func``, the text contains the functions and no entry point
@@ -129,14 +138,30 @@ def compile(obj: Func | Composed, target: str = "glsl-es300", after: str | None 
         module = lower(obj, table_from=TEXT_TABLE_FROM)
         if after != "lower":
             module = run_passes(module, get_target("llvm"), after=after)
-        return Artifact(print_module(module), {})
+        return Artifact(print_module(module), {}), module
     if target not in COMPILE_TARGETS:
         raise ValueError(f"there is no target '{target}'; targets: {', '.join(COMPILE_TARGETS)}")
     description = get_target(target)
     module = lower(obj, table_from=TEXT_TABLE_FROM if description.buffers else None)
-    return kept_text(
-        module, description, lambda: emit(run_passes(module, description), description)
-    )
+    return kept_text(module, description, lambda: text_of(module, description)), module
 
 
-__all__ = ["Artifact", "CompileError", "compile", "run_passes"]
+def text_of(module: Module, target: Target) -> Artifact:
+    """Return the text of a lowered module for a target.
+
+    Args:
+        module: The lowered module.
+        target: The target.
+
+    Raises:
+        CompileError: The scene code uses something that the target does not support, or numbers
+            that a shader cannot hold.
+    """
+    shaped = run_passes(module, target)
+    if isinstance(target, TextTarget):
+        check_resources(shaped.resources, module, target)
+        check_numbers(module, shaped)
+    return emit(shaped, target)
+
+
+__all__ = ["Artifact", "CompileError", "compile", "compiled", "run_passes", "text_of"]

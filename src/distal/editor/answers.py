@@ -6,6 +6,8 @@ Input: a request, and what loads its scene. Output: its result.
 from __future__ import annotations
 
 import base64
+import io
+import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import PurePath
@@ -117,12 +119,28 @@ def _export(work: AnswerWork) -> Result:
     name = f"{stem}{suffix}"
     command = shown(export_arguments(request, name))
     if request.format == shadertoy.TARGET and shadertoy.has_passes(seen, values):
-        # One file for all tabs, of which each says its name; the command writes one for each.
-        name = f"{stem}.shadertoy.txt"
-        text = "\n".join(each.text for each in shadertoy.passes(seen, values))
+        files = dict(shadertoy.tabs_of(seen, PurePath(name), values))
     else:
-        text = texts.text(seen, request.format, values).text
-    return ExportedFile(name=name, media_type="text/plain", text=text, command=command)
+        made_text = texts.text_files(seen, request.format, values, stem)
+        files = {name: texts.text_bytes(made_text.text), **made_text.beside}
+    if len(files) == 1:
+        text = files[name].decode()
+        return ExportedFile(name=name, media_type="text/plain", text=text, command=command)
+    # A browser saves one file for one click.
+    packed = base64.b64encode(_archive(files)).decode()
+    name = f"{stem}.{request.format}.zip"
+    return ExportedFile(name=name, media_type="application/zip", base64=packed, command=command)
+
+
+def _archive(files: Mapping[str, bytes]) -> bytes:
+    """Return a ZIP of files; the same files always give the same bytes."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            entry = zipfile.ZipInfo(name)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            archive.writestr(entry, content)
+    return packed.getvalue()
 
 
 def _check(work: AnswerWork) -> Result:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import base64
 import zlib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -15,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.devices.resources import load
+from distal.images.png import encode_levels
 from distal.ir.types import Buffer, Texture, TextureShape
 from distal.lang.live_textures import SoundFile
 from distal.sounds.analysis import table_of
@@ -30,7 +32,8 @@ def resource(source: Any, type: Texture | Buffer) -> dict[str, Any]:
     """
     data = load(source, type)
     if data.dtype == np.float64:
-        data = data.astype(np.float32)  # a page's numbers have 32 bits
+        with np.errstate(over="ignore"):  # what is too large becomes infinite, and is refused
+            data = data.astype(np.float32)
     return _buffer(data) if isinstance(type, Buffer) else _texture(data, type)
 
 
@@ -48,6 +51,18 @@ def sound(name: str, source: SoundFile) -> dict[str, Any]:
         "rows": base64.b64encode(rows).decode("ascii"),
         "file": base64.b64encode(Path(source.path).read_bytes()).decode("ascii"),
     }
+
+
+def png(entry: Mapping[str, Any]) -> bytes:
+    """Return the PNG of a picture of bytes, as ``resource`` describes it.
+
+    Args:
+        entry: Its payload entry.
+    """
+    (width, height), components = entry["size"], entry["components"]
+    levels = np.frombuffer(base64.b64decode(entry["data"]), np.uint8)
+    levels = levels.reshape(height, width, components)[::-1]
+    return encode_levels(np.repeat(levels, 3, axis=2) if components == 1 else levels, {})
 
 
 def _buffer(data: NDArray[Any]) -> dict[str, Any]:

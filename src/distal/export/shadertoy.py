@@ -8,23 +8,24 @@ that does is drawn by one more buffer, and the Image tab copies it.
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, Final
 
-from distal.backends import TEXT_TARGETS, emit
-from distal.compiler.driver import TEXT_TABLE_FROM, run_passes
+from distal.backends import TEXT_TARGETS
+from distal.compiler.driver import text_of
 from distal.diagnostics import CompileError
 from distal.error_codes import ErrorCode
 from distal.export import texts
 from distal.export.exported import Exported
+from distal.export.host_data import with_data
 from distal.export.page_options import TextOptions
 from distal.file_writer import replacement
 from distal.frontend import lower
-from distal.ir.nodes import ResourceDeclaration
 from distal.lang.chosen_values import checked_values
 from distal.lang.functions import Image
-from distal.lang.live_textures import LastFrame, LiveTexture
+from distal.lang.live_textures import LastFrame
 from distal.lang.runtime_access import executor
 from distal.runtime.images_read import MOST_BUFFERS
 
@@ -49,12 +50,14 @@ class ShaderPass:
         text: Its text.
         channels: What is set for iChannel0, iChannel1 ...: a tab, or what a texture is.
         wraps: How each is sampled outside.
+        pictures: The files of its textures.
     """
 
     tab: str
     text: str
     channels: tuple[str, ...]
     wraps: tuple[str, ...]
+    pictures: Mapping[str, bytes] = field(default_factory=dict)
 
 
 def has_passes(seen: Viewable, options: TextOptions) -> bool:
@@ -63,12 +66,13 @@ def has_passes(seen: Viewable, options: TextOptions) -> bool:
     return isinstance(image, Image) and bool(executor().parts(image).read.all)
 
 
-def passes(seen: Viewable, options: TextOptions) -> list[ShaderPass]:
+def passes(seen: Viewable, options: TextOptions, stem: str) -> list[ShaderPass]:
     """Return the passes of a picture, the Image tab last.
 
     Args:
         seen: The picture.
         options: The parameters.
+        stem: The name of the file of the Image tab, without its suffix.
 
     Raises:
         CompileError: Shadertoy cannot show the picture.
@@ -83,35 +87,36 @@ def passes(seen: Viewable, options: TextOptions) -> list[ShaderPass]:
             ErrorCode.TARGET, f"{message}: {names}", None, "read a buffer instead of the picture"
         )
     tabs = dict(zip(images, _TABS, strict=False))
-    made = [_pass(seen, image, tabs[image], tabs, options) for image in images]
+    made = [_pass(seen, image, tabs[image], tabs, options, stem) for image in images]
     if picture in tabs:
         copied = _COPY.format(tab=tabs[picture])
         return [*made, ShaderPass("Image", copied, (tabs[picture],), ("clamp",))]
-    return [*made, _pass(seen, picture, "Image", tabs, options)]
+    return [*made, _pass(seen, picture, "Image", tabs, options, stem)]
 
 
 def _pass(
-    seen: Viewable, image: Image, tab: str, tabs: dict[Image, str], options: TextOptions
+    seen: Viewable, image: Image, tab: str, tabs: dict[Image, str], options: TextOptions, stem: str
 ) -> ShaderPass:
     target = TEXT_TARGETS[TARGET]
     values = checked_values(seen.parameters, options.params)
-    module = texts.with_values(lower(image, table_from=TEXT_TABLE_FROM), values)
-    shaped = run_passes(module, target)
-    artifact = emit(shaped, target)
-    channels = tuple(_channel(r, tabs) for r in shaped.resources)
+    module = texts.with_values(lower(image, table_from=None), values)
+    artifact = with_data(text_of(module, target), module)
+    stem = stem if tab == "Image" else f"{stem}.{tab.lower().replace(' ', '_')}"
+    sources = {resource.name: resource.source for resource in module.resources}
+    read = artifact.interface["textures"]
+    channels = tuple(_channel(entry, sources[entry["name"]], tabs, stem) for entry in read)
     listed = "".join(f" * iChannel{i}: {c}.\n" for i, c in enumerate(channels))
     use = f"/*\n * The tab {tab} of a shader on shadertoy.com.\n{listed} */\n\n"
-    wraps = tuple(r.wrap for r in shaped.resources)
-    return ShaderPass(tab, use + artifact.text.lstrip("\n"), channels, wraps)
+    wraps = tuple(entry["wrap"] for entry in read)
+    pictures = texts.pictures_of(artifact, stem)
+    return ShaderPass(tab, use + artifact.text.lstrip("\n"), channels, wraps, pictures)
 
 
-def _channel(resource: ResourceDeclaration, tabs: dict[Image, str]) -> str:
-    source: Any = resource.source
+def _channel(entry: Mapping[str, Any], source: Any, tabs: dict[Image, str], stem: str) -> str:
     if isinstance(source, LastFrame):
         return tabs[source.image]
-    if isinstance(source, LiveTexture):
-        return source.kind
-    return f"texture {resource.name}"
+    name = texts.picture_name(entry, stem)
+    return str(entry["live"]) if name is None else f"texture {name}"
 
 
 def write(seen: Viewable, path: Path, options: TextOptions) -> Exported:
@@ -126,17 +131,34 @@ def write(seen: Viewable, path: Path, options: TextOptions) -> Exported:
         CompileError: Shadertoy cannot show the picture.
         SaveError: The file system reports an error.
     """
-    made = passes(seen, options)
-    files = {path.with_suffix(".json"): json.dumps(shader_json(made, seen), indent=2)}
-    image_file = path if path.suffix != ".json" else path.with_suffix(".glsl")
-    for each in made[:-1]:
-        suffix = each.tab.lower().replace(" ", "_")
-        files[image_file.with_name(f"{image_file.stem}.{suffix}.glsl")] = each.text
-    files[image_file] = made[-1].text
+    files = {path.with_name(name): content for name, content in tabs_of(seen, path, options)}
     for place, content in files.items():
         with replacement(place) as file:
-            file.write(content.rstrip("\n").encode() + b"\n")
+            file.write(content)
     return Exported(path, {}, tuple(f for f in files if f != path))
+
+
+def tabs_of(seen: Viewable, path: PurePath, options: TextOptions) -> list[tuple[str, bytes]]:
+    """Return the names and contents of a picture's files: its JSON, its tabs, its pictures.
+
+    Args:
+        seen: The picture.
+        path: As for ``write``.
+        options: The parameters.
+
+    Raises:
+        CompileError: Shadertoy cannot show the picture.
+    """
+    made = passes(seen, options, path.stem)
+    files = {f"{path.stem}.json": texts.text_bytes(json.dumps(shader_json(made, seen), indent=2))}
+    for each in made[:-1]:
+        suffix = each.tab.lower().replace(" ", "_")
+        files[f"{path.stem}.{suffix}.glsl"] = texts.text_bytes(each.text)
+    image = path.name if path.suffix != ".json" else f"{path.stem}.glsl"
+    files[image] = texts.text_bytes(made[-1].text)
+    for each in made:
+        files |= each.pictures
+    return list(files.items())
 
 
 def shader_json(made: list[ShaderPass], seen: Viewable) -> dict[str, Any]:

@@ -8,43 +8,51 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from distal.backends import TEXT_TARGETS, emit
+from distal.backends import TEXT_TARGETS
 from distal.backends.base import Artifact
 from distal.backends.clike.module_text import comment_text
+from distal.backends.glsl import isf
 from distal.backends.targets import Declares
-from distal.compiler.driver import TEXT_TABLE_FROM, run_passes
+from distal.compiler.driver import TEXT_TABLE_FROM, text_of
 from distal.diagnostics import readable
 from distal.export.exported import Exported
+from distal.export.host_data import refuse_passes, with_data
 from distal.export.page_options import TextOptions
 from distal.file_writer import SaveError, replacement
 from distal.frontend import lower
 from distal.ir.nodes import EntryKind, Module, Origin
 from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed
+from distal.lang.lazy_module import LazyModule
 from distal.version import __version__
 
 if TYPE_CHECKING:
+    from distal.export import resources
     from distal.scene.viewing.viewable import Viewable
+else:
+    resources = LazyModule("distal.export.resources")  # needs NumPy
 
 _PARAMETERS: Final = {
     Declares.NOBODY: "constants below, to be edited",
     Declares.PLACE: "inputs",
     Declares.TEXT: "uniforms",
 }
+_ISF: Final = "isf"
 WIDTH: Final = 96
 
 
-def with_header(artifact: Artifact, target: str, file: str) -> str:
+def with_header(artifact: Artifact, target: str, file: str, stem: str = "") -> str:
     """Return a text with a comment in front: its author's file and how to use it.
 
     Args:
-        artifact: The compiled text.
+        artifact: The compiled text with its complete interface.
         target: The name of its target.
         file: The name of the author's file, without its folder; may be empty.
+        stem: The name of the text's own file, without its suffix.
     """
     described = TEXT_TARGETS.get(target)
     if described is None:
@@ -60,14 +68,24 @@ def with_header(artifact: Artifact, target: str, file: str) -> str:
     if parameters:
         names = ", ".join(_spelled(u["uniform"]) for u in parameters)
         lines += _broken(f"Parameters ({_PARAMETERS[described.parameters]}): {names}.")
-    for buffer in artifact.interface.get("buffers", ()):
-        if "values" in buffer:
-            lines += _broken(f"{buffer['uniform']}: constants of the scene, in the file .json.")
-    for texture in artifact.interface["textures"] if described.textures_by else ():
-        name = comment_text(texture["name"])
-        lines.append(f"{texture['uniform']}: {name}, by {described.textures_by}.")
+    textures = artifact.interface.get("textures", ())
+    read = (*textures, *artifact.interface.get("buffers", ()))
+    if described.is_described and read:
+        names = ", ".join(entry["uniform"] for entry in read)
+        lines += _broken(f"Its data, in the file .json: {names}.")
+    for texture in textures if described.textures_by else ():
+        name = comment_text(picture_name(texture, stem) or f"{texture['name']} ({texture['live']})")
+        lines += _broken(
+            f"{texture['uniform']}: {name}, by {described.textures_by}; {texture['wrap']}."
+        )
     comment = "\n".join(("/*", *(f" * {line}" for line in lines), " */", ""))
-    return _placed(artifact.text, comment)
+    text = artifact.text
+    if described.name == _ISF:
+        for texture in textures:
+            name = texture["uniform"]
+            file = picture_name(texture, stem) or ""
+            text = text.replace(isf.imported(name, f"{name}.png"), isf.imported(name, file), 1)
+    return _placed(text, comment)
 
 
 def _placed(text: str, comment: str) -> str:
@@ -94,70 +112,123 @@ def _broken(text: str) -> list[str]:
     return lines
 
 
+@dataclass(frozen=True, slots=True)
+class TextFiles:
+    """A text, and the files that belong to it.
+
+    Attributes:
+        text: The text.
+        beside: Its interface, its vertex stage and its pictures: file names and contents.
+    """
+
+    text: str
+    beside: Mapping[str, bytes]
+
+    def write(self, path: Path) -> tuple[Path, ...]:
+        """Write them, and return the paths of the other files.
+
+        Args:
+            path: The file of the text.
+
+        Raises:
+            SaveError: The file system reports an error, or another file would be in its place.
+        """
+        files = {path.with_name(name): content for name, content in self.beside.items()}
+        if path in files:
+            kind = "interface" if path.suffix == ".json" else "vertex stage"
+            raise SaveError(f"cannot write {path}: its {kind} goes there; give it another suffix")
+        for place, content in {**files, path: text_bytes(self.text)}.items():
+            with replacement(place) as file:
+                file.write(content)
+        return tuple(files)
+
+
 def write(seen: Viewable, path: Path, target: str, options: TextOptions) -> Exported:
-    """Write the text, the files it needs, and its interface if the host has to set inputs.
+    """Write the text and the files that belong to it.
 
     Args:
         seen: The object to show.
         path: The file.
         target: The text target, as for ``distal.compile``.
         options: The view, time and parameters.
+
+    Raises:
+        CompileError: The text cannot hold all that the picture reads.
+        SaveError: The file system reports an error, or another file would be in its place.
     """
-    description = TEXT_TARGETS[target]
-    artifact = text(seen, target, options)
-    # Only for targets where the text declares the parameters; elsewhere the host sets its inputs.
-    with_interface = description.parameters is Declares.TEXT
-    beside = write_files(path, artifact, artifact.text, with_interface=with_interface)
-    return Exported(path, {}, beside)
+    return Exported(path, {}, text_files(seen, target, options, path.stem).write(path))
 
 
-def text(seen: Viewable, target: str, options: TextOptions) -> Artifact:
-    """Return the text with its header, the vertex stage and the interface.
+def text_files(seen: Viewable, target: str, options: TextOptions, stem: str) -> TextFiles:
+    """Return the text of a picture, and the files that belong to it.
 
     Args:
         seen: The object to show.
         target: The text target.
         options: The view and parameters.
+        stem: The name of the text's file, without its suffix.
+
+    Raises:
+        CompileError: The text cannot hold all that the picture reads.
     """
     values = checked_values(seen.parameters, options.params)
     image = seen.image(options.view, encoded=True)
     description = TEXT_TARGETS[target]
-    text_of = image.text() if isinstance(image, Composed) else image
-    module = lower(text_of, table_from=TEXT_TABLE_FROM if description.buffers else None)
-    artifact = emit(run_passes(with_values(module, values), description), description)
+    of_text = image.text() if isinstance(image, Composed) else image
+    module = lower(of_text, table_from=TEXT_TABLE_FROM if description.buffers else None)
+    refuse_passes(module)
+    artifact = with_data(text_of(with_values(module, values), description), module)
     name = readable(seen.file.name) if seen.file is not None else ""
-    return replace(artifact, text=with_header(artifact, target, name))
+    return files_of(artifact, target, name, stem)
 
 
-def write_files(
-    path: Path, artifact: Artifact, text: str, *, with_interface: bool
-) -> tuple[Path, ...]:
-    """Write a text and the files that belong to it: its vertex stage, its interface.
+def files_of(
+    artifact: Artifact, target: str, file: str, stem: str, *, described: bool = False
+) -> TextFiles:
+    """Return a compiled text with its header, and the files that belong to it.
 
     Args:
-        path: The file of the text.
-        artifact: The compiled text, its vertex stage and interface.
-        text: The text to write.
-        with_interface: Whether to write the interface.
-
-    Returns:
-        The other files.
-
-    Raises:
-        SaveError: The file system reports an error.
+        artifact: The compiled text with its complete interface.
+        target: Its target.
+        file: The name of the author's file, without its folder; may be empty.
+        stem: The name of the text's file, without its suffix.
+        described: Whether the interface is a file even where the host sets no inputs.
     """
     files = {}
-    if with_interface:
-        files[path.with_suffix(".json")] = json.dumps(artifact.interface, indent=2)
+    description = TEXT_TARGETS.get(target)
+    if described or description is None or description.is_described:
+        files[f"{stem}.json"] = text_bytes(json.dumps(artifact.interface, indent=2))
+    if description is not None and not description.is_described:
+        files |= pictures_of(artifact, stem)
     if artifact.vertex is not None:
-        files[path.with_suffix(".vert")] = artifact.vertex
-    if path in files:
-        kind = "interface" if path.suffix == ".json" else "vertex stage"
-        raise SaveError(f"cannot write {path}: its {kind} goes there; give it another suffix")
-    for place, content in {**files, path: text}.items():
-        with replacement(place) as file:
-            file.write(content.rstrip("\n").encode() + b"\n")
-    return tuple(files)
+        files[f"{stem}.vert"] = text_bytes(artifact.vertex)
+    return TextFiles(with_header(artifact, target, file, stem), files)
+
+
+def text_bytes(text: str) -> bytes:
+    """Return a text as it is written to a file."""
+    return text.rstrip("\n").encode() + b"\n"
+
+
+def pictures_of(artifact: Artifact, stem: str) -> dict[str, bytes]:
+    """Return the pictures that a text reads as PNG, for a host that reads files.
+
+    Args:
+        artifact: The compiled text with its complete interface.
+        stem: The name of the text's file, without its suffix.
+    """
+    entries = artifact.interface.get("textures", ())
+    return {name: resources.png(e) for e in entries if (name := picture_name(e, stem)) is not None}
+
+
+def picture_name(texture: Mapping[str, Any], stem: str) -> str | None:
+    """Return the name of the file of a texture beside a text; None if the host has the texture.
+
+    Args:
+        texture: Its entry in the interface.
+        stem: The name of the text's file, without its suffix.
+    """
+    return None if "live" in texture else f"{stem}.{texture['uniform']}.png"
 
 
 def with_values(module: Module, values: Mapping[str, Any]) -> Module:

@@ -73,11 +73,15 @@ def _is_inside(frame: FrameType) -> bool:
             # globals; the name "<string>" is not unique, so it is not cached.
             module = str(frame.f_globals.get("__name__", ""))
             return module.partition(".")[0] == "distal"
-        path = os.path.abspath(file)
-        is_own = path.startswith(_PACKAGE) and not path.startswith(_GALLERY)
-        found = is_own or file == _CACHING
+        found = is_library(file) or file == _CACHING
         _inside[file] = found
     return found
+
+
+def is_library(file: str) -> bool:
+    """Return whether a file is part of distal: no author edits it. Examples are no part."""
+    path = os.path.abspath(file)
+    return path.startswith(_PACKAGE) and not path.startswith(_GALLERY)
 
 
 def _span(frame: FrameType) -> Span:

@@ -36,7 +36,18 @@ from distal.passes.fold import constants as fold_constants
 from distal.passes.fold.fold import fold_expression
 
 # What no rule folds: their results come from devices.
-LEFT = {"smallest_normal", "largest_power", "reflect", "refract", "faceforward", "transpose", "determinant", "inverse", "outer", "pcg"}
+LEFT = {
+    "smallest_normal",
+    "largest_power",
+    "reflect",
+    "refract",
+    "faceforward",
+    "transpose",
+    "determinant",
+    "inverse",
+    "outer",
+    "pcg",
+}
 FOLDED = sorted(set(INTRINSICS) - LEFT)
 POINTS = 24
 EDGES = (0.0, -0.0, 1.0, -1.0, 0.5, -2.5, 1e-9, -1e-9, 90.0, -90.0, 130.0, 1e7, -1e7, 1e18, -1e18)

@@ -20,12 +20,10 @@ from distal.backends.clike.code import Code
 from distal.backends.clike.keywords import isf_picture_names
 from distal.backends.clike.module_names import ModuleNames
 from distal.backends.clike.names import Namer, Reserved
-from distal.backends.glsl.targets import ISF_MOUSE, refuse_live_textures
+from distal.backends.glsl.targets import ISF_MOUSE
 from distal.backends.glsl.writer import Glsl100Writer
-from distal.diagnostics import CompileError, readable
-from distal.error_codes import ErrorCode
+from distal.diagnostics import readable
 from distal.ir.nodes import Module, Origin, Resource, ResourceDeclaration, UniformDeclaration
-from distal.ir.types import Texture, TextureShape
 from distal.version import __version__
 
 MOST_LISTED: Final = 64  # the longest menu of whole numbers; more values get no menu
@@ -50,11 +48,7 @@ class IsfHeader:
 
     @classmethod
     def of(cls, module: Module, reserved: Reserved) -> IsfHeader:
-        """Return the header of a module.
-
-        Raises:
-            CompileError: It reads a resource that no ISF host can provide.
-        """
+        """Return the header of a module, whose textures are pictures in files."""
         namer = Namer(reserved)
         inputs: list[dict[str, Any]] = []
         texts: dict[str, str] = {}
@@ -75,9 +69,8 @@ class IsfHeader:
             "INPUTS": inputs,
         }
         resources = {r.name: namer.name(r.name) for r in module.resources}
-        refuse_live_textures(module.resources, "ISF")
         if resources:
-            paths = {resources[r.name]: {"PATH": _file_name(r)} for r in module.resources}
+            paths = {name: {"PATH": f"{name}.png"} for name in resources.values()}
             described["IMPORTED"] = paths
         names = frozenset(i["NAME"] for i in inputs).union(
             resources.values(), *map(isf_picture_names, resources.values())
@@ -179,23 +172,9 @@ def _point(
     }
 
 
-def _file_name(resource: ResourceDeclaration) -> str:
-    """Return the name of a texture's file, which the author puts beside the shader."""
-    if not isinstance(resource.type, Texture) or resource.type.shape is not TextureShape.FLAT:
-        raise CompileError.at(
-            ErrorCode.TARGET,
-            f"ISF imports pictures only, and the scene reads '{resource.name}' ({resource.type})",
-            None,
-        )
-    data = getattr(resource.source, "data", None)
-    if not isinstance(data, str | PurePath):
-        raise CompileError.at(
-            ErrorCode.TARGET,
-            f"ISF imports pictures from files, and the texture '{resource.name}' is made of data",
-            None,
-            "save it as a picture, and declare Texture2D of the file",
-        )
-    return readable(PurePath(data).name)
+def imported(name: str, file: str) -> str:
+    """Return the entry of a picture in the JSON: its name in the shader, and its file beside it."""
+    return json.dumps({name: {"PATH": file}})[1:-1]
 
 
 class IsfWriter(Glsl100Writer):

@@ -20,13 +20,10 @@ from distal.backends.clike.keywords import (
     SHADERTOY_NAMES,
 )
 from distal.backends.targets import Declares, TextTarget
-from distal.diagnostics import CompileError
-from distal.error_codes import ErrorCode
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.nodes import ResourceDeclaration
 from distal.ir.target import LARGEST_TABLE, FramePlace
-from distal.ir.types import Buffer, Texture, TextureShape
-from distal.lang.live_textures import LiveTexture
+from distal.ir.types import TextureShape
 
 ISF_MOUSE: Final = "mouse"
 SHADERTOY_CHANNELS: Final = 4
@@ -97,62 +94,16 @@ def target_name(number: int) -> str:
 
 
 def shadertoy_channels(resources: Resources) -> dict[str, str]:
-    """Return the Shadertoy channel of each resource.
-
-    Raises:
-        CompileError: There are more textures than channels, or a buffer.
-    """
-    for resource in resources:
-        if isinstance(resource.type, Buffer):
-            raise CompileError.at(
-                ErrorCode.TARGET,
-                f"Shadertoy has no buffers, and the scene reads '{resource.name}'",
-                None,
-                "a constant tuple of numbers works on every target",
-            )
-    if len(resources) > SHADERTOY_CHANNELS:
-        raise CompileError.at(
-            ErrorCode.TARGET,
-            f"Shadertoy has {SHADERTOY_CHANNELS} textures, and the scene reads {len(resources)}",
-            None,
-        )
+    """Return the Shadertoy channel of each resource."""
     return {resource.name: f"iChannel{i}" for i, resource in enumerate(resources)}
 
 
-def refuse_live_textures(resources: Resources, host: str) -> None:
-    """Check that a picture reads nothing that changes with each frame.
-
-    Raises:
-        CompileError: It does, and the host cannot provide it.
-    """
-    for resource in resources:
-        if isinstance(resource.source, LiveTexture):
-            raise CompileError.at(
-                ErrorCode.TARGET,
-                f"{host} has no {resource.source.shown}, and the picture reads '{resource.name}'",
-                None,
-                "Shadertoy and a page have it",
-            )
-
-
 def canvas_textures(resources: Resources) -> dict[str, str]:
-    """Return glslCanvas's name for each resource: the textures of ``data-textures``, in order.
-
-    Raises:
-        CompileError: There is a resource that is not a flat texture.
-    """
-    refuse_live_textures(resources, "glslCanvas")
-    for resource in resources:
-        if not isinstance(resource.type, Texture) or resource.type.shape is not TextureShape.FLAT:
-            raise CompileError.at(
-                ErrorCode.TARGET,
-                f"glslCanvas has pictures only, and the scene reads '{resource.name}' "
-                f"({resource.type})",
-                None,
-            )
+    """Return glslCanvas's name for each resource: the textures of ``data-textures``, in order."""
     return {resource.name: f"u_tex{i}" for i, resource in enumerate(resources)}
 
 
+_FLAT: Final = frozenset({TextureShape.FLAT})
 _PRECISION = ("precision highp float;", "precision highp int;")
 _VERTEX_BESIDE = (
     "The fragment stage; the file .vert beside it is its vertex stage. Draw 3 vertices as "
@@ -186,6 +137,9 @@ _SHADERTOY = GlslTarget(
     host_names=SHADERTOY_NAMES,
     host_macros=SHADERTOY_MACROS,
     resource_names=shadertoy_channels,
+    textures_by="the channels of the tab",
+    most_textures=SHADERTOY_CHANNELS,
+    live=True,
     declares_textures=False,
     buffers=False,
 )
@@ -199,6 +153,7 @@ _WEBGL_1 = GlslTarget(
     dynamic_index=False,
     texel_fetch=False,
     buffers=False,
+    textures=frozenset({TextureShape.FLAT, TextureShape.CUBE}),
     place="WebGL 1",
     use="The fragment stage; draw anything that covers the picture. Set every uniform.",
     version="100",
@@ -225,6 +180,7 @@ _GLSL_CANVAS = replace(
     '"glslCanvas" as data-fragment-url.',
     parameters=Declares.NOBODY,
     numbers=Declares.NOBODY,
+    textures=_FLAT,
     textures_by="data-textures",
     host_macros=GLSL_CANVAS_MACROS,
     resource_names=canvas_textures,
@@ -254,6 +210,8 @@ _ISF = replace(
     host_names=ISF_NAMES,
     host_prefixes=ISF_PREFIXES,
     host_parts=ISF_PARTS,
+    textures=_FLAT,
+    textures_by="IMPORTED",
     declares_textures=False,
     described=True,
 )

@@ -23,7 +23,7 @@ from distal.backends.wgsl.stages import WgslProgram, program_lines
 from distal.backends.wgsl.targets import WgslTarget
 from distal.ir.nodes import EntryKind, Module, Origin, UniformDeclaration
 from distal.ir.target import Target
-from distal.ir.types import VEC2, Kind, Vector
+from distal.ir.types import VEC2, Buffer, Kind, Vector, component_count
 from distal.ir.walk import per_frame_reads_in
 
 _RESOLUTION: Final = "resolution"
@@ -70,6 +70,11 @@ def _tile_name(module: Module, names: ModuleNames) -> str:
     return Namer(VOCABULARY.fields, names.uniforms.values()).name(_TILE)
 
 
+def _stride(buffer: Buffer) -> int:
+    """Return the bytes from one element to the next: a vec3 takes the room of a vec4."""
+    return {1: 4, 2: 8, 3: 16, 4: 16}[component_count(buffer.element)]
+
+
 def _interface(program: WgslProgram, target: Target) -> dict[str, Any]:
     module, names = program.module, program.names
     result = interface(module, target, names)
@@ -85,8 +90,10 @@ def _interface(program: WgslProgram, target: Target) -> dict[str, Any]:
     for texture in result["textures"]:
         binding = numbers[texture["name"]]
         texture |= {"group": 1, "binding": binding, "sampler_binding": binding + 1}
+    strides = {r.name: _stride(r.type) for r in module.resources if isinstance(r.type, Buffer)}
     for buffer in result["buffers"]:
-        buffer |= {"group": 1, "binding": numbers[buffer["name"]]}
+        name = buffer["name"]
+        buffer |= {"group": 1, "binding": numbers[name], "stride": strides[name]}
     result["stages"] = {}
     if module.kind is EntryKind.FUNCTION:
         result["entry"] = names.functions[module.entry]

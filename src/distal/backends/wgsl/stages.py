@@ -49,6 +49,11 @@ class WgslProgram:
     frame: StructLayout
     compute: bool
 
+    def is_copied(self, layout: StructLayout) -> bool:
+        """Whether an entry point copies a struct of inputs; functions alone have none."""
+        has_entry_point = self.compute or self.module.kind is EntryKind.IMAGE
+        return has_entry_point and layout.size <= _COPIED_BYTES
+
 
 def program_lines(program: WgslProgram) -> list[Line]:
     """Return the whole text."""
@@ -135,10 +140,10 @@ def _to_shared(value: Code, type: Type) -> str:
 def copy_lines(program: WgslProgram, *, frame: bool = True) -> list[str]:
     """Return the first lines of an entry point: the copies of uniforms and per-frame values."""
     lines = []
-    if program.module.uniforms and program.uniforms.size <= _COPIED_BYTES:
+    if program.module.uniforms and program.is_copied(program.uniforms):
         names = program.names.uniforms
         lines += _copy(OWN.uniforms, OWN.uniforms_input, program.uniforms, names)
-    if frame and program.module.frame and program.frame.size <= _COPIED_BYTES:
+    if frame and program.module.frame and program.is_copied(program.frame):
         lines += _copy(OWN.frame, OWN.frame_input, program.frame, program.names.frame)
     return lines
 
@@ -151,10 +156,10 @@ def _copy(name: str, source: str, layout: StructLayout, names: Mapping[str, str]
     return [f"    {name}.{member} = {source}.{member};" for member in members]
 
 
-def _input_lines(binding: int, name: str, source: str, type: str, size: int) -> list[str]:
+def _input_lines(binding: int, name: str, source: str, type: str, *, is_copied: bool) -> list[str]:
     """Return the binding of a struct of uniforms, and the private variable for its copy."""
     here = f"@group(0) @binding({binding}) var<uniform>"
-    if size > _COPIED_BYTES:
+    if not is_copied:
         return [f"{here} {name}: {type};"]
     return [f"{here} {source}: {type};", f"var<private> {name}: {type};"]
 
@@ -211,17 +216,19 @@ def _binding_lines(program: WgslProgram, functions: Iterable[Function]) -> list[
             note = "the part to compute: corner, size; zeros: the whole picture"
             lines.append(f"    {program.tile}: vec4u,  // {note}")
         own = (OWN.uniforms, OWN.uniforms_input, OWN.uniforms_type)
-        lines += ["}", "", *_input_lines(0, *own, program.uniforms.size)]
+        is_copied = program.is_copied(program.uniforms)
+        lines += ["}", "", *_input_lines(0, *own, is_copied=is_copied)]
     if module.frame:
         lines += ["", f"// Values that are the same in all pixels, computed by {OWN.frame_main}."]
         lines.append(f"struct {OWN.frame_type} {{")
         for member in program.frame.members:
             type = writer.type_name(shared_type(member.type))
             lines.append(f"    {names.frame[member.name]}: {type},")
+        own = (OWN.frame, OWN.frame_input, OWN.frame_type)
         lines += [
             "}",
             "",
-            *_input_lines(1, OWN.frame, OWN.frame_input, OWN.frame_type, program.frame.size),
+            *_input_lines(1, *own, is_copied=program.is_copied(program.frame)),
             f"@group(0) @binding(2) var<storage, read_write> {OWN.frame_output}: {OWN.frame_type};",
         ]
     if program.compute and module.kind is EntryKind.IMAGE:

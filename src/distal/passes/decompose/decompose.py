@@ -16,7 +16,7 @@ import math
 from dataclasses import replace
 from typing import Final
 
-from distal.diagnostics import Span
+from distal.diagnostics import CompileError, Span
 from distal.ir.build import binary, components, integer, number, splat
 from distal.ir.intrinsics import INTRINSICS
 from distal.ir.limits import largest_power, smallest
@@ -48,6 +48,7 @@ from distal.ir.nodes import (
 from distal.ir.nodes import Field as FieldNode
 from distal.ir.types import INT, Kind, Scalar, Texture, TextureShape, Type, Vector, kind_of
 from distal.ir.walk import map_statement, rebuild, rewrite
+from distal.passes.author_places import author_place
 from distal.passes.call_order import in_call_order
 from distal.passes.context import Context
 from distal.passes.decompose.edges import (
@@ -81,10 +82,27 @@ def run(module: Module, context: Context) -> Module:
     while len(done) < len(linker.module.functions):
         for function in linker.module.functions:
             if function.name not in done:
-                done[function.name] = _Decomposer(linker, context, function).function()
+                done[function.name] = _decomposed(linker, context, function, module)
     standing_in = [replace(f, native=linker.natives.get(f.name)) for f in done.values()]
     functions = in_call_order(standing_in, module.entry)
     return replace(linker.module, functions=functions)
+
+
+def _decomposed(linker: _Linker, context: Context, function: Function, module: Module) -> Function:
+    """Return a function without what the target lacks.
+
+    Raises:
+        CompileError: It needs what the target cannot express; the place is the author's.
+    """
+    try:
+        return _Decomposer(linker, context, function).function()
+    except CompileError as error:
+        (first, *_) = error.diagnostics
+        if first.span is not None:
+            raise
+        blame = linker.blame(function.name)
+        span = author_place(module, blame.function if blame else function.name)
+        raise CompileError([replace(first, span=span)]) from None
 
 
 class _Linker:
@@ -183,7 +201,8 @@ class _Decomposer:
     def _blamed(self, e: Expr | None, what: str) -> Blame:
         if self._blame is not None:
             return self._blame
-        return Blame(span_in(self._span, e) if e is not None else self._span, what)
+        span = span_in(self._span, e) if e is not None else self._span
+        return Blame(span, what, self._original.name)
 
     # Statements.
 

@@ -7,11 +7,9 @@ names the author's operation that needs the function.
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, replace
 from typing import Final
 
-from distal import packages
 from distal.diagnostics import CompileError, Span
 from distal.error_codes import ErrorCode
 from distal.ir.build import compare, integer
@@ -36,6 +34,7 @@ from distal.ir.nodes import (
 )
 from distal.ir.target import Target
 from distal.ir.types import INT, Array, Buffer, Kind, Struct, Type, kind_of
+from distal.lang.source_places import is_library
 from distal.passes.naming import FreshNames
 from distal.passes.ranges import Ranges
 
@@ -46,28 +45,23 @@ _BIT_OPS: Final = frozenset((BinaryOp.AND, BinaryOp.OR, BinaryOp.XOR, BinaryOp.S
 # A longer loop is rejected if its actual length is known only at run time.
 _LONGEST_CLAMPED_LOOP: Final = 65536
 
-# Where the scene code of the library is.
-_LIBRARY: Final = tuple(
-    os.path.join(os.path.dirname(os.path.abspath(packages.__file__)), name)
-    for name in ("fields", "render", "lang")
-)
-
 _OTHER_TARGET: Final = "compile for another target, such as glsl-es300"
 
 
 @dataclass(frozen=True, slots=True)
 class Blame:
-    """A place in the author's code and, if useful, the name of the operation there."""
+    """A place, the name of the operation there if useful, and the function that it is in."""
 
     span: Span | None
     what: str
+    function: str = ""
 
 
 def _refusal(target: Target, lacks: str, blame: Blame, hint: str) -> CompileError:
     span = blame.span
-    if span is not None and os.path.dirname(span.file).startswith(_LIBRARY):
-        # The author did not write that line, and cannot change it.
-        needs = ", which noise and random numbers of the library need"
+    if span is not None and is_library(span.file):
+        # The author did not write that line, and cannot change it; ``run`` finds one that needs it.
+        needs = ", which the library needs here"
         return CompileError.at(
             ErrorCode.TARGET, f"{target.name} has no {lacks}{needs}", None, _OTHER_TARGET
         )

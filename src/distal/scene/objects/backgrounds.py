@@ -199,7 +199,7 @@ class Environment(Surroundings):
 
     def _pixels(self) -> Any:
         found = image_files.texture_light(self._texture, "Environment", self.background.place)
-        return found.astype(np.float32, copy=False)
+        return found.astype("float32", copy=False)
 
 
 CLASSES: Final = {
