@@ -367,9 +367,7 @@ def test_the_guide_says_what_each_target_carries():
     guide = (Path(__file__).parents[2] / "docs/guide/web.md").read_text(encoding="utf-8")
     kinds = {TextureShape.FLAT: "2D", TextureShape.CUBE: "cube", TextureShape.VOLUME: "3D"}
     for name, target in TEXT_TARGETS.items():
-        shapes = [
-            word for shape, word in kinds.items() if shape in {s.value for s in target.textures}
-        ]
+        shapes = [word for shape, word in kinds.items() if shape in target.textures]
         if target.is_described:
             data = f"{', '.join(shapes)}: in the `.json`"
         else:
