@@ -35,6 +35,9 @@ from distal.fields.solids.regular import (
     TRUNCATED_OCTAHEDRON_SQUARE,
     VERTEX_LONG,
     VERTEX_SHORT,
+    along_diagonals,
+    along_faces,
+    along_vertices,
 )
 from distal.lang import abs, func, max, pow, vec3
 from distal.lang.functions import Func
@@ -98,15 +101,11 @@ def cube_around(side: float) -> Bounds:
 
 
 @func
-def largest_part(p: vec3) -> float:
-    """Return the scale that keeps powers from overflowing."""
-    q = abs(p)
-    return max(q.x, q.y, q.z, TINY)
-
-
-@func
 def smoothed(total: float, scale: float, radius: float, exponent: float, weight: float) -> float:
-    """Return the field from the sum of the powers of p / scale."""
+    """Return the field from the sum of the powers of p / scale.
+
+    The scale is the largest projection: then the largest power is 1, whatever the exponent is.
+    """
     return scale * pow(total * (3.0 / weight), 1.0 / exponent) - radius
 
 
@@ -168,7 +167,7 @@ def smooth_octahedron(p: vec3, radius: float = 0.6, exponent: float = 12.0) -> f
         smooth_octahedron((0.0, 0.0, 0.0), 0.5, 9.0) = -0.5
         smooth_octahedron((0.0, 3.0, 0.0), 1.0, 4.0) = 1.2795070569547775
     """
-    scale = largest_part(p)
+    scale = max(along_diagonals(abs(p)), TINY)
     total = powers_of_diagonals(p / scale, exponent)
     return smoothed(total, scale, radius, exponent, OCTAHEDRON_WEIGHT)
 
@@ -191,7 +190,7 @@ def smooth_dodecahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) ->
         smooth_dodecahedron((0.0, 0.0, 0.0), 0.5, 9.0) = -0.5
         smooth_dodecahedron((0.0, 3.0, 0.0), 1.0, 4.0) = 1.6403352103801803
     """
-    scale = largest_part(p)
+    scale = max(along_vertices(abs(p)), TINY)
     total = powers_of_pairs(p / scale, VERTEX_SHORT, VERTEX_LONG, exponent)
     return smoothed(total, scale, radius, exponent, DODECAHEDRON_WEIGHT)
 
@@ -214,7 +213,7 @@ def smooth_icosahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> 
         smooth_icosahedron((0.0, 0.0, 0.0), 0.5, 9.0) = -0.5
         smooth_icosahedron((0.0, 3.0, 0.0), 1.0, 4.0) = 1.6403352103801803
     """
-    scale = largest_part(p)
+    scale = max(along_faces(abs(p)), TINY)
     total = powers_of_faces(p / scale, exponent)
     return smoothed(total, scale, radius, exponent, ICOSAHEDRON_WEIGHT)
 
@@ -242,7 +241,8 @@ def smooth_truncated_octahedron(p: vec3, radius: float = 0.8, exponent: float = 
         smooth_truncated_octahedron((0.0, 0.0, 0.0), 0.5, 9.0) = -0.5
         smooth_truncated_octahedron((0.0, 3.0, 0.0), 1.0, 4.0) = 1.5013988255342774
     """
-    scale = largest_part(p)
+    sharp = abs(p)
+    scale = max(along_diagonals(sharp), max(sharp.x, sharp.y, sharp.z) / SQUARE_RATIO, TINY)
     q = p / scale
     sides = abs(q) / SQUARE_RATIO
     squares = pow(sides.x, exponent) + pow(sides.y, exponent) + pow(sides.z, exponent)
@@ -268,7 +268,8 @@ def smooth_truncated_icosahedron(p: vec3, radius: float = 0.9, exponent: float =
         smooth_truncated_icosahedron((0.0, 0.0, 0.0), 0.5, 9.0) = -0.5
         smooth_truncated_icosahedron((0.0, 3.0, 0.0), 1.0, 2.0) = 2.0
     """
-    scale = largest_part(p)
+    sharp = abs(p)
+    scale = max(along_faces(sharp), along_vertices(sharp) / PENTAGON_RATIO, TINY)
     q = p / scale
     pentagons = powers_of_pairs(q / PENTAGON_RATIO, VERTEX_SHORT, VERTEX_LONG, exponent)
     total = powers_of_faces(q, exponent) + pentagons
