@@ -48,6 +48,19 @@ def test_small_balls_in_a_wide_box_are_all_there():
     assert not found.warnings
 
 
+@pytest.mark.parametrize("thickness", [1e-3, 1e-4])
+def test_the_error_of_a_shell_that_meshes_miss_holds_its_volume(thickness):
+    found = (Sphere(1.0) - Sphere(1.0 - thickness)).measure()
+    true = BALL * (1.0 - (1.0 - thickness) ** 3)
+    assert abs(found.volume.value - true) <= found.volume.error
+    assert "parts of it are missing; give a smaller feature=" in found.warnings[0]
+
+
+def test_a_disc_that_no_mesh_shows_is_refused_with_its_thickness():
+    with pytest.raises(SceneValueError, match=r"nothing of 'Box' is as thick as .* is thinner at"):
+        Box((1.0, 1.0, 1e-5)).measure()
+
+
 def test_what_meshes_miss_is_held_by_the_error_and_said(monkeypatch):
     # So few bricks that no mesh shows the balls.
     monkeypatch.setattr(rungs, "_BRICKS", 1)

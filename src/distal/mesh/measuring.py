@@ -281,6 +281,10 @@ def _measures(
     estimate = found.estimate or unconfirmed(last, extent)
     whole = estimate.integrals
     volume, error, agrees = _within(whole.volume, estimate.volume, brackets)
+    if len(found.lost):
+        # A mesh that misses parts says nothing of their volume: only the bounds do.
+        lower, upper = brackets.volume
+        error = max(error, upper - volume, volume - lower)
     points = finest.made.points
     low, high = points.min(axis=0), points.max(axis=0)
     distance = max(finest.accuracy.largest, finest.accuracy.from_surface)

@@ -131,7 +131,7 @@ def climbed(
         try:
             made = extracted(kernels, extent, spacing, lines, MOST_BRICKS, inner, digit=DIGIT)
         except MeshProblem as problem:
-            if problem.kind == "too many" and found.last is not None:
+            if problem.kind == "too many" and (found.last or found.nothing) is not None:
                 break
             raise
         done += 0.5 * (1.0 - done)
