@@ -120,11 +120,13 @@ def pixels_of(picture: Any) -> NDArray[np.float32]:
     """Return the pixels of a picture: float32 (height, width, 4), top row first.
 
     Args:
-        picture: A picture of Pillow, with its pixels loaded.
+        picture: A picture of Pillow.
 
     Raises:
         LoadError: Its mode or its levels have no rule.
     """
+    # Pillow turns a TIFF while it loads it, and forgets its orientation then.
+    picture.load()
     rule = rule_of(picture)
     width, height = picture.size
     orientation = _orientation(picture)
