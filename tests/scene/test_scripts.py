@@ -73,6 +73,14 @@ def test_line_ends_are_one_line_end_and_invisible_characters_nothing():
     assert Text("A\tB").bounds() == Text("A   B").bounds()
 
 
+def test_marks_of_direction_are_nothing():
+    low, high = Text("abc").bounds()
+    for text in ("\u200fabc\u200f", "abc \u200f", "abc\u202e"):
+        found = Text(text, align="left").bounds()
+        assert found[1][1] - found[0][1] == pytest.approx(high[1] - low[1]), repr(text)
+    assert Text("A\n\u200f").bounds() == Text("A\n ").bounds()
+
+
 def test_decomposed_letters_are_the_composed_ones():
     assert Text("e\u0301A\u030a").bounds() == Text("\u00e9\u00c5").bounds()
 
@@ -83,6 +91,7 @@ def test_decomposed_letters_are_the_composed_ones():
         ("a\x07b", "a text cannot show the control character '\\x07'"),
         ("a\ud800b", "a text cannot show the half of a character, '\\ud800'"),
         ("\u200b\n\ufeff", "a text needs a letter"),
+        ("\u200f", "a text needs a letter"),
         ("\U0010fffd", r"no font that is known has '\U0010fffd'"),
     ],
 )

@@ -83,9 +83,10 @@ def text_outline(
         if not 0.0 < value < math.inf:
             refuse(f"{name} must be above 0, not {value}", None, place)
     lines = lines_of(text, place)
-    if not "".join(lines).strip():
+    letters = shown_letters("".join(lines))
+    if not "".join(letters).strip():
         refuse("a text needs a letter", None, place)
-    face = _face(font, shown_letters("".join(lines)), place)
+    face = _face(font, letters, place)
     scale = size / face.units
     middle = 0.5 * (face.capitals * scale - (len(lines) - 1) * line_spacing * size)
     edges: list[Edge] = []

@@ -95,7 +95,9 @@ class Shaper:
             buffer.guess_segment_properties()
             buffer.direction = "rtl" if backwards else "ltr"
             self._harfbuzz.shape(self._font, buffer)
-            for info, at in zip(buffer.glyph_infos, buffer.glyph_positions, strict=True):
+            # A run of marks of direction alone has no glyphs, and then there is None.
+            positions = buffer.glyph_positions or ()
+            for info, at in zip(buffer.glyph_infos, positions, strict=True):
                 yield info.codepoint, at.x_advance, at.x_offset, at.y_offset
 
 
