@@ -990,6 +990,22 @@ def _glb() -> None:
             right=None,
             reason=name,
         )
+    for name in ("EXT_lights_image_based", "EXT_mesh_features", "KHR_animation_pointer"):
+        add(f"required {name}", _glb_file(parts, primitives, extensionsRequired=[name]))
+    for least, right in (("2.0", BOX), ("2.1", None)):
+        asset = {"version": "2.1", "minVersion": least}
+        file = _glb_file(parts, primitives, asset=asset)
+        add(f"minVersion {least}", file, right=right, reason="version 2.1 of glTF")
+    for length in (1.0, 1.01, 2.0):
+        turn = [0.0, 0.0, length * 0.6, length * 0.8]
+        matrix = np.array([(0.28, -0.96, 0), (0.96, 0.28, 0), (0, 0, 1)])
+        file = _glb_file(parts, primitives, [{"mesh": 0, "rotation": turn}])
+        add(f"quaternion of length {length}", file, right=BOX @ matrix.T)
+    file = _glb_file(parts, primitives, [{"mesh": 0, "rotation": [0, 0, 0, 0]}])
+    add("quaternion of zeros", file, right=None, reason="four zeros")
+    beyond, p3 = _box_parts()
+    beyond.accessors[0]["count"] = 9
+    add("points beyond their view", _glb_file(beyond, p3), right=None, reason="its part")
     instanced, p2 = _box_parts()
     moves = instanced.accessor([(0, 0, 0), (9, 0, 0)], "<f4")
     add(

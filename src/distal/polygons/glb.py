@@ -37,8 +37,9 @@ _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _INSTANCES: Final = "EXT_mesh_gpu_instancing"
 # Extensions that a file may require: quantized numbers are read, others do not change triangles.
 _READ: Final = re.compile(
-    "KHR_mesh_quantization|KHR_lights_punctual|KHR_xmp(_json_ld)?|(KHR|EXT|MSFT)_texture_.*"
-    "|KHR_materials_.*"
+    "KHR_mesh_quantization|KHR_xmp(_json_ld)?|KHR_animation_pointer|EXT_mesh_features"
+    "|EXT_structural_metadata|(KHR|EXT)_lights_.*|(KHR|EXT|MSFT)_texture_.*"
+    "|(KHR|EXT|ADOBE)_materials_.*"
 )
 
 
@@ -131,6 +132,7 @@ def read_glb(data: bytes, *, with_colors: bool = False) -> SourceTriangles:
         LoadError: The file is no GLB, is truncated, or is compressed.
     """
     file = _chunks(data)
+    _check_version(file.content.get("asset"))
     for name in list_of(file.content, "extensionsRequired"):
         if name in COMPRESSED:
             raise compressed(name)
@@ -227,6 +229,13 @@ def _chunks(data: bytes) -> GlbFile:
     return GlbFile(content, binary)
 
 
+def _check_version(asset: Any) -> None:
+    """Refuse what needs a later version than 2.0; what is only written by one is compatible."""
+    least = asset.get("minVersion", "2.0") if isinstance(asset, dict) else "2.0"
+    if least != "2.0":
+        raise LoadError(f"it requires version {printable(least, 20)} of glTF, and 2.0 is read")
+
+
 def _placed(file: GlbFile) -> tuple[list[_Placement], dict[int, NDArray[np.float64]]]:
     """Return the nodes of the scene that have a mesh, and the matrices of all its nodes."""
     nodes = list_of(file.content, "nodes")
@@ -277,7 +286,12 @@ def _placement(
 def _matrix(node: dict[str, Any]) -> NDArray[np.float64]:
     if "matrix" in node:
         return numbers_of(node, "matrix", 16, ()).reshape(4, 4).T
-    x, y, z, w = numbers_of(node, "rotation", 4, (0.0, 0.0, 0.0, 1.0)).tolist()
+    quaternion = numbers_of(node, "rotation", 4, (0.0, 0.0, 0.0, 1.0))
+    length = float(np.linalg.norm(quaternion))
+    if length == 0.0:
+        raise LoadError("the rotation of a node is four zeros")
+    # Programs round it: without this, a node would be scaled, too.
+    x, y, z, w = (quaternion / length).tolist()
     turn = np.array(
         [
             [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],

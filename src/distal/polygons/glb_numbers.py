@@ -118,9 +118,14 @@ def _rows(
     data = _buffer(file, view.get("buffer"))
     size = dtype.itemsize * width
     stride = whole(view, "byteStride", size)
-    begin = whole(view, "byteOffset", 0) + whole(item, "byteOffset", 0)
-    if stride < size or (count and begin + (count - 1) * stride + size > len(data)):
+    first = whole(view, "byteOffset", 0)
+    begin = first + whole(item, "byteOffset", 0)
+    end = min(len(data), first + whole(view, "byteLength", len(data)))
+    last = begin + (count - 1) * stride + size if count else begin
+    if stride < size or last > len(data):
         raise LoadError(f"it is truncated: {where} goes beyond the numbers")
+    if last > end:
+        raise LoadError(f"{where} goes beyond its part of the buffer")
     if count == 0:
         return np.zeros((0, width), dtype)
     return np.ndarray((count, width), dtype, data, begin, (stride, dtype.itemsize))
