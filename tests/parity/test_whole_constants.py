@@ -106,6 +106,12 @@ def test_constants_that_wrap(text: str, value: int) -> None:
     assert scope["f"]() == value
 
 
+@pytest.mark.parametrize("text", ["65536 * 65536 == 0", "1 << 31 < 0", "2147483647 + 1 < 3"])
+def test_constants_are_compared_as_ints(text: str) -> None:
+    scope = scope_of(f"{HEADER}@func\ndef f() -> bool:\n    return {text}\n", "compared")
+    assert scope["f"]()
+
+
 @pytest.mark.parametrize("text", ["2147483648", "-2147483649", "7 // (65536 * 65536)", "1 << 32"])
 def test_what_is_written_must_fit(text: str) -> None:
     scope = scope_of(f"{HEADER}@func\ndef f() -> int:\n    return {text}\n", "fitting")

@@ -302,7 +302,8 @@ def compare(body: FunctionBody, op: ast.cmpop, lhs: Value, rhs: Value, node: ast
         raise _no_comparison(body, op, node)
     if isinstance(lhs, Whole) and isinstance(rhs, Whole):
         meaning: Any = getattr(operator, found.name.lower())
-        return Const(bool(meaning(lhs.value, rhs.value)), BOOL)
+        held = (wrap(v.value, Kind.INT) if v.computed else v.value for v in (lhs, rhs))
+        return Const(bool(meaning(*held)), BOOL)
     left, right = unify_operands(body, lhs, rhs, node, found.value)
     kind = kind_of(left.type)
     is_order = found not in (CompareOp.EQ, CompareOp.NE)
