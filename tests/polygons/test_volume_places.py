@@ -237,3 +237,20 @@ def test_a_mask_is_inside_where_it_is_true(tmp_path):
         assert shape(beside) == pytest.approx(0.0, abs=1e-6)
         with pytest.raises(SceneValueError, match=r"no level: .* mask\.astype\(float\)"):
             Shape.from_volume(source, level=0.5)
+
+
+@pytest.mark.parametrize(
+    ("ends", "centers"), [((0.5, 0.75, 1.0), "cell cell cell"), ((0.0, 0.0, 0.0), "node node node")]
+)
+def test_nrrd_has_spacings_by_the_ends_of_its_axes(tmp_path, ends, centers):
+    high = [(n - 1) * step + end for n, step, end in zip(COUNTS, STEPS, ends, strict=True)]
+    head = (
+        "NRRD0004\ntype: float\ndimension: 3\nsizes: 5 6 7\nendian: little\nencoding: raw\n"
+        f"axis mins: {' '.join(str(-end) for end in ends)}\naxis maxs: {' '.join(map(str, high))}\n"
+    )
+    file = tmp_path / "a.nrrd"
+    file.write_bytes(f"{head}centers: {centers}\n\n".encode() + VALUES.astype("<f4").tobytes())
+    assert read_volume(file).spacing == pytest.approx(tuple(STEPS))
+    file.write_bytes(f"{head}\n".encode() + VALUES.astype("<f4").tobytes())
+    with pytest.raises(LoadError, match="whether samples are at the ends"):
+        read_volume(file)

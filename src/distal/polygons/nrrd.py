@@ -136,7 +136,7 @@ def _placed(fields: Mapping[str, str], values: Any) -> VolumeSamples:
     directions = fields.get("space directions")
     if directions is None:
         units = _units(fields.get("units", ""))
-        spacing = _numbers(fields.get("spacings", ""))
+        spacing = _spacings(fields)
         if len(spacing) == 3:
             spacing = [u * s for u, s in zip(units, spacing, strict=True)]
         return VolumeSamples(checked_samples(values), positive(spacing))
@@ -152,6 +152,24 @@ def _placed(fields: Mapping[str, str], values: Any) -> VolumeSamples:
         raise LoadError(f"its space directions are {len(steps)} vectors, not 3")
     origin = _VECTOR.findall(fields.get("space origin", ""))
     return placed(values, steps, _scaled(origin[0], scale) if origin else None)
+
+
+def _spacings(fields: Mapping[str, str]) -> list[float]:
+    """Return the distances of samples: as they are written, or from the ends of the axes."""
+    low, high = (_numbers(fields.get(f"axis {end}", "")) for end in ("mins", "maxs"))
+    counts = _numbers(fields.get("sizes", ""))
+    if "spacings" in fields or not len(low) == len(high) == len(counts):
+        return _numbers(fields.get("spacings", ""))
+    centers = fields.get("centers", fields.get("centerings", "")).split()
+    if len(centers) != len(low) or not {"cell", "node"}.issuperset(centers):
+        raise LoadError(
+            "it has 'axis mins' and 'axis maxs', and nothing says whether samples are at the ends: "
+            "save it with 'spacings', or with 'centers'"
+        )
+    return [
+        (b - a) / max(count - (center == "node"), 1)
+        for a, b, count, center in zip(low, high, counts, centers, strict=True)
+    ]
 
 
 def _scaled(text: str, scale: list[float]) -> list[float]:
