@@ -25,8 +25,10 @@ AMOUNT = slider("Amount", 0.5, 0.0, 1.0)
 COUNT = integer("Count", 2, 1, 9)
 LIT = toggle("Lit", True)
 KIND = choice("Kind", ["plain", "odd"])
+# Options whose names contain what separates values.
+RATIO = choice("Ratio", ["16:9", "4,3", " wide ", "2", "4"])
 TINT = color("Tint", "#ff0000")
-ALL = [AMOUNT, COUNT, LIT, KIND, TINT]
+ALL = [AMOUNT, COUNT, LIT, KIND, TINT, RATIO]
 
 
 @image
@@ -49,6 +51,11 @@ def flat(frame: Frame) -> vec3:
         ("kind", "odd,plain", (1, 0)),
         ("tint", "#000000;1,1,1", ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))),
         ("time", "0:1:2", (0.0, 1.0)),
+        ("ratio", "16:9", (0,)),
+        ("ratio", "16:9,4,3, wide ,2", (0, 1, 2, 3)),
+        ("ratio", "4,3", (1,)),
+        ("ratio", "4,3,4", (1, 4)),
+        ("ratio", "1, 2", (1, 3)),
     ],
 )
 def test_values(name, given, values):
@@ -62,6 +69,10 @@ def test_values(name, given, values):
         ("amount", "0:1:x", "'Amount' takes FIRST:LAST:COUNT, not '0:1:x'"),
         ("amount", "0:1:0", "'Amount' takes FIRST:LAST:COUNT, not '0:1:0'"),
         ("amount", "0:2:3", "'Amount' lies between 0 and 1, not 2"),
+        ("amount", "0:inf:3", "'Amount' takes FIRST:LAST:COUNT, not '0:inf:3'"),
+        ("amount", "nan:1:2", "'Amount' takes FIRST:LAST:COUNT, not 'nan:1:2'"),
+        ("lit", "0:1:2", "'Lit' takes true or false, not '0:1:2'"),
+        ("kind", "0:1:2", "'Kind' takes one of plain, odd, not '0:1:2'"),
         ("amount", "0:1:200000", "'Amount' takes at most 100000 values, not 200000"),
         ("amount", ",", "'Amount' has no values"),
         ("time", ",", "'time' has no values"),
