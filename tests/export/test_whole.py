@@ -18,6 +18,7 @@ from PIL import Image
 
 import distal
 from distal.backends import TEXT_TARGETS
+from distal.frontend import lower
 from distal.ir.types import TextureShape
 from tests import egl, gpu
 from tests.export import consumer
@@ -272,6 +273,22 @@ def test_what_a_text_cannot_hold_is_refused_with_its_line(
         assert found.message == message.format(host=TEXT_TARGETS[target].host)
         assert found.hint == hint
     assert list(tmp_path.iterdir()) == [file]
+
+
+def test_a_number_of_two_scenes_is_refused_with_the_line_of_each(tmp_path):
+    kept = []  # so that equal expressions of both scenes are one object
+    for lines in range(3):
+        file = tmp_path / f"scene{lines}.py"
+        file.write_text(
+            "#\n" * lines + f"{HEAD}big = 1e30{PICTURE}{VALUE.format('big * big')}",
+            encoding="utf-8",
+        )
+        kept.append(distal.load(file))
+        kept.append(lower(kept[-1]))
+        with pytest.raises(distal.CompileError) as refused:
+            distal.compile(kept[-2], "wgsl")
+        (found,) = refused.value.diagnostics
+        assert (Path(found.span.file).name, found.span.line) == (file.name, 7 + lines)
 
 
 def test_what_the_library_needs_is_refused_with_the_authors_line(tmp_path):
