@@ -12,7 +12,7 @@ from PIL import Image
 from typer.testing import CliRunner
 
 import distal
-from distal import Scene, Sphere
+from distal import Box, Scene, Sphere
 from distal.cli.application import application
 from distal.devices.base import Cancelled
 from distal.file_writer import SaveError
@@ -196,7 +196,9 @@ def test_measures_need_a_solid(tmp_path):
         ({"amount": "0:1:4"}, "a.jpg", {}, SaveError,
          "a sweep is a .png, a .csv or a folder, not a.jpg"),
         ({"amount": "0:1:4"}, "a.png", {"params": {"amount": 1.0}}, ValueError,
-         "'amount' has values of the sweep, and another one"),
+         "'Amount' has values of the sweep, and another one"),
+        ({"amount": "0:1:4"}, "a.png", {"params": {"Amount": 1.0}}, ValueError,
+         "'Amount' has values of the sweep, and another one"),
     ],
 )  # fmt: skip
 def test_refused(values, path, options, error, words, tmp_path, monkeypatch):
@@ -205,6 +207,21 @@ def test_refused(values, path, options, error, words, tmp_path, monkeypatch):
         distal.sweep(flat, values, path, **options)
     assert str(caught.value).startswith(words)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_other_parameters_have_values_by_name_or_label(tmp_path):
+    size, wide = slider("Size", 0.5, 0.2, 1.0), slider("Wide base", 0.5, 0.2, 1.0)
+    tall = Box((size, 1.0, wide))
+    depths = []
+    for number, params in enumerate(({}, {"wide_base": 0.75}, {"Wide base": np.float32(0.75)})):
+        path = tmp_path / f"{number}.csv"
+        (row,) = distal.sweep(tall, {"Size": [0.25]}, path, params=params).rows
+        depths.append(round(row.measured["depth"], 6))
+        sheet = distal.sweep(
+            tall, {"Size": [0.25]}, path.with_suffix(".png"), params=params, size=(8, 6), fresh=True
+        )
+        assert sheet.pictures == 1
+    assert depths == [0.5, 0.75, 0.75]
 
 
 def test_on_a_cluster(tmp_path, monkeypatch):
