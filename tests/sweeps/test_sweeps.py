@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -207,6 +208,17 @@ def test_refused(values, path, options, error, words, tmp_path, monkeypatch):
         distal.sweep(flat, values, path, **options)
     assert str(caught.value).startswith(words)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_remark_says_what_the_meshes_miss(tmp_path, monkeypatch):
+    """The warnings of ``measure``: the errors of such a row are large, and here is why."""
+    ball = Sphere(1.0)
+    missed = replace(ball.measure(), warnings=("a part is missing", "another one, too"))
+    monkeypatch.setattr(measuring, "measures_of", lambda *given: missed)
+    made = distal.sweep(ball, {"time": [0.0]}, tmp_path / "t.csv")
+    assert made.rows[0].measured["remark"] == "a part is missing; another one, too"
+    again = distal.sweep(ball, {"time": [0.0]}, tmp_path / "t.csv")
+    assert again.measured == 0 and again.rows == made.rows
 
 
 def test_other_parameters_have_values_by_name_or_label(tmp_path):
