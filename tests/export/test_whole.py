@@ -18,6 +18,7 @@ from PIL import Image
 
 import distal
 from distal.backends import TEXT_TARGETS
+from distal.frontend import lower
 from distal.ir.types import TextureShape
 from tests import egl, gpu
 from tests.export import consumer
@@ -272,6 +273,41 @@ def test_what_a_text_cannot_hold_is_refused_with_its_line(
         assert found.message == message.format(host=TEXT_TARGETS[target].host)
         assert found.hint == hint
     assert list(tmp_path.iterdir()) == [file]
+
+
+@pytest.mark.parametrize(
+    ("given", "name"),
+    [
+        ("camera=Camera(target=(0, 0, 1e-40))", "Camera_target"),
+        ("lights=[PointLight(position=(1e-40, 3, 3))]", "PointLight_position"),
+        ("background=(1e-40, 0, 0)", "Background_color"),
+        ("exposure=1e-40", "Exposure"),
+    ],
+)
+def test_a_number_of_a_scene_is_refused_with_the_line_of_the_scene(tmp_path, given, name):
+    file = tmp_path / "scene.py"
+    file.write_text(f"from distal import *\n\nscene = Scene(Sphere(1), {given})\n", "utf-8")
+    with pytest.raises(distal.CompileError) as refused:
+        distal.compile(distal.load(file), "wgsl")
+    (found,) = refused.value.diagnostics
+    assert found.message.startswith(f"GPUs read 1e-40 ('{name}') as 0: ")
+    assert (Path(found.span.file).name, found.span.line) == ("scene.py", 3)
+
+
+def test_a_number_of_two_scenes_is_refused_with_the_line_of_each(tmp_path):
+    kept = []  # so that equal expressions of both scenes are one object
+    for lines in range(3):
+        file = tmp_path / f"scene{lines}.py"
+        file.write_text(
+            "#\n" * lines + f"{HEAD}big = 1e30{PICTURE}{VALUE.format('big * big')}",
+            encoding="utf-8",
+        )
+        kept.append(distal.load(file))
+        kept.append(lower(kept[-1]))
+        with pytest.raises(distal.CompileError) as refused:
+            distal.compile(kept[-2], "wgsl")
+        (found,) = refused.value.diagnostics
+        assert (Path(found.span.file).name, found.span.line) == (file.name, 7 + lines)
 
 
 def test_what_the_library_needs_is_refused_with_the_authors_line(tmp_path):

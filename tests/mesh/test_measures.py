@@ -61,6 +61,26 @@ def test_a_disc_that_no_mesh_shows_is_refused_with_its_thickness():
         Box((1.0, 1.0, 1e-5)).measure()
 
 
+@pytest.mark.parametrize("apart", [10.0, 500.0, 5000.0])
+def test_two_small_balls_far_apart_have_an_inside(apart):
+    ball = Sphere(0.01)
+    found = (ball | ball.translate(apart, 0, 0)).measure()
+    assert abs(found.volume.value - 2.0 * BALL * 1e-6) <= found.volume.error < BALL * 1e-6
+
+
+@pytest.mark.parametrize(
+    ("solid", "words"),
+    [
+        (Sphere(0.01) | Sphere(0.01).translate(3e4, 0, 0), "nothing of 'union' is as thick as"),
+        (Sphere(1.0) - Sphere(1.0), "'difference' has no inside"),
+        (Sphere(1.0) - Sphere(2.0), "'difference' has no inside"),
+    ],
+)
+def test_no_mesh_has_its_true_reason(solid, words):
+    with pytest.raises(SceneValueError, match=words):
+        solid.measure()
+
+
 def test_what_meshes_miss_is_held_by_the_error_and_said(monkeypatch):
     # So few bricks that no mesh shows the balls.
     monkeypatch.setattr(rungs, "_BRICKS", 1)

@@ -511,6 +511,7 @@ OWN = {
     "cluster/local.py": "messages of its own workers",
     "compiler/kept_texts.py": "the cache",
     "devices/": "the cache, buffers of devices, the system",
+    "editor/answers.py": "writes",
     "editor/links.py": "share links: a million characters at most, each error is LinkError",
     "editor/local/": "the files that the author edits, and what the app sends",
     "editor/messages/": "messages of the app",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from PIL import Image
 from typer.testing import CliRunner
 
 import distal
-from distal import Scene, Sphere
+from distal import Box, Scene, Sphere
 from distal.cli.application import application
 from distal.devices.base import Cancelled
 from distal.file_writer import SaveError
@@ -25,8 +26,10 @@ AMOUNT = slider("Amount", 0.5, 0.0, 1.0)
 COUNT = integer("Count", 2, 1, 9)
 LIT = toggle("Lit", True)
 KIND = choice("Kind", ["plain", "odd"])
+# Options whose names contain what separates values.
+RATIO = choice("Ratio", ["16:9", "4,3", " wide ", "2", "4"])
 TINT = color("Tint", "#ff0000")
-ALL = [AMOUNT, COUNT, LIT, KIND, TINT]
+ALL = [AMOUNT, COUNT, LIT, KIND, TINT, RATIO]
 
 
 @image
@@ -49,6 +52,11 @@ def flat(frame: Frame) -> vec3:
         ("kind", "odd,plain", (1, 0)),
         ("tint", "#000000;1,1,1", ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))),
         ("time", "0:1:2", (0.0, 1.0)),
+        ("ratio", "16:9", (0,)),
+        ("ratio", "16:9,4,3, wide ,2", (0, 1, 2, 3)),
+        ("ratio", "4,3", (1,)),
+        ("ratio", "4,3,4", (1, 4)),
+        ("ratio", "1, 2", (1, 3)),
     ],
 )
 def test_values(name, given, values):
@@ -62,6 +70,10 @@ def test_values(name, given, values):
         ("amount", "0:1:x", "'Amount' takes FIRST:LAST:COUNT, not '0:1:x'"),
         ("amount", "0:1:0", "'Amount' takes FIRST:LAST:COUNT, not '0:1:0'"),
         ("amount", "0:2:3", "'Amount' lies between 0 and 1, not 2"),
+        ("amount", "0:inf:3", "'Amount' takes FIRST:LAST:COUNT, not '0:inf:3'"),
+        ("amount", "nan:1:2", "'Amount' takes FIRST:LAST:COUNT, not 'nan:1:2'"),
+        ("lit", "0:1:2", "'Lit' takes true or false, not '0:1:2'"),
+        ("kind", "0:1:2", "'Kind' takes one of plain, odd, not '0:1:2'"),
         ("amount", "0:1:200000", "'Amount' takes at most 100000 values, not 200000"),
         ("amount", ",", "'Amount' has no values"),
         ("time", ",", "'time' has no values"),
@@ -185,7 +197,9 @@ def test_measures_need_a_solid(tmp_path):
         ({"amount": "0:1:4"}, "a.jpg", {}, SaveError,
          "a sweep is a .png, a .csv or a folder, not a.jpg"),
         ({"amount": "0:1:4"}, "a.png", {"params": {"amount": 1.0}}, ValueError,
-         "'amount' has values of the sweep, and another one"),
+         "'Amount' has values of the sweep, and another one"),
+        ({"amount": "0:1:4"}, "a.png", {"params": {"Amount": 1.0}}, ValueError,
+         "'Amount' has values of the sweep, and another one"),
     ],
 )  # fmt: skip
 def test_refused(values, path, options, error, words, tmp_path, monkeypatch):
@@ -194,6 +208,32 @@ def test_refused(values, path, options, error, words, tmp_path, monkeypatch):
         distal.sweep(flat, values, path, **options)
     assert str(caught.value).startswith(words)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_remark_says_what_the_meshes_miss(tmp_path, monkeypatch):
+    """The warnings of ``measure``: the errors of such a row are large, and here is why."""
+    ball = Sphere(1.0)
+    missed = replace(ball.measure(), warnings=("a part is missing", "another one, too"))
+    monkeypatch.setattr(measuring, "measures_of", lambda *given: missed)
+    made = distal.sweep(ball, {"time": [0.0]}, tmp_path / "t.csv")
+    assert made.rows[0].measured["remark"] == "a part is missing; another one, too"
+    again = distal.sweep(ball, {"time": [0.0]}, tmp_path / "t.csv")
+    assert again.measured == 0 and again.rows == made.rows
+
+
+def test_other_parameters_have_values_by_name_or_label(tmp_path):
+    size, wide = slider("Size", 0.5, 0.2, 1.0), slider("Wide base", 0.5, 0.2, 1.0)
+    tall = Box((size, 1.0, wide))
+    depths = []
+    for number, params in enumerate(({}, {"wide_base": 0.75}, {"Wide base": np.float32(0.75)})):
+        path = tmp_path / f"{number}.csv"
+        (row,) = distal.sweep(tall, {"Size": [0.25]}, path, params=params).rows
+        depths.append(round(row.measured["depth"], 6))
+        sheet = distal.sweep(
+            tall, {"Size": [0.25]}, path.with_suffix(".png"), params=params, size=(8, 6), fresh=True
+        )
+        assert sheet.pictures == 1
+    assert depths == [0.5, 0.75, 0.75]
 
 
 def test_on_a_cluster(tmp_path, monkeypatch):

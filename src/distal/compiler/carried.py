@@ -26,6 +26,7 @@ from distal.ir.nodes import (
     Splat,
     Unary,
     UnaryOp,
+    span_in,
 )
 from distal.ir.types import Buffer, Kind, Texture, TextureShape, kind_of
 from distal.ir.walk import children, expressions, nodes_in, statements_in
@@ -119,7 +120,8 @@ def _check_number(e: Expr, stmt_span: Span | None) -> None:
     value = _value(e)
     if value is None:
         return
-    span = next((s for s in (e.span, stmt_span) if is_author_place(s)), None)
+    # Of the expression within its statement: alone it may have the place of another scene's.
+    span = next((s for s in (span_in(stmt_span, e), e.span) if is_author_place(s)), None)
     if span is None:
         return
     if isinstance(e, Const) and 0.0 < abs(value) < SMALLEST:

@@ -149,7 +149,10 @@ def climbed(
             _take(found, rungs, extent)
         if spacing <= smallest * _SAME and _enough(found, volume_tolerance):
             break
-        if isinstance(made, Nothing) and not len(found.lost) and spacing <= smallest * _SAME:
+        # A surface of which the cells are too coarse to say whether it has an inside is looked at
+        # again; so are both sides of a sheet, until that is too much work.
+        is_open = len(found.lost) or (len(made.lost) and sampled * _ORDER <= most)
+        if isinstance(made, Nothing) and not is_open and spacing <= smallest * _SAME:
             break
         cells *= _FINER
     error = None if found.estimate is None else found.estimate.volume

@@ -84,11 +84,14 @@ def place_of_resource(module: Module, resource: str) -> Span | None:
 def place_of_uniform(module: Module, uniform: str) -> Span | None:
     """Return the place where the author's code gives or reads a number.
 
+    Of a number of a camera or a light it is the place of the scene, whose functions read it.
+
     Args:
         module: The module.
         uniform: The uniform's name.
     """
     files = _files_of(module)
+    readers = []
     for function in module.functions:
         for stmt in statements_in(function.body):
             for e in nodes_in(*expressions(stmt)):
@@ -96,7 +99,8 @@ def place_of_uniform(module: Module, uniform: str) -> Span | None:
                     continue
                 if (place := _first((e.span, stmt.span), files)) is not None:
                     return place
-    return None
+                readers.append(function.name)
+    return _first((author_place(module, name) for name in dict.fromkeys(readers)), files)
 
 
 def _first(spans: Iterable[Span | None], files: Collection[str]) -> Span | None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import isfinite
 from typing import Any, Final
 
 from distal.lang.parameters import Parameter
@@ -58,9 +59,9 @@ def axis_of(name: str, given: Any, parameters: Sequence[Parameter]) -> Axis:
         ValueError: There is no such parameter, or a value is out of its range.
     """
     column = column_of(name, parameters)
-    spread: Sequence[Any] | None = None if column.parts else _spread(column.label, given)
+    spread: Sequence[Any] | None = _spread(column.label, given) if column.is_number else None
     if spread is None:
-        spread = _listed(given, ";" if column.parts else ",")
+        spread = _listed(column, given)
     elif column.is_integer:
         spread = list(dict.fromkeys(map(round, spread)))
     if not spread:
@@ -76,7 +77,7 @@ def _spread(label: str, given: Any) -> list[float] | None:
     try:
         first, last = float(parts[0]), float(parts[1])
         count = int(parts[2]) if len(parts) == 3 else round(abs(last - first)) + 1
-        if len(parts) > 3 or count < 1:
+        if len(parts) > 3 or count < 1 or not (isfinite(first) and isfinite(last)):
             raise ValueError
     except (ValueError, OverflowError):
         raise ValueError(f"'{label}' takes FIRST:LAST:COUNT, not '{given:.60}'") from None
@@ -89,12 +90,28 @@ def _spread(label: str, given: Any) -> list[float] | None:
     return [float(begin + (end - begin) * i / (count - 1)) for i in range(count)]
 
 
-def _listed(given: Any, separator: str) -> list[Any]:
+def _listed(column: InputColumn, given: Any) -> list[Any]:
     if isinstance(given, str):
-        return [part.strip() for part in given.split(separator) if part.strip()]
+        return _parts_of(given, ";" if column.parts else ",", column.options)
     if isinstance(given, Sequence) or hasattr(given, "__array__"):
         return list(given)
     return [given]
+
+
+def _parts_of(text: str, separator: str, options: Sequence[str]) -> list[str]:
+    """Return what stands between separators; an option that contains separators is one part."""
+    pieces = text.split(separator)
+    longest = max((option.count(separator) for option in options), default=0) + 1
+    found, begin = [], 0
+    while begin < len(pieces):
+        for end in range(min(begin + longest, len(pieces)), begin, -1):
+            whole = separator.join(pieces[begin:end])
+            part = whole if whole in options else whole.strip()
+            if part in options or end == begin + 1:
+                break
+        found.append(part)
+        begin = end
+    return [part for part in found if part]
 
 
 def chosen_axes(values: Mapping[str, Any], parameters: Sequence[Parameter]) -> list[Axis]:

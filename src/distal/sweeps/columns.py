@@ -42,6 +42,17 @@ class InputColumn:
         return self.parameter is not None and self.parameter.kind is ParameterKind.INTEGER
 
     @property
+    def is_number(self) -> bool:
+        """Whether its values are numbers, which FIRST:LAST:COUNT has."""
+        numbers = (ParameterKind.SLIDER, ParameterKind.INTEGER)
+        return self.parameter is None or self.parameter.kind in numbers
+
+    @property
+    def options(self) -> tuple[str, ...]:
+        """The names of its options; none of other kinds."""
+        return () if self.parameter is None else self.parameter.options
+
+    @property
     def parts(self) -> str:
         """The letters of its coordinates; "" if a value is one number or name."""
         if self.parameter is None or not isinstance(self.parameter.default, tuple):

@@ -75,7 +75,7 @@ class SolidMeasures:
         """Return the measures, in scene units, by name; None for what there is not.
 
         A solid that has no mesh with these values, for example because nothing is left of it, has a
-        remark.
+        remark; so has one of which the meshes miss parts.
 
         Args:
             params: Values of parameters by name.

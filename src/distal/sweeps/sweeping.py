@@ -25,6 +25,7 @@ from distal.file_writer import SaveError, check_destination, replacement
 from distal.forking import new_lock
 from distal.images.picture import Picture
 from distal.images.png import encode_levels
+from distal.lang.chosen_values import checked_values
 from distal.lang.lazy_module import LazyModule
 from distal.lang.presentable import Presentable
 from distal.lang.render_options import Cancel, RenderOptions
@@ -160,9 +161,12 @@ def sweep(
     )
     shown = viewable(obj, options.params, options.time)
     inputs = inputs_of(values, shown.parameters)
+    # By the names of the parameters, also if a label was given: measuring reads names.
+    options = replace(options, params=checked_values(shown.parameters, options.params))
     both = {column.name for column in inputs.columns} & set(options.params)
     if both:
-        raise ValueError(f"'{min(both)}' has values of the sweep, and another one")
+        label = next(column.label for column in inputs.columns if column.name in both)
+        raise ValueError(f"'{label}' has values of the sweep, and another one")
     output = Path(path)
     kind = output.suffix.lower()
     solid = _measures(shown, cluster) if measure or kind == ".csv" else None

@@ -46,7 +46,7 @@ _called: dict[Func, Sequence[tuple[str, Type]]] = {}
 
 
 def figures(measures: Measures) -> dict[str, Any]:
-    """Return the numbers of measures that a table has."""
+    """Return what a table has of measures: numbers, and the warnings as a remark."""
     corners = zip(measures.low.value, measures.high.value, strict=True)
     width, height, depth = (high - low for low, high in corners)
     return {
@@ -58,6 +58,7 @@ def figures(measures: Measures) -> dict[str, Any]:
         "height": height,
         "depth": depth,
         "wall": None if measures.wall is None else measures.wall.value,
+        "remark": "; ".join(measures.warnings) or None,
     }
 
 
