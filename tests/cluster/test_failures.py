@@ -151,4 +151,5 @@ def test_a_sheet_of_a_sweep_without_one(wild, tmp_path):
         distal.sweep(stuck, {"Amount": "0,50,5"}, tmp_path / "s.png", size=SIZE, cluster=wild)
     assert np.asarray(Image.open(tmp_path / "s.png")).shape[1] > 3 * SIZE[0]
     rows = (tmp_path / "s.csv").read_text().splitlines()
-    assert rows[2] == "50,,,," and len(rows) == 4
+    # The picture that failed has no row: the next run makes it.
+    assert [row.split(",")[0] for row in rows] == ["number", "1", "3"]

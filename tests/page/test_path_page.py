@@ -171,15 +171,18 @@ def test_samples_begin_anew_when_something_moves(glass: tuple[Viewable, Path]) -
         looked.page.evaluate(
             """() => {
               const player = document.querySelector("[data-distal]").distal;
+              window.since_moved = [];
+              player.on("frame", (frame) => window.since_moved.push(frame));
               player.setSteering({ yaw: 0.6 });
               player.setParameter("size", 0.3);
             }"""
         )
         count, shown = film_of(looked, 32)
-        frames = looked.page.evaluate("window.frames_seen")
+        rates = looked.page.evaluate("window.since_moved.map((f) => f.rate ?? null)")
+        samples = looked.page.evaluate("window.since_moved.map((f) => f.samples ?? null)")
         # Direct light while it moves, then a new film.
-        assert frames[0].get("rate") is None
-        counts = [frame["samples"] for frame in frames if frame.get("rate") is not None]
+        begin = rates.index(None)
+        counts = [n for n, rate in zip(samples[begin:], rates[begin:], strict=True) if rate]
         assert counts[0] < 32 and counts == sorted(counts)
         steering = Steering(0.6, 0.0, 1.0, (0.0, 0.0))
         assert_same_light(seen, count, shown, steering=steering, params={"size": 0.3})

@@ -122,11 +122,11 @@ def test_what_cannot_be_in_a_table_stays_beside_it_in_order():
 
 
 def test_of_many_kinds_the_most_frequent_are_in_the_table():
-    # A chain of n rotations is a kind of its own.
+    # A chain of rotations and scales is a kind of its own.
     def turned(n):
         shape = Box(0.1, 0.1, 0.1)
-        for _ in range(n):
-            shape = shape.rotate(x=0.1)
+        for bit in f"{n:07b}":
+            shape = shape.rotate(x=0.1) if bit == "1" else shape.scale(0.9)
         return shape
 
     found = rolled(row()[0].union([*row()[1:], *(turned(n) for n in range(70))]).node)

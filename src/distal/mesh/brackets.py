@@ -18,6 +18,7 @@ from distal.lang.runtime_access import executor
 from distal.mesh.certain_boxes import Divided, Effort, IntervalJudge, Judge, SlopeJudge, divided
 from distal.mesh.extract import Extent
 from distal.mesh.kernels import FieldKernels
+from distal.mesh.requests import DISTANCE
 from distal.mesh.solid import Floats
 from distal.scene.lowering.derived import DistanceOf
 from distal.tape.tape import TapeError
@@ -129,7 +130,8 @@ def brackets_of(
 def _judge(kernels: FieldKernels, extent: Extent) -> tuple[Judge, float | None, str]:
     """Return a judge, and the slope that it assumes with the reason, if it assumes one."""
     try:
-        tape = executor().box_tape(DistanceOf(kernels.node), kernels.params, kernels.time)
+        distance = kernels.node.derived(DISTANCE, lambda: DistanceOf(kernels.node))
+        tape = executor().box_tape(distance, kernels.params, kernels.time)
     except TapeError as error:
         slope = extent.slopes.slope
         return SlopeJudge(kernels, slope), slope, str(error)

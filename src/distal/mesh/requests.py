@@ -20,6 +20,7 @@ from distal.scene.tree.node import Node
 
 # The name under which a tree keeps the function of its bounds.
 BOUNDS: Final = "bounds"
+DISTANCE: Final = "distance"
 
 
 class Watched(Protocol):

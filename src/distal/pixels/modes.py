@@ -1,7 +1,7 @@
 """Pictures of Pillow: one rule for each of its modes, and the orientation of photos.
 
-Input: a picture, opened or in memory. Output: float32 (height, width, 4), turned as its camera was
-held. What a file's levels mean is told by ``MODE_RULES``; the reference page prints them.
+Input: a picture, opened or in memory. Output: float32 (height, width, 4), turned upright by its
+orientation. What a file's levels mean is told by ``MODE_RULES``; the reference page prints them.
 """
 
 from __future__ import annotations

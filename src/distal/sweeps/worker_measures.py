@@ -27,9 +27,9 @@ from distal.mesh.measuring import Measures, measures_of
 from distal.mesh.meshing import MeshRequest
 from distal.mesh.parallel import by_one_thread
 from distal.mesh.parts import PARTS, PlacedPart
-from distal.mesh.requests import BOUNDS
+from distal.mesh.requests import BOUNDS, DISTANCE
 from distal.runtime.received import Received
-from distal.scene.lowering.derived import BoundsOf
+from distal.scene.lowering.derived import BoundsOf, DistanceOf
 from distal.scene.tree.errors import SceneValueError
 from distal.scene.tree.node import Node
 
@@ -73,6 +73,7 @@ class SolidOnWorkers:
     def __init__(self, node: Node, pool: WorkerPool) -> None:
         self._node, self._pool = node, pool
         self._bounds = sent(node.derived(BOUNDS, lambda: BoundsOf(node)))
+        self._distance = sent(node.derived(DISTANCE, lambda: DistanceOf(node)))
         self._functions: dict[Func, Sent] = {}
         self._lock = new_lock()
         self._is_known = False
@@ -120,7 +121,7 @@ class SolidOnWorkers:
 
     def _submitted(self, params: Mapping[str, Any], time: float) -> Any:
         pool, functions = self._pool, dict(self._functions)
-        programs = [self._bounds, *functions.values()]
+        programs = [self._bounds, self._distance, *functions.values()]
         data: dict[str, Any] = {}
         for program in programs:
             data |= pool.data_of(program)
@@ -202,11 +203,14 @@ class _ReceivedSolid:
 
     flat, place, children, label = False, None, (), ""
 
-    def __init__(self, name: str, bounds: Received, functions: _Functions) -> None:
+    def __init__(
+        self, name: str, bounds: Received, distance: Received, functions: _Functions
+    ) -> None:
         self.name = name
         self.rule = self
         self._derived = {
             BOUNDS: bounds,
+            DISTANCE: distance,
             FIELD_FUNCTIONS: functions,
             PARTS: _UnknownParts(self),
         }
@@ -225,7 +229,7 @@ def measured(programs: Sequence[Plain], data: Mapping[str, Any], call: Plain) ->
     """Measure a solid: what a worker does.
 
     Args:
-        programs: The program of its bounds, and those of its field.
+        programs: The programs of its bounds and of its distance, and those of its field.
         data: Their data by name.
         call: ``digests``, the hashes of the programs; ``functions``, the names of those of the
             field; the solid's ``name``; ``params`` and ``time``; what ``tasks.run`` reads.
@@ -237,9 +241,11 @@ def measured(programs: Sequence[Plain], data: Mapping[str, Any], call: Plain) ->
 
     def body(stop: Callable[[], bool]) -> Plain:
         pairs = zip(call["digests"], programs, strict=True)
-        bounds, *functions = (_received(digest, program, data) for digest, program in pairs)
+        bounds, distance, *functions = (
+            _received(digest, program, data) for digest, program in pairs
+        )
         known = _Functions(zip(call["functions"], functions, strict=True))
-        solid: Any = _ReceivedSolid(call["name"], bounds, known)
+        solid: Any = _ReceivedSolid(call["name"], bounds, distance, known)
         request = MeshRequest(params=call["params"], time=call["time"], cancel=stop, colors=False)
         made: Plain = {"figures": None, "missing": None, "level": chosen_level(None).name}
         try:

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Final, TypeAlias
 
 from distal.diagnostics import Span
+from distal.fields.combine.blends import UNION_BLENDS
 from distal.fields.combine.joins import UNION
 from distal.fields.place import flat as in_plane
 from distal.fields.place import mirrors, solid
@@ -46,7 +47,7 @@ _AXES: Final[tuple[Vector, ...]] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0,
 
 
 @dataclass(frozen=True, slots=True)
-class Placement:
+class FoldedPlacement:
     """A point is mirrored at each plane in turn, then moved back, turned back and scaled back.
 
     Attributes:
@@ -76,27 +77,27 @@ class Placement:
         axes = zip(self.right, self.up, self.back, strict=True)
         return tuple(x * r + y * u + z * b for r, u, b in axes)
 
-    def moved(self, offset: Vector) -> Placement:
+    def moved(self, offset: Vector) -> FoldedPlacement:
         """Return the placement of what is first translated."""
         scaled = tuple(f * c for f, c in zip(self.factors, offset, strict=True))
         away = self.turned(scaled)
         return replace(self, offset=tuple(a + b for a, b in zip(self.offset, away, strict=True)))
 
-    def rotated(self, columns: Sequence[Vector]) -> Placement | None:
+    def rotated(self, columns: Sequence[Vector]) -> FoldedPlacement | None:
         """Return the placement of what is first rotated; None if it is stretched after that."""
         if not self.is_uniform:
             return None
         right, up, back = map(self.turned, columns)
         return replace(self, right=right, up=up, back=back)
 
-    def scaled(self, factors: Vector) -> Placement | None:
+    def scaled(self, factors: Vector) -> FoldedPlacement | None:
         """Return the placement of what is first scaled; None if the product is out of range."""
         made = tuple(f * g for f, g in zip(self.factors, factors, strict=True))
         if not _SMALLEST < min(made) <= max(made) < _LARGEST:
             return None
         return replace(self, factors=made)
 
-    def mirrored(self, normal: Vector, offset: float) -> Placement | None:
+    def mirrored(self, normal: Vector, offset: float) -> FoldedPlacement | None:
         """Return the placement of what is first mirrored; None if it is stretched after that."""
         if not self.is_uniform:
             return None
@@ -160,15 +161,25 @@ def shallow(node: Node) -> Node:
         sys.setrecursionlimit(frames)
     if node.nesting % _STEP < _LOOKS:
         node = _folded(node, {})
-    if node.nesting > MOST_NESTED:
+    deep = _operators(node) if node.nesting > MOST_NESTED else 0
+    if deep > MOST_NESTED:
         refuse(
-            f"this {node.name} is the last of {node.nesting} operators, each on the result of the "
-            f"one before; at most {MOST_NESTED} are possible",
+            f"this {node.name} is the last of {deep} operators, each on the result of the one "
+            f"before; at most {MOST_NESTED} are possible",
             "unite shapes that are placed each by itself; moves, rotations, scales and mirrors by "
             "constant numbers, and unions, are not counted",
             node.place,
         )
     return node
+
+
+def _operators(node: Node) -> int:
+    """Return how many operators are below each other, without unions: chains of them are flat."""
+    count = 0
+    while node.children:
+        count += not (node.rule is UNION or node.rule in UNION_BLENDS)
+        node = max(node.children, key=lambda child: child.nesting)
+    return count
 
 
 def _folded(root: Node, known: dict[int, Node]) -> Node:
@@ -185,7 +196,7 @@ def _folded(root: Node, known: dict[int, Node]) -> Node:
         return found
     spreads = root.parts <= _MOST_MEMBERS
     members: list[Node] = []
-    stack: list[tuple[Node, Placement, Span | None]] = [(root, Placement(), root.place)]
+    stack: list[tuple[Node, FoldedPlacement, Span | None]] = [(root, FoldedPlacement(), root.place)]
     while stack:
         node, placement, place = stack.pop()
         is_bare = node is root or not (node.material or node.cut_material or node.label)
@@ -249,66 +260,66 @@ def _about(axis: Vector, angle: float) -> tuple[Vector, ...]:
     )
 
 
-def _turn(axis: Vector) -> Callable[[Placement, Node], Placement | None]:
+def _turn(axis: Vector) -> Callable[[FoldedPlacement, Node], FoldedPlacement | None]:
     return lambda placed, node: placed.rotated(_about(axis, _number(node, "angle")))
 
 
-def _turn_axis(placed: Placement, node: Node) -> Placement | None:
+def _turn_axis(placed: FoldedPlacement, node: Node) -> FoldedPlacement | None:
     return placed.rotated(_about(_vector(node, "axis"), _number(node, "angle")))
 
 
-def _turn_euler(placed: Placement, node: Node) -> Placement | None:
+def _turn_euler(placed: FoldedPlacement, node: Node) -> FoldedPlacement | None:
     angles = _vector(node, "angles")
-    made: Placement | None = placed
+    made: FoldedPlacement | None = placed
     for axis in (2, 1, 0):  # the rotation about x is applied first
         made = made and made.rotated(_about(_AXES[axis], angles[axis]))
     return made
 
 
-def _turn_quaternion(placed: Placement, node: Node) -> Placement | None:
+def _turn_quaternion(placed: FoldedPlacement, node: Node) -> FoldedPlacement | None:
     x, y, z, w = _vector(node, "quaternion")
     size = math.hypot(x, y, z)
     axis = (x / size, y / size, z / size) if size else _AXES[0]
     return placed.rotated(_about(axis, 2.0 * math.atan2(size, w)))
 
 
-def _turn_matrix(placed: Placement, node: Node) -> Placement | None:
+def _turn_matrix(placed: FoldedPlacement, node: Node) -> FoldedPlacement | None:
     return placed.rotated([_vector(node, name) for name in ("right", "up", "back")])
 
 
-def _scale(placed: Placement, node: Node) -> Placement | None:
+def _scale(placed: FoldedPlacement, node: Node) -> FoldedPlacement | None:
     return placed.scaled((_number(node, "factor"),) * 3)
 
 
-def _stretch(placed: Placement, node: Node) -> Placement | None:
+def _stretch(placed: FoldedPlacement, node: Node) -> FoldedPlacement | None:
     factors = _vector(node, "factors")
     return placed.scaled((*factors[:2], factors[0]) if node.flat else factors)
 
 
-def _mirror(placed: Placement, node: Node) -> Placement | None:
+def _mirror(placed: FoldedPlacement, node: Node) -> FoldedPlacement | None:
     return placed.mirrored(_vector(node, "normal"), _number(node, "offset"))
 
 
-def _mirror_rows(placed: Placement, node: Node) -> Placement | None:
-    made: Placement | None = placed
+def _mirror_rows(placed: FoldedPlacement, node: Node) -> FoldedPlacement | None:
+    made: FoldedPlacement | None = placed
     for x, y, z, offset in node.constants["planes"].data:
         made = made and made.mirrored((x, y, z), offset)
     return made
 
 
-def _symmetry(placed: Placement, node: Node) -> Placement | None:
-    made: Placement | None = placed
+def _symmetry(placed: FoldedPlacement, node: Node) -> FoldedPlacement | None:
+    made: FoldedPlacement | None = placed
     for name, axis in zip("xyz", _AXES, strict=True):
         if node.constants.get(name, False):
             made = made and made.mirrored(axis, 0.0)
     return made
 
 
-def _move(placed: Placement, node: Node) -> Placement:
+def _move(placed: FoldedPlacement, node: Node) -> FoldedPlacement:
     return placed.moved(_vector(node, "offset"))
 
 
-_STEPS: Final[Mapping[Any, Callable[[Placement, Node], Placement | None]]] = {
+_STEPS: Final[Mapping[Any, Callable[[FoldedPlacement, Node], FoldedPlacement | None]]] = {
     solid.TRANSLATE: _move,
     solid.ROTATE: _turn_axis,
     solid.ROTATE_X: _turn(_AXES[0]),
