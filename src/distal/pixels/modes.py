@@ -1,7 +1,7 @@
 """Pictures of Pillow: one rule for each of its modes, and the orientation of photos.
 
 Input: a picture, opened or in memory. Output: float32 (height, width, 4), turned upright by its
-orientation. What a file's levels mean is told by ``MODE_RULES``; the reference page prints them.
+orientation. ``MODE_RULES`` says what the levels of a file mean; the reference page prints them.
 """
 
 from __future__ import annotations
