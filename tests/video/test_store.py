@@ -5,6 +5,7 @@ import stat
 import subprocess
 import sys
 import tempfile
+import threading
 from pathlib import Path
 
 import pytest
@@ -98,6 +99,17 @@ def test_two_processes_do_not_write_one_output(tmp_path):
     finally:
         other.communicate("")
     opened(tmp_path / "out.mp4", {})[0].close()  # the lock went with the process
+
+
+def test_a_lock_that_a_forked_process_holds_until_it_begins_is_waited_for(tmp_path):
+    store = opened(tmp_path / "out.mp4", {})[0]
+    store.path("piece.mp4").write_bytes(b"x")
+    held = os.dup(store._lock.fileno())
+    store.close()
+    timer = threading.Timer(0.1, os.close, (held,))
+    timer.start()
+    opened(tmp_path / "out.mp4", {})[0].close()
+    timer.join()
 
 
 def test_a_folder_that_cannot_be_made(tmp_path):

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -31,6 +32,8 @@ except ImportError:  # Windows: two processes that write the same output are not
 
 MANIFEST: Final = "manifest.json"
 LOCK: Final = "lock"
+# A process that was forked from this one holds its files until its program begins.
+_FREED_S: Final = 0.5
 
 Tell = Callable[[str], Any]
 
@@ -117,16 +120,15 @@ class Store:
         self._lock = None
 
     def _hold(self) -> None:
-        if fcntl is None or self._lock is None:
+        if self._lock is None:
             return
-        try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            self._lock.close()
-            self._lock = None
-            raise SaveError(f"another process is writing {self.output}") from None
-        except OSError:  # a file system without locks
-            return
+        until = time.monotonic() + _FREED_S
+        while not _is_taken(self._lock):
+            if time.monotonic() > until:
+                self._lock.close()
+                self._lock = None
+                raise SaveError(f"another process is writing {self.output}")
+            time.sleep(0.01)
 
     def _known(self) -> dict[str, Any] | None:
         try:
@@ -159,3 +161,16 @@ def _changed(known: Mapping[str, Any], wanted: Mapping[str, Any]) -> list[str]:
             was = printable(known.get(name), 80)
             changes.append(f"{name.replace('_', ' ')} was {was}, is {value}")
     return changes
+
+
+def _is_taken(lock: IO[Any]) -> bool:
+    """Lock a file; return False if another process has. Where there are no locks, none has."""
+    if fcntl is None:
+        return True
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:  # a file system without locks
+        pass
+    return True
