@@ -22,10 +22,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
-try:
-    import fcntl
-except ImportError:  # Windows, where kernels are not stored (no O_NOFOLLOW)
-    fcntl = None  # type: ignore[assignment]
+from distal.file_writer.locks import lock_file
 
 FOLDER_VARIABLE: Final = "DISTAL_CACHE_DIR"
 LIMIT_VARIABLE: Final = "DISTAL_CACHE_MIB"
@@ -229,23 +226,10 @@ def _drop_leftover(folder: int, name: str) -> None:
         return
     handle = os.open(name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK, dir_fd=folder)
     try:
-        if _lock(handle):
+        if lock_file(handle):
             os.unlink(name, dir_fd=folder)
     finally:
         os.close(handle)
-
-
-def _lock(handle: int) -> bool:
-    """Lock an open file; return False if another process has locked it."""
-    if fcntl is None:
-        return True
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:  # a file system without locks
-        return True
-    return True
 
 
 def _replace(folder: int, name: str, data: bytes) -> None:
@@ -254,7 +238,7 @@ def _replace(folder: int, name: str, data: bytes) -> None:
     handle = os.open(temporary, flags, 0o600, dir_fd=folder)
     try:
         with os.fdopen(handle, "wb") as file:
-            _lock(handle)
+            lock_file(handle)
             file.write(data)
             file.flush()
             _rename(folder, temporary, name)

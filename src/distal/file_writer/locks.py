@@ -121,6 +121,22 @@ def is_over(lock_file: str, token: str) -> bool | None:
     return True
 
 
+def lock_file(handle: int) -> bool:
+    """Lock an open file until it is closed; return False if another process has locked it.
+
+    Where there are no such locks, as on Windows, nobody has.
+    """
+    if fcntl is None:
+        return True
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:  # a file system without locks
+        return True
+    return True
+
+
 @contextmanager
 def locked(path: Path) -> Iterator[None]:
     """Keep other threads and processes of this user from the block of the same path.

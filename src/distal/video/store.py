@@ -24,11 +24,7 @@ from distal.file_writer import (
     name_beside,
     replacement,
 )
-
-try:
-    import fcntl
-except ImportError:  # Windows: two processes that write the same output are not detected
-    fcntl = None  # type: ignore[assignment]
+from distal.file_writer.locks import lock_file
 
 MANIFEST: Final = "manifest.json"
 LOCK: Final = "lock"
@@ -123,7 +119,7 @@ class Store:
         if self._lock is None:
             return
         until = time.monotonic() + _FREED_S
-        while not _is_taken(self._lock):
+        while not lock_file(self._lock.fileno()):
             if time.monotonic() > until:
                 self._lock.close()
                 self._lock = None
@@ -161,16 +157,3 @@ def _changed(known: Mapping[str, Any], wanted: Mapping[str, Any]) -> list[str]:
             was = printable(known.get(name), 80)
             changes.append(f"{name.replace('_', ' ')} was {was}, is {value}")
     return changes
-
-
-def _is_taken(lock: IO[Any]) -> bool:
-    """Lock a file; return False if another process has. Where there are no locks, none has."""
-    if fcntl is None:
-        return True
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:  # a file system without locks
-        pass
-    return True
