@@ -43,6 +43,8 @@ _STATE: Final = """async () => {
     hovered: document.querySelectorAll("body :hover").length,
     hasFocusElsewhere: document.activeElement !== document.body,
     isWhole: !document.fullscreenElement && !document.pointerLockElement,
+    // playwright's clock stays in a context: what a page waits for would never come.
+    isClockReal: [Date, setTimeout, requestAnimationFrame].every((own) => /native code/.test(own)),
   };
 }"""
 

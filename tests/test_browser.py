@@ -112,6 +112,17 @@ def test_a_page_that_cannot_be_made_new_is_closed(file, name):
     assert first.is_closed() and second is not first
 
 
+def test_a_page_whose_clock_stands_is_closed(file):
+    def stop(page: Any) -> None:
+        page.clock.install()
+        page.clock.pause_at(page.evaluate("() => Date.now()") + 1000)
+
+    first, second, found = page_after(file, stop)
+    assert first.is_closed() and second is not first
+    assert found == NEW
+    assert second.evaluate("() => new Promise((resolve) => setTimeout(() => resolve(5), 5))") == 5
+
+
 def test_a_page_that_differs_or_in_which_a_test_failed_is_closed(file):
     zoom = {"deviceScaleFactor": 2, "width": 320, "height": 200, "mobile": False}
 

@@ -26,7 +26,6 @@ _MOVE = """() => {
 
 
 def opened(app):
-    app.idle()  # what is asked while the scene is being read may have no answer
     app.page.get_by_role("button", name="Export").click()
     app.page.locator(".render .command code").wait_for(timeout=SLOW_MS)
     return app.page.locator(".render")
