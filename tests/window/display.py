@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 SCREEN = (1024, 768)
-PATIENCE_S = 60.0
+PATIENCE_S = 180.0  # a first window compiles: 10 s of a processor that others use too
 
 
 class DisplayUnavailableError(RuntimeError):
