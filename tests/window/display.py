@@ -136,6 +136,13 @@ class Window:
             before = events
         raise AssertionError(f"it does not come to rest; {self.errors}")
 
+    def appears(self) -> None:
+        """Wait until it is on the screen: its file is read, and it looks for changes."""
+        command = ["xdotool", "search", "--sync", "--name", "distal"]
+        subprocess.run(
+            command, env=self._environment, check=True, timeout=PATIENCE_S, capture_output=True
+        )
+
     def hands(self, *words: str | int) -> None:
         """Move the pointer, press buttons and keys."""
         subprocess.run(["xdotool", *map(str, words)], env=self._environment, check=True, timeout=20)

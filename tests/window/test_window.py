@@ -271,7 +271,8 @@ def test_a_picture_that_never_ends_is_given_up_when_it_is_saved(
     scene = tmp_path / "mouse.py"
     scene.write_text(ENDLESS_IMAGE)
     with Window(display, ["mouse.py", "--device", "cpu", "--size", "320x240"], tmp_path) as window:
-        time.sleep(4.0)
+        window.appears()
+        time.sleep(2.0)  # it draws
         count = len(window.events)
         scene.write_text(MOUSE)
         window.wait(lambda event: event["event"] == "loaded", count)
