@@ -1,9 +1,13 @@
 """Blends by name: each smooth minimum and shaped edge, for unions, intersections and differences.
 
 Input: unions from ``smooth`` and ``edge_profiles``. Output: ``BLENDS``, and an operator for each
-combination with each blend (``COMBINATIONS``). The other combinations follow from the union: an
-intersection is the complement of the union of the complements; a difference is the intersection
-with a complement.
+combination with each blend (``COMBINATIONS``; ``IN_PLANE`` for flat shapes where the operator is
+another). The other combinations follow from the union: an intersection is the complement of the
+union of the complements; a difference is the intersection with a complement.
+
+A blend of two distances moves outwards wherever both are small, also where two faces lie in one
+plane and there is no edge. The unions of fillets and chamfers are cut by the box around both
+shapes: what they add ends at the faces that lie in its sides.
 """
 
 from __future__ import annotations
@@ -14,9 +18,26 @@ from typing import Any, Final, TypeAlias
 
 from distal.fields.combine import edge_profiles, smooth
 from distal.fields.combine import joins as combine
-from distal.fields.extents import Boxes, hull_of, moved_out, overlap
-from distal.fields.guarantees import UNBOUNDED, Growth, Limit, Operator, named, operator
-from distal.lang import Func, exp2, func, length, max, min, vec2
+from distal.fields.extents import (
+    Boxes,
+    at_least_one,
+    box_distance,
+    hull_of,
+    moved_out,
+    overlap,
+    rectangle_distance,
+)
+from distal.fields.guarantees import (
+    UNBOUNDED,
+    Bounds,
+    Bounds2,
+    Growth,
+    Limit,
+    Operator,
+    named,
+    operator,
+)
+from distal.lang import Func, exp2, func, length, max, min, vec2, vec3
 
 # Limit of an exponent; 2 to this power is larger than any size.
 MOST_DOUBLINGS: Final = 60.0
@@ -39,6 +60,7 @@ class Blend:
         width: It equals the hard minimum where the distances differ by ``width * k`` or more. None
             if the difference alone does not say where.
         intersection: A separate intersection, if it does not follow from the union.
+        cut: Whether the union is cut by the box around both shapes.
     """
 
     union: Func[..., Any]
@@ -49,6 +71,7 @@ class Blend:
     change: float = 1.0
     width: float | None = None
     intersection: Func[..., Any] | None = None
+    cut: bool = False
 
 
 BLENDS: Final[dict[str, Blend]] = {
@@ -62,8 +85,8 @@ BLENDS: Final[dict[str, Blend]] = {
     "exponential": Blend(smooth.exponential, smooth.exponential_mix, local=False),
     "root": Blend(smooth.root, smooth.root_mix, local=False),
     "sigmoid": Blend(smooth.sigmoid, smooth.sigmoid_mix, local=False),
-    "chamfer": Blend(edge_profiles.chamfer, edge_profiles.edge_mix, steep=True),
-    "round": Blend(smooth.round_corner, smooth.round_corner_mix, steep=True),
+    "chamfer": Blend(edge_profiles.chamfer, edge_profiles.edge_mix, steep=True, cut=True),
+    "round": Blend(smooth.round_corner, smooth.round_corner_mix, steep=True, cut=True),
     "columns": Blend(
         edge_profiles.columns,
         edge_profiles.counted_edge_mix,
@@ -88,6 +111,12 @@ def crossed_slope(slope_a: float, slope_b: float) -> float:
     are parallel.
     """
     return length(vec2(slope_a, slope_b))
+
+
+@func
+def cut_slope(slope_a: float, slope_b: float) -> float:
+    """Return the slope of a blend that is cut by a box."""
+    return at_least_one(crossed_slope(slope_a, slope_b))
 
 
 @func
@@ -117,6 +146,29 @@ def power_growth(growth: float, exponent: float) -> float:
     Where both distances are equal, the value is less by a factor: 2 to the power 1 / exponent.
     """
     return min(growth * exp2(min(1.0 / exponent, MOST_DOUBLINGS)), UNBOUNDED)
+
+
+# Unions that are cut by the box around both shapes
+
+
+def _cut(name: str, union: Shared) -> Func[..., Any]:
+    """Return the union without what it adds outside the box around both shapes."""
+
+    def cut(
+        a: float, b: float, p: vec3, k: float, bounds_a: Bounds, bounds_b: Bounds
+    ) -> float:
+        return max(union(a, b, k), box_distance(p, hull_of(bounds_a, bounds_b)))
+
+    return named(f"union_{name}", cut)
+
+
+def _cut_flat(name: str, union: Shared) -> Func[..., Any]:
+    def cut(
+        a: float, b: float, p: vec2, k: float, bounds_a: Bounds2, bounds_b: Bounds2
+    ) -> float:
+        return max(union(a, b, k), rectangle_distance(p, hull_of(bounds_a, bounds_b)))
+
+    return named(f"flat_union_{name}", cut)
 
 
 # Intersections, differences and exclusive ors, made from the union
@@ -222,26 +274,41 @@ def _declare(name: str, blend: Blend) -> None:
         },
         "xor": {"combine": exclusive, "growth": Growth.KEPT},
     }
+    if blend.cut:
+        # The value is at least the distance to the box around both.
+        within = {"bounds": hull_of, "growth": Growth.HELD, "slope": cut_slope}
+        rows["union"] |= within | {"combine": _cut(name, blend.union)}
     for kind, row in rows.items():
-        COMBINATIONS[kind, name] = operator(
-            f"{kind} {name}",
-            slope=crossed_slope if blend.steep else None,
-            limits={"k": Limit.NOT_NEGATIVE},
-            requires=_count_requirement if counted else None,
-            local=blend.local,
-            changes={"k": blend.change},
-            **row,
-        )
+        COMBINATIONS[kind, name] = _operator(f"{kind} {name}", blend, row)
+    if blend.cut:
+        row = rows["union"] | {"combine": _cut_flat(name, blend.union)}
+        flat = _operator(f"flat union {name}", blend, row)
+        IN_PLANE[COMBINATIONS["union", name]] = flat
+
+
+def _operator(name: str, blend: Blend, row: dict[str, Any]) -> Operator:
+    """Declare an operator of a blend; ``row`` is what differs between its combinations."""
+    usual = {
+        "slope": crossed_slope if blend.steep else None,
+        "limits": {"k": Limit.NOT_NEGATIVE},
+        "requires": _count_requirement if blend.counted else None,
+        "local": blend.local,
+        "changes": {"k": blend.change},
+    }
+    return operator(name, **(usual | row))
 
 
 # The operators, by the name of the sharp operator and that of the blend.
 COMBINATIONS: Final[dict[tuple[str, str], Operator]] = {}
+# The operators of flat shapes in place of these.
+IN_PLANE: Final[dict[Operator, Operator]] = {}
 for _name, _blend in BLENDS.items():
     _declare(_name, _blend)
-# The blends of the unions.
+# The blends of the unions, flat ones too.
 UNION_BLENDS: Final[dict[Operator, Blend]] = {
     COMBINATIONS["union", name]: blend for name, blend in BLENDS.items()
 }
+UNION_BLENDS.update({flat: UNION_BLENDS[solid] for solid, flat in IN_PLANE.items()})
 
 PIPE = operator(
     "pipe",

@@ -340,8 +340,8 @@ class ShapeComposer:
         result = next(parts)
         if rule.combine is not None:
             # Each part is combined at once: few values are alive at a time.
-            for other in parts:
-                result = self.call(rule.combine, {**given, "a": result, "b": other})
+            for step, other in zip(self.steps(body, node, given, shares), parts, strict=True):
+                result = self.call(rule.combine, {**step, "a": result, "b": other})
                 result = body.let("d", result)
         if rule.finish is not None:
             result = body.let("d", self.call(rule.finish, {**given, "d": result}))
@@ -383,6 +383,30 @@ class ShapeComposer:
             if node.children and taken & BOUNDS_OF_CHILDREN:
                 given |= self.bounds.given(body, node, shares)
         return given, shares
+
+    def steps(
+        self,
+        body: StatementList,
+        node: Node,
+        given: Mapping[str, Expr],
+        shares: Sequence[Sequence[Expr]],
+    ) -> list[Mapping[str, Expr]]:
+        """Return the values for an operator's functions when each child but the first is joined.
+
+        They differ in the bounds: of three children, two were joined before the third.
+
+        Args:
+            body: The statements to add to.
+            node: The operator's node.
+            given: The values when the second child is joined to the first.
+            shares: The numbers of each child.
+        """
+        count = len(node.children) - 1
+        if count < 2 or "bounds_a" not in given:
+            return [given] * count
+        with self.values.at(given["cell"], given["p"]):
+            found = self.bounds.steps(body, node, shares, given)
+        return [{**given, **bounds} for bounds in found]
 
     def moved(
         self, body: StatementList, rule: Operator, given: Mapping[str, Expr]

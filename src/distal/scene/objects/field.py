@@ -346,6 +346,8 @@ class BaseShape(Composed, Presentable):
                     place,
                 )
         rule, numbers, constants = joining(sharp, smooth, blend, k, place)
+        if self.flat:
+            rule = blends.IN_PLANE.get(rule, rule)
         # A union of a union is one union; a difference of a difference likewise.
         bare = rule if not numbers else None
         nodes: list[Node] = []

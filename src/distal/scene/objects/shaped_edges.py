@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from distal.diagnostics import Span
 from distal.fields.combine import joins
-from distal.fields.combine.blends import COMBINATIONS
+from distal.fields.combine.blends import COMBINATIONS, IN_PLANE
 from distal.fields.guarantees import Limit, Operator
 from distal.fields.lift import extrude
 from distal.ir.types import FLOAT
@@ -59,6 +59,8 @@ def shaped_edge(node: Node, word: str, size: Any, place: Span | None) -> Node:
     rule = node.rule
     if rule in _SHARP:
         shaped = COMBINATIONS[rule.name, _BLENDS[word]]
+        if node.flat:
+            shaped = IN_PLANE.get(shaped, shaped)
         name = _EXTRUDED[word][1]
         varies = frozenset((CELL,))
         number(size, Asked(name, word, FLOAT, Limit.NOT_NEGATIVE, place=place, varies=varies))
