@@ -289,6 +289,9 @@ class Operator:
         linear: Whether the value is linear in p if that of the child is.
         turn: For a rigid move or a uniform scale: ``(p, …) -> vec3``, as ``point`` for a unit
             direction p. Chords of the child are those of the result, with ``finish`` for lengths.
+        within: For two children that may both be turned: ``(d, p, axes) -> float`` changes the
+            value so that nothing of the result is outside ``axes``, the ``TurnedBox`` around both
+            along the axes of the first. Not called if one of them is not turned.
         changes: How much the value changes at most for each unit of a number, by the number's name;
             of others it is found by intervals where a number differs from place to place.
         approximates: What the operator replaces by simpler pieces, or None.
@@ -317,6 +320,7 @@ class Operator:
     local: bool = True
     linear: bool = False
     turn: Func | None = None
+    within: Func | None = None
     changes: Mapping[str, float] = field(default_factory=dict)
     approximates: Approximation | None = None
 
@@ -329,7 +333,10 @@ class Operator:
     @property
     def point_functions(self) -> tuple[Func, ...]:
         """Return the functions that are called for each point."""
-        found = (self.point, self.finish, self.combine, self.mix, self.around, self.site)
+        found = (
+            *(self.point, self.finish, self.combine, self.mix, self.around, self.site),
+            self.within,
+        )
         return tuple(function for function in found if function is not None)
 
     def lies_flat(self, child: bool) -> bool:

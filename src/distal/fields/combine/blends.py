@@ -7,7 +7,8 @@ union of the complements; a difference is the intersection with a complement.
 
 A blend of two distances moves outwards wherever both are small, also where two faces lie in one
 plane and there is no edge. The unions of fillets and chamfers are cut by the box around both
-shapes: what they add ends at the faces that lie in its sides.
+shapes, and if both are turned also by that along the axes of the first: what they add ends at the
+faces that lie in its sides.
 """
 
 from __future__ import annotations
@@ -37,6 +38,7 @@ from distal.fields.guarantees import (
     named,
     operator,
 )
+from distal.fields.turned_boxes import within_axes
 from distal.lang import Func, exp2, func, length, max, min, vec2, vec3
 
 # Limit of an exponent; 2 to this power is larger than any size.
@@ -154,18 +156,14 @@ def power_growth(growth: float, exponent: float) -> float:
 def _cut(name: str, union: Shared) -> Func[..., Any]:
     """Return the union without what it adds outside the box around both shapes."""
 
-    def cut(
-        a: float, b: float, p: vec3, k: float, bounds_a: Bounds, bounds_b: Bounds
-    ) -> float:
+    def cut(a: float, b: float, p: vec3, k: float, bounds_a: Bounds, bounds_b: Bounds) -> float:
         return max(union(a, b, k), box_distance(p, hull_of(bounds_a, bounds_b)))
 
     return named(f"union_{name}", cut)
 
 
 def _cut_flat(name: str, union: Shared) -> Func[..., Any]:
-    def cut(
-        a: float, b: float, p: vec2, k: float, bounds_a: Bounds2, bounds_b: Bounds2
-    ) -> float:
+    def cut(a: float, b: float, p: vec2, k: float, bounds_a: Bounds2, bounds_b: Bounds2) -> float:
         return max(union(a, b, k), rectangle_distance(p, hull_of(bounds_a, bounds_b)))
 
     return named(f"flat_union_{name}", cut)
@@ -276,12 +274,12 @@ def _declare(name: str, blend: Blend) -> None:
     }
     if blend.cut:
         # The value is at least the distance to the box around both.
-        within = {"bounds": hull_of, "growth": Growth.HELD, "slope": cut_slope}
-        rows["union"] |= within | {"combine": _cut(name, blend.union)}
+        boxed = {"bounds": hull_of, "growth": Growth.HELD, "slope": cut_slope}
+        rows["union"] |= boxed | {"combine": _cut(name, blend.union), "within": within_axes}
     for kind, row in rows.items():
         COMBINATIONS[kind, name] = _operator(f"{kind} {name}", blend, row)
     if blend.cut:
-        row = rows["union"] | {"combine": _cut_flat(name, blend.union)}
+        row = rows["union"] | {"combine": _cut_flat(name, blend.union), "within": None}
         flat = _operator(f"flat union {name}", blend, row)
         IN_PLANE[COMBINATIONS["union", name]] = flat
 

@@ -358,7 +358,7 @@ def _joined(
                 share = body.let("share", composer.call(rule.mix, pair))
                 shown = kind.blended(result, other, share)
             result = body.let("shown", shown)
-        a = body.let("d", composer.call(rule.combine, pair))
+        a = composer.joined(body, rule, pair)
     return a, result
 
 

@@ -305,9 +305,7 @@ class BoundsComposer:
             before = other if before is None else self._two(body, node.rule, before, other, own)
         return found
 
-    def _joined_to(
-        self, body: StatementList, a: ShapeBounds, b: ShapeBounds
-    ) -> dict[str, Expr]:
+    def _joined_to(self, body: StatementList, a: ShapeBounds, b: ShapeBounds) -> dict[str, Expr]:
         return _named(self._filled(body, a, b), self._filled(body, b, a))
 
     def of_primitive(
