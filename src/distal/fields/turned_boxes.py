@@ -8,8 +8,8 @@ Does not depend on operators.
 from __future__ import annotations
 
 from distal.fields.extents import box_distance, hull_of, overlap, turned
-from distal.fields.guarantees import Bounds
-from distal.lang import dot, func, mat3, max, struct, vec3
+from distal.fields.guarantees import UNBOUNDED, Bounds, Bounds2
+from distal.lang import dot, func, mat3, max, struct, vec2, vec3
 
 
 @struct
@@ -30,6 +30,13 @@ class TurnedBox:
 def upright_box(bounds: Bounds) -> TurnedBox:
     """Return a box along the axes of space."""
     return TurnedBox(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), vec3(0.0, 0.0, 1.0), bounds)
+
+
+@func
+def upright_rectangle(bounds: Bounds2) -> TurnedBox:
+    """Return a rectangle along the axes of the plane, as a box without an end along z."""
+    low, high = vec3(bounds.low, -UNBOUNDED), vec3(bounds.high, UNBOUNDED)
+    return upright_box(Bounds(low, high))
 
 
 @func
@@ -81,3 +88,9 @@ def turned_overlap(a: TurnedBox, b: TurnedBox) -> TurnedBox:
 def within_axes(d: float, p: vec3, axes: TurnedBox) -> float:
     """Return a distance that is at least that to a box along axes of its own."""
     return max(d, box_distance(along_axes(p, axes), axes.box))
+
+
+@func
+def within_flat_axes(d: float, p: vec2, axes: TurnedBox) -> float:
+    """Return a distance that is at least that to a rectangle along axes of its own."""
+    return within_axes(d, vec3(p, 0.0), axes)

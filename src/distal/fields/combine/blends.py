@@ -1,9 +1,9 @@
 """Blends by name: each smooth minimum and shaped edge, for unions, intersections and differences.
 
 Input: unions from ``smooth`` and ``edge_profiles``. Output: ``BLENDS``, and an operator for each
-combination with each blend (``COMBINATIONS``; ``IN_PLANE`` for flat shapes where the operator is
-another). The other combinations follow from the union: an intersection is the complement of the
-union of the complements; a difference is the intersection with a complement.
+combination with each blend (``COMBINATIONS``; for some shapes ``FLAT_UNIONS`` and ``PRISMS``). The
+other combinations follow from the union: an intersection is the complement of the union of the
+complements; a difference is the intersection with a complement.
 
 A blend of two distances moves outwards wherever both are small, also where two faces lie in one
 plane and there is no edge. The unions of fillets and chamfers are cut by the box around both
@@ -19,6 +19,12 @@ from typing import Any, Final, TypeAlias
 
 from distal.fields.combine import edge_profiles, smooth
 from distal.fields.combine import joins as combine
+from distal.fields.combine.prisms import (
+    cut_at_ends,
+    cut_at_ends_flat,
+    moved_inwards,
+    moved_inwards_flat,
+)
 from distal.fields.extents import (
     Boxes,
     at_least_one,
@@ -38,7 +44,7 @@ from distal.fields.guarantees import (
     named,
     operator,
 )
-from distal.fields.turned_boxes import within_axes
+from distal.fields.turned_boxes import within_axes, within_flat_axes
 from distal.lang import Func, exp2, func, length, max, min, vec2, vec3
 
 # Limit of an exponent; 2 to this power is larger than any size.
@@ -277,15 +283,18 @@ def _declare(name: str, blend: Blend) -> None:
         boxed = {"bounds": hull_of, "growth": Growth.HELD, "slope": cut_slope}
         rows["union"] |= boxed | {"combine": _cut(name, blend.union), "within": within_axes}
     for kind, row in rows.items():
-        COMBINATIONS[kind, name] = _operator(f"{kind} {name}", blend, row)
+        COMBINATIONS[kind, name] = operator(f"{kind} {name}", **_row(blend, row))
     if blend.cut:
-        row = rows["union"] | {"combine": _cut_flat(name, blend.union), "within": None}
-        flat = _operator(f"flat union {name}", blend, row)
-        IN_PLANE[COMBINATIONS["union", name]] = flat
+        own = {"combine": _cut_flat(name, blend.union), "within": within_flat_axes}
+        flat = Operator(f"union {name}", **_row(blend, rows["union"] | own))
+        FLAT_UNIONS[COMBINATIONS["union", name]] = flat
+        rule = COMBINATIONS["intersection", name]
+        row = _row(blend, rows["intersection"] | {"slope": cut_slope})
+        PRISMS[rule] = (_of_prisms(rule, row), _of_flat_prisms(rule, row))
 
 
-def _operator(name: str, blend: Blend, row: dict[str, Any]) -> Operator:
-    """Declare an operator of a blend; ``row`` is what differs between its combinations."""
+def _row(blend: Blend, row: dict[str, Any]) -> dict[str, Any]:
+    """Return the declaration of an operator; ``row`` is what differs between combinations."""
     usual = {
         "slope": crossed_slope if blend.steep else None,
         "limits": {"k": Limit.NOT_NEGATIVE},
@@ -293,20 +302,54 @@ def _operator(name: str, blend: Blend, row: dict[str, Any]) -> Operator:
         "local": blend.local,
         "changes": {"k": blend.change},
     }
-    return operator(name, **(usual | row))
+    return usual | row
+
+
+def _of_prisms(rule: Operator, row: dict[str, Any]) -> Operator:
+    """Return the intersection of two solids that are prisms along common axes, ``along``.
+
+    It is not in the catalogue: authors write the intersection.
+    """
+    intersection: Shared = row["combine"]
+
+    def cut(
+        a: float, b: float, p: vec3, k: float, along: vec3, bounds_a: Bounds, bounds_b: Bounds
+    ) -> float:
+        return cut_at_ends(intersection(a, b, k), p, k, along, bounds_a, bounds_b)
+
+    combined = named(f"{rule.name} of prisms".replace(" ", "_"), cut)
+    own = {"combine": combined, "point": moved_inwards}
+    return Operator(rule.name, **(row | own))
+
+
+def _of_flat_prisms(rule: Operator, row: dict[str, Any]) -> Operator:
+    intersection: Shared = row["combine"]
+
+    def cut(
+        a: float, b: float, p: vec2, k: float, along: vec2, bounds_a: Bounds2, bounds_b: Bounds2
+    ) -> float:
+        return cut_at_ends_flat(intersection(a, b, k), p, k, along, bounds_a, bounds_b)
+
+    combined = named(f"flat {rule.name} of prisms".replace(" ", "_"), cut)
+    own = {"combine": combined, "point": moved_inwards_flat}
+    return Operator(rule.name, **(row | own))
 
 
 # The operators, by the name of the sharp operator and that of the blend.
 COMBINATIONS: Final[dict[tuple[str, str], Operator]] = {}
-# The operators of flat shapes in place of these.
-IN_PLANE: Final[dict[Operator, Operator]] = {}
+# The operators of flat shapes in place of unions. They are not in the catalogue: authors write the
+# union.
+FLAT_UNIONS: Final[dict[Operator, Operator]] = {}
+# The operators in place of intersections where both shapes are prisms along common axes: for solids
+# and for flat shapes. Their number ``along`` is 1 for these axes and 0 for the others.
+PRISMS: Final[dict[Operator, tuple[Operator, Operator]]] = {}
 for _name, _blend in BLENDS.items():
     _declare(_name, _blend)
 # The blends of the unions, flat ones too.
 UNION_BLENDS: Final[dict[Operator, Blend]] = {
     COMBINATIONS["union", name]: blend for name, blend in BLENDS.items()
 }
-UNION_BLENDS.update({flat: UNION_BLENDS[solid] for solid, flat in IN_PLANE.items()})
+UNION_BLENDS.update({flat: UNION_BLENDS[solid] for solid, flat in FLAT_UNIONS.items()})
 
 PIPE = operator(
     "pipe",

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
-from distal.fields.combine import blends
 from distal.fields.deform import flat as flat_deform
 from distal.fields.deform import offsets
 from distal.fields.deform import solid as deform
@@ -43,5 +42,4 @@ IN_PLANE: Final[Mapping[Operator, Operator]] = {
     polar.REPEAT_POLAR_ALL: flat_repeat.REPEAT_POLAR_ALL_FLAT,
     polar.REPEAT_POLAR_NEIGHBOURS: flat_repeat.REPEAT_POLAR_NEIGHBOURS_FLAT,
     along.REPEAT_AT: flat_repeat.REPEAT_AT_FLAT,
-    **blends.IN_PLANE,
 }
