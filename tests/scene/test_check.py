@@ -393,7 +393,9 @@ def test_a_profile_that_is_too_large_for_a_prism_is_named():
     assert found.diagnostic.hint == "a size of at most 3, half of that"
     x = np.array([20.0 - amount - 1e-6, 20.0 - amount + 1e-6])
     assert (thin(np.stack([x, 0.0 * x, 0.0 * x], axis=1)) <= 0.0).tolist() == [True, False]
-    chamfered = (Box(60, 6, 30) & Box(40, 6, 50)).chamfer(8)
-    x = np.array([20.0 - 5.0 - 1e-6, 20.0 - 5.0 + 1e-6])
+    chamfered = (Box(60, 6, 30) & Box(40, 6, 50)).chamfer(5)
+    x = np.array([20.0 - 2.0 - 1e-6, 20.0 - 2.0 + 1e-6])
     assert (chamfered(np.stack([x, 0.0 * x, 0.0 * x], axis=1)) <= 0.0).tolist() == [True, False]
-    assert "inwards by up to 5: " in moved_faces(chamfered)[0].diagnostic.message
+    assert "inwards by up to 2: " in moved_faces(chamfered)[0].diagnostic.message
+    (found,) = moved_faces((Box(60, 6, 30) & Box(40, 6, 50)).chamfer(8))
+    assert "leaves nothing: both shapes end in the same planes, 6 apart" in found.diagnostic.message

@@ -123,7 +123,7 @@ def crossed_slope(slope_a: float, slope_b: float) -> float:
 
 @func
 def cut_slope(slope_a: float, slope_b: float) -> float:
-    """Return the slope of a blend that is cut by a box."""
+    """Return sqrt(slope_a^2 + slope_b^2), at least 1: that of a distance to a box."""
     return at_least_one(crossed_slope(slope_a, slope_b))
 
 

@@ -39,6 +39,8 @@ PARALLEL: Final = 0.99985
 # How near to both faces a place must be, and which movement is none, in sizes of the blend.
 NEAR: Final = 1e-4
 LEAST: Final = 2e-3
+# How far around such a place there must be no edge, in sizes of the blend.
+BESIDE: Final = 1.05
 # From which distance on a blend has no effect, in sizes: the largest of those that end.
 REACH: Final = 6.0
 
@@ -90,7 +92,7 @@ class MovedFace:
     Attributes:
         kind: What the blend does.
         size: The size of the blend.
-        amount: How far the face moves.
+        amount: How far the face moves; infinite if nothing remains.
         place: Where; None if all of the face does.
         half: Half the thickness between the faces that both prisms share, if it is too small for
             the profile; else None.
@@ -111,6 +113,8 @@ class MovedFace:
         way = "outwards" if self.kind.outwards > 0.0 else "inwards"
         message = f"{name} moves faces {way} by up to {self.amount:.3g}"
         if self.half is not None:
+            if self.amount == math.inf:
+                message = f"{name} leaves nothing"
             thickness = f"both shapes end in the same planes, {2.0 * self.half:.4g} apart"
             return f"{message}: {thickness}", f"a size of at most {self.half:.4g}, half of that"
         assert self.place is not None
@@ -185,7 +189,8 @@ class _Places:
     def _flush(self, p: Floats) -> tuple[NDArray[np.bool_], Floats]:
         """Return which places are in a face that two shapes share, and the way out of it.
 
-        An edge of either with a third shape is farther away than the blend reaches.
+        An edge of either with a third shape is farther away than the blend reaches. What moves
+        faces inwards also shapes the edges of the face: these are farther away, too.
         """
         node, kind = self._node, self._kind
         signs = [1.0, *[kind.second] * (len(node.children) - 1)]
@@ -201,9 +206,29 @@ class _Places:
             shared &= (out[i] * out[j]).sum(axis=1) > PARALLEL
             edge = (out[i] * out).sum(axis=2) <= PARALLEL
             shared &= ~(edge & (away < REACH * self._size)).any(axis=0) | (len(out) == 2)
+            if kind.outwards < 0.0:
+                shared[shared] = self._far_from_edges(i, j, p[shared], out[i][shared])
             found[shared] = out[i][shared]
             flush |= shared
         return flush, found
+
+    def _far_from_edges(self, i: int, j: int, p: Floats, way: Floats) -> NDArray[np.bool_]:
+        """Return around which places of a face two shapes remain the same, as far as a blend is."""
+        signs = [1.0 if n == 0 else self._kind.second for n in (i, j)]
+        same = np.ones(len(p), bool)
+        aside = np.roll(way, 1, axis=1) * [1.0, -1.0, 1.0][: p.shape[1]]
+        aside -= (aside * way).sum(axis=1, keepdims=True) * way
+        aside /= np.maximum(np.linalg.norm(aside, axis=1, keepdims=True), 1e-12)
+        across = np.cross(way, aside) if p.shape[1] == 3 else aside
+        for angle in np.arange(8) * (0.25 * np.pi):
+            around = np.cos(angle) * aside + np.sin(angle) * across
+            q = p + BESIDE * self._size * around
+            a, b = (
+                sign * self._value(self._node.children[n], q)
+                for n, sign in zip((i, j), signs, strict=True)
+            )
+            same &= np.abs(a - b) < NEAR * self._size
+        return same
 
     def moved(self, p: Floats) -> MovedFace | None:
         """Return the largest movement of a face near random places."""
@@ -255,7 +280,7 @@ def _thin_prism(
     amount = size - half
     if kind.name == "round":
         amount = size - math.sqrt(half * (2.0 * size - half))
-    return MovedFace(kind, size, amount, None, half)
+    return MovedFace(kind, size, amount if amount <= half else math.inf, None, half)
 
 
 def _where_both_end(
