@@ -11,7 +11,7 @@ the result is cut at the ends.
 
 from __future__ import annotations
 
-from distal.fields.extents import Boxes, box_distance, overlap, rectangle_distance
+from distal.fields.extents import box_distance, overlap, rectangle_distance
 from distal.fields.guarantees import UNBOUNDED, Bounds, Bounds2
 from distal.lang import Vectors, abs, clamp, func, max, min, select, vec2, vec3
 
@@ -30,7 +30,7 @@ def depth_moved(k: float, along: Vectors, half: Vectors, apart: Vectors) -> Vect
 
 
 @func
-def shared_ends(k: float, along: Vectors, bounds_a: Boxes, bounds_b: Boxes, share: float) -> Boxes:
+def shared_ends(k: float, along: vec3, bounds_a: Bounds, bounds_b: Bounds, share: float) -> Bounds:
     """Return the ends that lie in one plane, as a box; its other sides are infinite.
 
     ``share`` is how much of their depth the sides are moved inwards.
@@ -39,10 +39,27 @@ def shared_ends(k: float, along: Vectors, bounds_a: Boxes, bounds_b: Boxes, shar
     half = 0.5 * (ends.high - ends.low)
     below = depth_moved(k, along, half, abs(bounds_a.low - bounds_b.low))
     above = depth_moved(k, along, half, abs(bounds_a.high - bounds_b.high))
-    none = 0.0 * half
-    ends.low = select(below > none, ends.low + share * below, none - UNBOUNDED)
-    ends.high = select(above > none, ends.high - share * above, none + UNBOUNDED)
-    return ends
+    far = vec3(UNBOUNDED)
+    return Bounds(
+        select(below > vec3(0.0), ends.low + share * below, -far),
+        select(above > vec3(0.0), ends.high - share * above, far),
+    )
+
+
+@func
+def shared_ends_flat(
+    k: float, along: vec2, bounds_a: Bounds2, bounds_b: Bounds2, share: float
+) -> Bounds2:
+    """Return the ends of flat shapes that lie on one line, as a rectangle."""
+    ends = overlap(bounds_a, bounds_b)
+    half = 0.5 * (ends.high - ends.low)
+    below = depth_moved(k, along, half, abs(bounds_a.low - bounds_b.low))
+    above = depth_moved(k, along, half, abs(bounds_a.high - bounds_b.high))
+    far = vec2(UNBOUNDED)
+    return Bounds2(
+        select(below > vec2(0.0), ends.low + share * below, -far),
+        select(above > vec2(0.0), ends.high - share * above, far),
+    )
 
 
 @func
@@ -57,7 +74,7 @@ def moved_inwards_flat(
     p: vec2, k: float, along: vec2, bounds_a: Bounds2, bounds_b: Bounds2
 ) -> vec2:
     """Return the point at which two flat shapes with straight sides are evaluated."""
-    ends = shared_ends(k, along, bounds_a, bounds_b, 1.0)
+    ends = shared_ends_flat(k, along, bounds_a, bounds_b, 1.0)
     return clamp(p, ends.low, ends.high)
 
 
@@ -74,4 +91,4 @@ def cut_at_ends_flat(
     d: float, p: vec2, k: float, along: vec2, bounds_a: Bounds2, bounds_b: Bounds2
 ) -> float:
     """Return a distance that is at least that to the ends of two flat shapes."""
-    return max(d, rectangle_distance(p, shared_ends(k, along, bounds_a, bounds_b, 0.0)))
+    return max(d, rectangle_distance(p, shared_ends_flat(k, along, bounds_a, bounds_b, 0.0)))
