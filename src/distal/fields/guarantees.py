@@ -214,6 +214,8 @@ class Primitive:
             line through p in a unit direction enters and leaves it (``fields.chords``), in closed
             form; x > y if the line misses it. None if it is not known.
         endless: The names of sizes whose components may be infinite: they are ``UNBOUNDED`` then.
+        along: The axes along which it is a prism, "y" or "xyz": every section across the axis is
+            the same, from side to side of the box.
     """
 
     name: str
@@ -235,6 +237,7 @@ class Primitive:
     proved: Proven | None = None
     chord: Func | None = None
     endless: tuple[str, ...] = ()
+    along: str = ""
 
     @property
     def flat(self) -> bool:
@@ -289,9 +292,13 @@ class Operator:
         linear: Whether the value is linear in p if that of the child is.
         turn: For a rigid move or a uniform scale: ``(p, …) -> vec3``, as ``point`` for a unit
             direction p. Chords of the child are those of the result, with ``finish`` for lengths.
+        within: For two children that may both be turned: ``(d, p, axes) -> float`` changes the
+            value so that nothing of the result is outside ``axes``, the ``TurnedBox`` around both
+            along the axes of the first. Not called if one of them is not turned.
         changes: How much the value changes at most for each unit of a number, by the number's name;
             of others it is found by intervals where a number differs from place to place.
         approximates: What the operator replaces by simpler pieces, or None.
+        along: The axes along which the result is a prism whatever the child is, as for a primitive.
     """
 
     name: str
@@ -317,8 +324,10 @@ class Operator:
     local: bool = True
     linear: bool = False
     turn: Func | None = None
+    within: Func | None = None
     changes: Mapping[str, float] = field(default_factory=dict)
     approximates: Approximation | None = None
+    along: str = ""
 
     @property
     def number_functions(self) -> tuple[Func, ...]:
@@ -329,7 +338,10 @@ class Operator:
     @property
     def point_functions(self) -> tuple[Func, ...]:
         """Return the functions that are called for each point."""
-        found = (self.point, self.finish, self.combine, self.mix, self.around, self.site)
+        found = (
+            *(self.point, self.finish, self.combine, self.mix, self.around, self.site),
+            self.within,
+        )
         return tuple(function for function in found if function is not None)
 
     def lies_flat(self, child: bool) -> bool:
@@ -403,6 +415,7 @@ def primitive(
     approximates: Approximation | None = None,
     chord: Func | None = None,
     endless: tuple[str, ...] = (),
+    along: str = "",
 ) -> Callable[[F], F]:
     """Declare the ``@func`` below as a shape of the library; see ``Primitive`` for the attributes.
 
@@ -423,6 +436,7 @@ def primitive(
         approximates: What the shape replaces by simpler pieces.
         chord: The function of the part of a line inside of a convex solid.
         endless: The names of sizes that may be infinite.
+        along: The axes along which it is a prism.
     """
 
     def declare(distance: F) -> F:
@@ -445,6 +459,7 @@ def primitive(
             approximates,
             chord=chord,
             endless=endless,
+            along=along,
         )
         return distance
 

@@ -69,7 +69,7 @@ def rectangle_bounds(size: vec2) -> Bounds2:
     return centred_bounds(0.5 * size)
 
 
-@primitive("Rectangle", EXACT, bounds=rectangle_bounds, endless=("size",))
+@primitive("Rectangle", EXACT, bounds=rectangle_bounds, endless=("size",), along="xy")
 @func
 def rectangle(p: vec2, size: vec2 = UNIT_SQUARE) -> float:
     """Rectangle with sides along the axes, centred at the origin.

@@ -253,6 +253,7 @@ EXTRUDE = operator(
     point=flat_point,
     finish=extruded,
     keeps=EXACT,
+    along="z",
     slope=at_least_one,
     bounds=extruded_bounds,
     limits={"height": Limit.POSITIVE},
@@ -262,6 +263,7 @@ EXTRUDE_ENDLESS = operator(
     "extrude endless",
     point=flat_point,
     keeps=EXACT,
+    along="z",
     bounds=endless_bounds,
     growth=Growth.KEPT,
 )

@@ -60,6 +60,7 @@ def box_chord(p: vec3, direction: vec3, size: vec3) -> vec2:
     bounds=box_bounds,
     chord=box_chord,
     endless=("size",),
+    along="xyz",
 )
 @func
 def box(p: vec3, size: vec3 = UNIT_CUBE) -> float:
@@ -87,6 +88,7 @@ def box(p: vec3, size: vec3 = UNIT_CUBE) -> float:
     side_growth=1.0,
     chord=box_chord,
     endless=("size",),
+    along="xyz",
 )
 @func
 def box_cheap(p: vec3, size: vec3 = UNIT_CUBE) -> float:

@@ -38,7 +38,11 @@ def infinite_cylinder_bounds(radius: float) -> Bounds:
 
 
 @primitive(
-    "InfiniteCylinder", EXACT, bounds=infinite_cylinder_bounds, chord=infinite_cylinder_chord
+    "InfiniteCylinder",
+    EXACT,
+    bounds=infinite_cylinder_bounds,
+    chord=infinite_cylinder_chord,
+    along="y",
 )
 @func
 def infinite_cylinder(p: vec3, radius: float = 0.5) -> float:
@@ -79,7 +83,7 @@ def cylinder_chord(p: vec3, direction: vec3, radius: float, height: float) -> ve
     return in_cylinder(p, direction, UPWARD, 0.5 * height, radius)
 
 
-@primitive("Cylinder", EXACT, bounds=cylinder_bounds, chord=cylinder_chord)
+@primitive("Cylinder", EXACT, bounds=cylinder_bounds, chord=cylinder_chord, along="y")
 @func
 def cylinder(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
     """Upright cylinder, centred at the origin.

@@ -43,7 +43,7 @@ def tri_prism_bounds(apothem: float, height: float) -> Bounds:
     return Bounds(vec3(-half, -0.5 * height, -2.0 * apothem), vec3(half, 0.5 * height, apothem))
 
 
-@primitive("TriPrism", EXACT, bounds=tri_prism_bounds)
+@primitive("TriPrism", EXACT, bounds=tri_prism_bounds, along="y")
 @func
 def tri_prism(p: vec3, apothem: float = 0.4, height: float = 1.0) -> float:
     """Upright prism over an equilateral triangle; one side faces +z.
@@ -89,7 +89,7 @@ def hex_prism_chord(p: vec3, direction: vec3, apothem: float, height: float) -> 
     )
 
 
-@primitive("HexPrism", EXACT, bounds=hex_prism_bounds, chord=hex_prism_chord)
+@primitive("HexPrism", EXACT, bounds=hex_prism_bounds, chord=hex_prism_chord, along="y")
 @func
 def hex_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
     """Upright prism over a regular hexagon; two sides face along z.
@@ -117,7 +117,7 @@ def octagon_prism_bounds(apothem: float, height: float) -> Bounds:
     return Bounds(-reach, reach)
 
 
-@primitive("OctagonPrism", EXACT, bounds=octagon_prism_bounds)
+@primitive("OctagonPrism", EXACT, bounds=octagon_prism_bounds, along="y")
 @func
 def octagon_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
     """Upright prism over a regular octagon; sides face along x and z.
@@ -151,7 +151,7 @@ def prism_requires(count: int) -> str | None:
     return None if count >= 3 else "count must be 3 or more"
 
 
-@primitive("Prism", EXACT, bounds=prism_bounds, requires=prism_requires)
+@primitive("Prism", EXACT, bounds=prism_bounds, requires=prism_requires, along="y")
 @func
 def prism(p: vec3, count: int = 5, apothem: float = 0.5, height: float = 1.0) -> float:
     """Upright prism over a regular polygon; one side faces +z.

@@ -36,7 +36,7 @@ def plane_bounds(y: float) -> Bounds:
     return Bounds(vec3(-UNBOUNDED), vec3(UNBOUNDED, y, UNBOUNDED))
 
 
-@primitive("Plane", EXACT, bounds=plane_bounds, linear=True, chord=plane_chord)
+@primitive("Plane", EXACT, bounds=plane_bounds, linear=True, chord=plane_chord, along="xyz")
 @func
 def plane(p: vec3, y: float = 0.0) -> float:
     """Ground: the half space below a horizontal plane.
@@ -104,7 +104,7 @@ def slab_chord(p: vec3, direction: vec3, thickness: float) -> vec2:
     return between_faces(p.y, direction.y, 0.5 * thickness)
 
 
-@primitive("Slab", EXACT, bounds=slab_bounds, chord=slab_chord)
+@primitive("Slab", EXACT, bounds=slab_bounds, chord=slab_chord, along="xyz")
 @func
 def slab(p: vec3, thickness: float = 0.5) -> float:
     """Infinite horizontal slab, centred at y = 0.

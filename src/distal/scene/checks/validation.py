@@ -17,6 +17,7 @@ from distal.error_codes import ErrorCode
 from distal.fields.boxes import given_slope
 from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive, ended
 from distal.scene.checks.bounds_report import NodeBounds, bounds_of_nodes
+from distal.scene.checks.flush_report import moved_face
 from distal.scene.checks.measuring import Measured, Region, measure
 from distal.scene.checks.proof_report import proof_note
 from distal.scene.checks.smooth_report import SmoothReport, smooth_unions_of
@@ -149,6 +150,9 @@ def check(
         children = tuple(numbers[id(c)] for c in node.children)
         rows.append(ShapeReport(node, children, own, _raised(node, declared), measured))
     found = [f for i, row in enumerate(rows) for f in _findings(i, row, rows)]
+    found += _moved_faces(
+        [i for i, row in enumerate(rows) if id(row.node) in chosen], rows, given, time, seed
+    )
     found += _proofs(
         rows, {f.shape for f in found if f.diagnostic.code in _MEASURED_WRONG}, given, time
     )
@@ -299,6 +303,34 @@ def _proofs(
             severity = Severity.ERROR if note.code is ErrorCode.SLOPE_REFUTED else Severity.NOTE
             diagnostic = Diagnostic(note.code, note.message, row.node.place, note.hint)
             yield CheckFinding(severity, i, diagnostic)
+
+
+def _moved_faces(
+    chosen: Sequence[int],
+    rows: Sequence[ShapeReport],
+    params: Mapping[str, Any],
+    time: float,
+    seed: int,
+) -> Iterator[CheckFinding]:
+    """Yield how far blends move faces where there is no edge.
+
+    Args:
+        chosen: The shapes to look at.
+        rows: The reports about all shapes.
+        params: Values of parameters by name.
+        time: Time in seconds.
+        seed: Seed of the random places.
+    """
+    declared = {id(row.node): row.declared for row in rows}
+    for i in chosen:
+        node = rows[i].node
+        moved = moved_face(node, declared, params, time, seed)
+        if moved is None:
+            continue
+        severity = Severity.WARNING if moved.kind.keeps_faces else Severity.NOTE
+        message, hint = moved.text(described(node))
+        diagnostic = Diagnostic(ErrorCode.FACE_MOVED, message, node.place, hint)
+        yield CheckFinding(severity, i, diagnostic)
 
 
 def _violations(row: ShapeReport, measured: Measured, finding: Any) -> Iterator[CheckFinding]:
