@@ -200,6 +200,7 @@ TRANSLATE_FLAT = operator(
     point=translated_flat,
     keeps=EXACT,
     turn=same_direction_flat,
+    linear=True,
     bounds=translated_flat_bounds,
     growth=Growth.KEPT,
 )
@@ -208,6 +209,7 @@ ROTATE_FLAT = operator(
     point=rotated_flat,
     keeps=EXACT,
     turn=rotated_flat,
+    linear=True,
     bounds=rotated_flat_bounds,
     growth=Growth.TURNED,
 )
@@ -217,6 +219,7 @@ SCALE_FLAT = operator(
     finish=scaled_value,
     keeps=EXACT,
     turn=same_direction_flat,
+    linear=True,
     bounds=scaled_flat_bounds,
     limits={"factor": Limit.POSITIVE},
     growth=Growth.KEPT,
