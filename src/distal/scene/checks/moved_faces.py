@@ -163,10 +163,10 @@ def moved_face(
     random = np.random.default_rng(seed)
     count = -(-PLACES // len(regions))
     p = np.concatenate([random.uniform(*region, (count, n)) for region in regions])
-    return _Places(node, kind, size, params, time).moved(p)
+    return _FlushPlaces(node, kind, size, params, time).moved(p)
 
 
-class _Places:
+class _FlushPlaces:
     """A blend and its shapes, evaluated at places."""
 
     def __init__(
