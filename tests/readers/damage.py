@@ -115,6 +115,17 @@ def _text_ply() -> bytes:
     return (head + "\n".join(rows) + "\n").encode()
 
 
+def _strips_ply() -> bytes:
+    head = (
+        "ply\nformat binary_little_endian 1.0\nelement vertex 4\n"
+        "property float x\nproperty float y\nproperty float z\n"
+        "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+    )
+    corners = struct.pack("<12f", *(0, 0, 0), *(1, 0, 0), *(0, 1, 0), *(0, 0, 1))
+    strips = (0, 2, 1, -1, 0, 1, 3, -1, 0, 3, 2, 1, -1)
+    return head.encode() + corners + struct.pack(f"<{1 + len(strips)}i", len(strips), *strips)
+
+
 def _read_list(path: Path) -> object:
     try:
         return read_inputs(path, _PARAMETERS)
@@ -154,17 +165,25 @@ def _npy() -> bytes:
     return file.getvalue()
 
 
-def _nrrd(encoding: str) -> Callable[[], bytes]:
+def _nrrd(encoding: str, beside: str = "") -> Callable[[], bytes]:
     def made() -> bytes:
         head = (
             "NRRD0004\ntype: float\ndimension: 3\nsizes: 8 7 6\nspacings: 1 1 2\n"
             f"space: LPS\nspace directions: (0,-1,0) (1,0,0) (0,0.1,2)\nspace origin: (9,8,7)\n"
-            f"endian: little\nencoding: {encoding}\n\n"
-        ).encode()
+            f"endian: little\nencoding: {encoding}\n"
+        )
+        if beside:
+            return f"{head}data file: {beside}\n".encode()
         raw = _samples().tobytes()
-        return head + (gzip.compress(raw, mtime=0) if encoding == "gzip" else raw)
+        return f"{head}\n".encode() + (gzip.compress(raw, mtime=0) if encoding == "gzip" else raw)
 
     return made
+
+
+def _volume_with_raw(path: Path) -> object:
+    """Read a header whose samples are in a file beside it, which is not damaged."""
+    path.with_name("a.raw").write_bytes(_samples().tobytes())
+    return _volume(path)
 
 
 def _radiance(packed: bool = True) -> bytes:
@@ -173,14 +192,30 @@ def _radiance(packed: bool = True) -> bytes:
     return head + (line * 4 if packed else b"\x40\x50\x60\x80\1\1\1\5" * 8)
 
 
-def _nifti() -> bytes:
+_QFORM: Final = (0.1, 0.7, 0.1, -40.0, 30.0, 20.0)
+_SFORM: Final = (0.9, 0.1, 0.0, -40.0, 0.0, 1.1, 0.2, 30.0, 0.1, 0.0, 2.0, 20.0)
+
+
+def _nifti(codes: tuple[int, int] = (0, 0)) -> bytes:
     head = bytearray(352)
     struct.pack_into("<i", head, 0, 348)
     struct.pack_into("<8h", head, 40, 3, 8, 7, 6, 1, 1, 1, 1)
     struct.pack_into("<h", head, 70, 16)
     struct.pack_into("<8f", head, 76, 1, 1, 1, 2, 1, 1, 1, 1)
     struct.pack_into("<3f", head, 108, 352, 2.0, 0.1)
+    struct.pack_into("<2h18f", head, 252, *codes, *_QFORM, *_SFORM)
     head[344:348] = b"n+1\0"
+    return bytes(head) + _samples().tobytes()
+
+
+def _nifti_2() -> bytes:
+    head = bytearray(544)
+    struct.pack_into("<i8sh", head, 0, 540, b"n+2\0\r\n\x1a\n", 16)
+    struct.pack_into("<8q", head, 16, 3, 8, 7, 6, 1, 1, 1, 1)
+    struct.pack_into("<8d", head, 104, 1, 1, 1, 2, 1, 1, 1, 1)
+    struct.pack_into("<q2d", head, 168, 544, 2.0, 0.1)
+    struct.pack_into("<2i18d", head, 344, 0, 1, *_QFORM, *_SFORM)
+    struct.pack_into("<i", head, 500, 2)
     return bytes(head) + _samples().tobytes()
 
 
@@ -246,11 +281,11 @@ def _font() -> bytes:
     from fontTools.pens.ttGlyphPen import TTGlyphPen  # noqa: PLC0415
 
     builder = FontBuilder(1000, isTTF=True)
-    names = [".notdef", "A", "V", "pair"]
+    names = [".notdef", "A", "V", "acute", "pair"]
     builder.setupGlyphOrder(names)
-    builder.setupCharacterMap({65: "A", 86: "V", 66: "pair"})
+    builder.setupCharacterMap({65: "A", 86: "V", 66: "pair", 0x301: "acute"})
     glyphs = {}
-    for name in names[:3]:
+    for name in names[:4]:
         pen = TTGlyphPen(None)
         pen.moveTo((0, 0))
         pen.qCurveTo((250, 700), (500, 0))
@@ -347,13 +382,18 @@ SUBJECTS: Final = (
         "STL", "import.stl", _mesh(".stl"), lambda path: distal.Shape.from_mesh(path, spacing=0.2)
     ),
     Subject("PLY", "text.ply", _text_ply, read_mesh),
+    Subject("PLY", "strips.ply", _strips_ply, read_mesh),
     Subject("points", "text.ply", _text_ply, read_points),
     Subject("points", "a.xyz", _xyz, read_points),
     Subject("points", "b.obj", _obj_points, read_points),
     Subject("volume", "a.npy", _npy, _volume),
     Subject("volume", "a.nrrd", _nrrd("raw"), _volume),
     Subject("volume", "gzip.nrrd", _nrrd("gzip"), _volume),
+    Subject("volume", "a.nhdr", _nrrd("raw", beside="a.raw"), _volume_with_raw),
     Subject("volume", "a.nii", _nifti, _volume),
+    Subject("volume", "qform.nii", lambda: _nifti((1, 0)), _volume),
+    Subject("volume", "sform.nii", lambda: _nifti((1, 1)), _volume),
+    Subject("volume", "b.nii", _nifti_2, _volume),
     Subject("volume", "a.nii.gz", lambda: gzip.compress(_nifti(), mtime=0), _volume),
     *(
         Subject(
@@ -388,6 +428,8 @@ SUBJECTS: Final = (
     Subject("sound", "a.m4a", _sound("mp4", "aac", "fltp"), read_sound),
     Subject("sound", "a.mka", _sound("matroska", "pcm_s16le"), read_sound),
     Subject("font", "a.ttf", _font, lambda path: text_outline("AVB", font=path)),
+    # An accent above: the line is shaped.
+    Subject("font", "shaped.ttf", _font, lambda path: text_outline("AV\u0301B", font=path)),
     Subject(
         "drawing",
         "a.txt",

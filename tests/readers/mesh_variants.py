@@ -142,6 +142,7 @@ def _stl() -> None:
         "text, name with words of the format",
         plain.replace("solid x", "solid vertex 1 2 3 facet endsolid"),
     )
+    add("text, named 'facet normal'", plain.replace("solid x", "solid facet normal thing"))
     add("text, name of 2000 letters", plain.replace("solid x\n", "solid " + "n" * 2000 + "\n", 1))
     add(
         "text, two solids",

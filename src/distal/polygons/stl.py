@@ -21,7 +21,9 @@ _LOOK: Final = 512  # bytes in which binary files have a zero
 _BEGIN: Final = re.compile(rb"(?:^|[\r\n])[ \t]*(?:solid|facet)\b", re.I)
 # The line that names a solid may contain any words, but a file may be one line, too.
 _NAME: Final = re.compile(
-    rb"(?:^|(?<=[\r\n]))[^\S\r\n]*(?:end[ \t]*)?solid\b[^\r\n]*?(?=facet\s+normal\s|[\r\n]|$)", re.I
+    rb"(?:^|(?<=[\r\n]))[^\S\r\n]*(?:end[ \t]*)?solid\b[^\r\n]*?"
+    rb"(?=facet\s+normal(?:\s+[-+.\dein]+){3}\s|[\r\n]|$)",
+    re.I,
 )
 _END: Final = re.compile(rb"\bend[ \t]*solid\b", re.I)
 _FACET: Final = re.compile(

@@ -63,6 +63,9 @@ def axis_of(name: str, given: Any, parameters: Sequence[Parameter]) -> Axis:
     if spread is None:
         spread = _listed(column, given)
     elif column.is_integer:
+        ends = (spread[0], spread[-1])
+        if any(end != round(end) for end in ends):
+            raise ValueError(f"'{column.label}' takes whole numbers, not '{given:.60}'")
         spread = list(dict.fromkeys(map(round, spread)))
     if not spread:
         raise ValueError(f"'{column.label}' has no values")
