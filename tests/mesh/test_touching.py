@@ -14,6 +14,8 @@ from distal import Bolt, Box, Cylinder, Rectangle, Sphere, Torus, union
 from distal.ir.types import VEC3
 from distal.mesh import face_arithmetic
 from distal.mesh.kernels import FieldKernels
+from distal.mesh.outlines.layers import layer_places, layers_at
+from distal.mesh.outlines.outlining import OutlineRequest
 from tests.mesh.sample_solids import volume
 
 SOUND = {"open_edges": 0, "pinched_points": 0, "intersections": 0}
@@ -190,3 +192,16 @@ def test_flat_shapes_that_touch_have_one_outline(angle: float) -> None:
 def test_a_bolt_of_the_library_has_no_false_warning() -> None:
     report = Bolt("M6", 20.0).mesh(tolerance=0.1, check=True).report
     assert not report["warnings"] and report["check"] == SOUND
+
+
+def test_a_layer_in_the_plane_of_faces_that_touch_is_the_solid_above() -> None:
+    part = Box(2.0, 0.3, 2.0).translate(0.0, 0.15, 0.0) | Box(1.0, 1.0, 0.5).translate(
+        0.0, 0.8, 0.0
+    )
+    request = OutlineRequest()
+    places = layer_places(part, 0.2, "y", request)
+    assert places[1] == pytest.approx(0.3, abs=1e-12)
+    areas = [
+        layer.outline and layer.outline.area for layer in layers_at(part, places[:3], "y", request)
+    ]
+    assert areas == pytest.approx([4.0, 0.5, 0.5], rel=1e-6)

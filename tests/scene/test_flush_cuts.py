@@ -107,3 +107,6 @@ def test_it_follows_parameters_and_time() -> None:
     part = PLATE - Cylinder(0.7, slider("Height", 6.0, 1.0, 9.0))
     assert not flush_cuts(part.node, {}, 0.0)
     assert flush_cuts(part.node, {"height": 4.0}, 0.0)
+    # The body has no such parameter.
+    codes = [finding.diagnostic.code for finding in check(part, {"height": 4.0}).findings]
+    assert ErrorCode.FLUSH_CUT in codes

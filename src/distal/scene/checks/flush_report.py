@@ -20,6 +20,7 @@ from distal.lang import abs, func
 from distal.lang.lazy_module import LazyModule
 from distal.lang.runtime_access import executor
 from distal.scene.checks.bounds_report import NodeBounds, bounds_of_nodes
+from distal.scene.checks.measuring import own_values
 from distal.scene.objects.field import BaseShape
 from distal.scene.tree.node import Node
 
@@ -212,6 +213,10 @@ class _Cutters:
         points[rows, axis] = np.where(upper, high[axis] + beside, low[axis] - beside)
         return points
 
+    def _given(self, shape: Any) -> dict[str, Any]:
+        """Return the time, and the values of the parameters that a shape has."""
+        return {"params": own_values(shape, self.params), "time": self.time}
+
     def _surfaces(self, leaves: Sequence[PlacedLeaf]) -> Any:
         """Return the distance from the nearest surface of some leaves."""
         surfaces = tuple(_below(_SURFACE, placed.tree) for placed in leaves)
@@ -220,7 +225,7 @@ class _Cutters:
 
     def _onto(self, surface: Any, points: Points, owner: Indices) -> tuple[Points, Indices]:
         """Return points moved onto a surface, without those that have left everything."""
-        given: dict[str, Any] = {"params": self.params, "time": self.time}
+        given = self._given(surface)
         for _step in range(_STEPS):
             value, slope = surface(points, **given), surface.gradient(points, **given)
             square = np.maximum((slope * slope).sum(axis=1), 1e-12)
@@ -248,7 +253,7 @@ class _Cutters:
         self, surface: Any, points: Points, owner: Indices, size: float
     ) -> tuple[Points, Indices]:
         """Return the points, moved onto the cutters, at which a face of the whole coincides."""
-        given: dict[str, Any] = {"params": self.params, "time": self.time}
+        given = self._given(surface)
         points, owner = self._onto(surface, points, owner)
         on = surface(points, **given) <= _ON_SURFACE * size
         points, owner = points[on], owner[on]
@@ -257,6 +262,7 @@ class _Cutters:
         normal = surface.gradient(points + aside, **given)
         normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-12)[:, None]
         whole = BaseShape._of(self.whole)
+        given = self._given(whole)
         touches = np.abs(whole(points, **given)) <= _SAME * size
         for side in (-1.0, 1.0):
             touches &= whole(points + side * _BESIDE * size * normal, **given) > 0.0
@@ -279,9 +285,7 @@ class _Cutters:
         for placed in leaves if len(points) else ():
             shape = BaseShape._of(placed.tree)
             # Interpreted: to compile hundreds of leaves takes longer.
-            values = executor().call(
-                shape, (points,), {}, params=self.params, time=self.time, device="reference"
-            )
+            values = executor().call(shape, (points,), {}, device="reference", **self._given(shape))
             for row in np.flatnonzero(np.abs(np.asarray(values)) <= _SAME * size):
                 found[row].append(placed)
         return found
