@@ -67,6 +67,7 @@ class ErrorCode(StrEnum):
     OUTSIDE_BOX = "outside-box", "part of the shape is outside its box"
     NOT_EXACT = "not-exact", "the values of a shape that is declared exact are not distances"
     UNDEFINED = "undefined", "a value or a gradient is NaN or infinite"
+    FLUSH_CUT = "flush-cut", "a cutter ends exactly on a face of what it cuts"
     NO_BOX = "no-box", "the shape has no finite bounding box"
     NO_GROWTH = "no-growth", "the box is lost because the growth of a function is not known"
     BLEND_EVERYWHERE = "blend-everywhere", "a blend changes shapes far from where they meet"

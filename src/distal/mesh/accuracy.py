@@ -24,6 +24,9 @@ from distal.mesh.topology import Topology
 from distal.mesh.triangulate import Triangles
 from distal.polygons.whole_numbers import sorted_keys
 
+# Gaps and walls that are narrower, as a share of the shape's size, are not looked for: files hold 7
+# digits, and measured extents, by which parts are put on each other, are not more exact.
+NARROWEST: Final = 1e-6
 SAMPLES: Final = 7  # points of each triangle, besides its corners
 _AT_ONCE: Final = 1 << 16
 _CUT: Final = 1e-3  # cells
@@ -202,21 +205,21 @@ def first_of_runs(made: Triangles) -> Integers:
     return np.flatnonzero(np.diff(made.edge, prepend=-1))
 
 
-def lost_places(kernels: FieldKernels, suspicious: Floats, step: float) -> Floats:
+def lost_places(kernels: FieldKernels, suspicious: Floats, step: float, size: float) -> Floats:
     """Return points of the surface where the mesh has none, of shape (n, 3).
 
     Args:
         kernels: The shape.
         suspicious: Lattice points close to the surface whose cells have no change of sign.
         step: The length of a cell.
+        size: The largest side of the shape's box.
     """
     if not len(suspicious):
         return suspicious
     some = suspicious[:: -(-len(suspicious) // _MOST_FOLLOWED)]
-    reach = np.full(len(some), step)
-    found, places = kernels.call(
-        face_arithmetic.lost_surface, some, reach, types=[("p", VEC3), ("reach", FLOAT)]
-    )
+    lengths = [np.full(len(some), length) for length in (step, NARROWEST * size)]
+    types = [("p", VEC3), ("reach", FLOAT), ("narrow", FLOAT)]
+    found, places = kernels.call(face_arithmetic.lost_surface, some, *lengths, types=types)
     lost: Floats = places[found]
     return lost
 

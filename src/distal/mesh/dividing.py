@@ -78,8 +78,9 @@ def divided(
         changed = changes(tree, before)
         part = topology_of_changes(tree, changed, _MOST_OF_WHOLE)
         wanted = ()
-        # Cells that only a suspicion divides may have no surface in them.
-        if part is not None and len(part[0].edges.axis):
+        # Cells that only a suspicion divides may have no surface in them. Then edges at the rim of
+        # the part are all there is: they count for nothing, and may have no segments.
+        if part is not None and part[1].any():
             topology, certain = part
             seen = replace(looked_at, suspected=_places_near(looked_at.suspected, tree, changed))
             made = completed(kernels, extent, lattice, topology, seen, tolerance, _unwatched)

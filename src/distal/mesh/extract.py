@@ -205,7 +205,7 @@ def extracted(
     found = surface_bricks(
         kernels, lattice, extent.slopes, most, lambda share: watch(_SAMPLED * share), joined
     )
-    suspected = lost_places(kernels, found.lost, step)
+    suspected = lost_places(kernels, found.lost, step, extent.size)
     if not len(found.bricks):
         return Nothing(step, found.sampled, suspected)
     surface = _surface_cells(found)
