@@ -15,13 +15,9 @@ from distal import (
     Rectangle,
     Shape,
     Sphere,
-    abs,
-    func,
-    max,
-    slider,
     union,
-    vec3,
 )
+from distal.lang import abs, func, max, slider, vec3
 from distal.mesh.leaf_kinds import leaf_kinds
 from distal.mesh.leaf_spacing import WALL_SHARE
 from tests.mesh.narrow_solids import KINDS, narrow_solid, topology_of

@@ -47,7 +47,7 @@ _WITHIN: Final = 0.55
 _MOST_DIVIDED: Final = 300_000
 # What a cell costs that is a leaf of a tree, and one that is sampled and may be joined.
 _COST_OF_TREE: Final = 2.2
-_COST_OF_SAMPLES: Final = 0.15
+_COST_OF_SAMPLES: Final = 1.3
 # No first spacing has more cells on the sides of the box.
 _MOST_SAMPLED: Final = 400_000.0
 _TYPES: Final = [("p", VEC3)]
@@ -118,11 +118,15 @@ class LeafSpacing:
     Attributes:
         kernels: The shape.
         slopes: How fast its values change.
+        low: The lowest corner of its box.
+        high: The highest.
         least: The smallest spacing that walls and gaps between leaves are looked for with.
     """
 
     kernels: FieldKernels
     slopes: Slopes
+    low: Floats
+    high: Floats
     least: float
 
     @cached_property
@@ -135,29 +139,26 @@ class LeafSpacing:
         """Their numbers."""
         return self.kinds.numbers(self.kernels.params, self.kernels.time)
 
-    def aligned(self, step: float, low: Floats, high: Floats) -> float:
-        """Return a first spacing, at most ``step``, for which dividing costs the least.
+    @cached_property
+    def areas(self) -> Floats:
+        """About how large their surfaces are: the sides of their boxes."""
+        high, low = np.minimum(self.numbers.high, self.high), np.maximum(self.numbers.low, self.low)
+        x, y, z = np.maximum(high - low, 0.0).T
+        return 2.0 * (x * y + y * z + z * x)
 
-        Args:
-            step: The spacing without regard to leaves.
-            low: The lowest corner of the shape's box.
-            high: The highest.
-        """
-        sides = np.minimum(self.numbers.high, high) - np.maximum(self.numbers.low, low)
-        x, y, z = np.maximum(sides, 0.0).T
-        area, width = 2.0 * (x * y + y * z + z * x), self.numbers.width
-        narrow = (width < step) & (width > 0.0) & (area > 0.0)
+    def aligned(self, step: float) -> float:
+        """Return a first spacing, at most ``step``, for which dividing costs the least."""
+        area, width = self.areas, self.numbers.width
+        narrow = (width < step) & (area > 0.0) & (area <= _MOST_DIVIDED * width**2)
         if not narrow.any():
             return step
-        least = step / 2.0**MOST_HALVINGS
-        width = np.maximum(width, least)
         tried = np.unique(width[narrow][:, None] * 2.0 ** np.arange(MOST_HALVINGS + 1))
         tried = np.append(tried[tried < step], step)
         # The whole is sampled at the first spacing; what is narrow is divided further.
         halvings = np.ceil(np.log2(tried[:, None] / width[None, narrow]) - 1e-9)
         smaller = tried[:, None] / 2.0 ** np.maximum(halvings, 0.0)
         divided = np.where(halvings > 0.0, area[narrow] / smaller**2, 0.0).sum(axis=1)
-        x, y, z = high - low
+        x, y, z = self.high - self.low
         whole = np.maximum(2.0 * (x * y + y * z + z * x), area.max()) / tried**2
         cost = _COST_OF_TREE * divided + _COST_OF_SAMPLES * whole
         cost[(whole > _MOST_SAMPLED) & (tried < step)] = np.inf
@@ -171,29 +172,47 @@ class LeafSpacing:
             bricks: The bricks that were sampled, of shape (n, 3).
             levels: How often a cell can be halved.
         """
-        divided, rest = self._divided(lattice, bricks, levels)
-        leaves, side = self.kinds.leaves, rest.size * lattice.step
+        finest = lattice.step * 0.5**levels
+        width = np.where(self.numbers.width < finest * _ROUNDING, np.inf, self.numbers.width)
+        blocks = self._in_bricks(lattice, bricks)
+        while True:
+            divided, rest = self._divided(lattice, blocks, width, levels)
+            side = rest.size * lattice.step
+            narrow = rest.leaf[width[rest.leaf] < side * _ROUNDING]
+            if not len(narrow):
+                break
+            # Again, without the leaf that needs most: some of its cells would find nothing of it.
+            width[np.argmax(np.bincount(narrow))], finest = np.inf, max(finest, side)
+        leaves = self.kinds.leaves
+        lost = np.flatnonzero((width > self.numbers.width) & (self.areas > 0.0))
+        narrower = np.unique(np.concatenate([rest.leaf, lost]))
         unknown = np.flatnonzero(~self.numbers.known)
-        sure_to = max(self.least, side if len(rest.cells) else 0.0)
+        sure_to = max(self.least, side if len(rest.cells) else 0.0, finest if len(lost) else 0.0)
         return NeededCells(
             tuple(divided),
             max(sure_to, lattice.step) if len(unknown) else sure_to,
             tuple(leaves[i].leaf for i in unknown),
-            tuple(leaves[i].leaf for i in np.unique(rest.leaf)),
+            tuple(leaves[i].leaf for i in narrower),
         )
 
     def _divided(
-        self, lattice: Lattice, bricks: Integers, levels: int
+        self, lattice: Lattice, blocks: Blocks, width: Floats, levels: int
     ) -> tuple[list[Integers], Blocks]:
-        """Return the keys of the cells to divide, by level, and those that the limits leave."""
+        """Return the keys of the cells to divide, by level, and those that the limits leave.
+
+        Args:
+            lattice: The lattice.
+            blocks: Its bricks near the surface, with their leaves.
+            width: The width of each leaf.
+            levels: How often a cell can be halved.
+        """
         found: list[Integers] = []
-        blocks = self._in_bricks(lattice, bricks)
         while len(blocks.cells):
             side = blocks.size * lattice.step
             blocks = self._near(lattice, blocks)
             several = blocks.leaves_of > 1
             narrow = np.zeros(len(blocks.cells), np.bool_)
-            narrow[blocks.block[self.numbers.width[blocks.leaf] < side * _ROUNDING]] = True
+            narrow[blocks.block[width[blocks.leaf] < side * _ROUNDING]] = True
             if blocks.size > 1.0:
                 blocks = blocks.some(narrow | several).halves()
                 continue

@@ -383,7 +383,7 @@ def _report(node: Node, found: Extracted, wanted: Wanted, request: MeshRequest) 
         )
     needed = found.looked_at.needed
     assert needed is not None
-    if needed.narrower:
+    if needed.narrower and not lost:
         near = ", ".join(sorted({named(leaf) for leaf in needed.narrower})[:_MOST_NAMED])
         warnings.append(
             f"parts, walls or gaps of {near} are thinner than the smallest possible cells, "

@@ -84,8 +84,8 @@ def meshed(
     step = min(extent.size / FIRST_CELLS, 50.0 * wanted.tolerance)
     step = max(step, extent.size / 64.0)
     least = min(wanted.feature or math.inf, LEAST_WALL * wanted.tolerance) / BALL_CELLS
-    leaves = LeafSpacing(kernels, extent.slopes, least)
-    step = leaves.aligned(step, extent.low, extent.high)
+    leaves = LeafSpacing(kernels, extent.slopes, extent.low, extent.high, least)
+    step = leaves.aligned(step)
     done = 0.0
     for number in range(_MOST_ROUNDS):
         share = (0.1 if number == 0 else 0.85) * (1.0 - done)
