@@ -157,8 +157,11 @@ def _part_lines(title: str, made: Mesh, unit: str) -> Iterator[str]:
     error = report["error"]
     yield (
         f"at most {error['largest']:.2g} {unit} from the surface, {error['mean']:.2g} on average; "
-        f"parts and gaps of {report['feature']:.2g} {unit} are found"
+        f"parts and gaps of {report['sure_to']:.2g} {unit} are found"
     )
+    if report["unknown_widths"]:
+        unknown = ", ".join(report["unknown_widths"])
+        yield f"without {unknown}, whose widths are not known, smaller ones would be"
     if "check" in report:
         found = report["check"]
         yield (

@@ -26,6 +26,7 @@ from distal.mesh.cell_tree import CornerValues, balanced
 from distal.mesh.joining import JOINED_LEVELS
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import BRICK, DIGIT_OF_FILES, Lattice, cells_of_keys, keys_of
+from distal.mesh.leaf_spacing import LeafSpacing, NeededCells
 from distal.mesh.places import cell_points, margin_of, move_beyond, roots_of
 from distal.mesh.problems import MeshProblem
 from distal.mesh.reach import reached
@@ -73,12 +74,14 @@ class LookedAt:
         sampled: How many bricks were sampled.
         surface: The cells that the surface passes through.
         suspected: Points of the surface that they do not see.
+        needed: The cells that the leaves of the shape need; None if they were not asked.
     """
 
     step: float
     sampled: int
     surface: Integers
     suspected: Floats
+    needed: NeededCells | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,6 +185,7 @@ def extracted(
     watch: Callable[[float], None],
     joined: float | None = None,
     digit: float = DIGIT_OF_FILES,
+    leaves: LeafSpacing | None = None,
 ) -> Extracted | Nothing:
     """Return the mesh at one spacing.
 
@@ -195,6 +199,7 @@ def extracted(
         joined: Cells are joined where the surface moves by less, in scene units; None for equal
             cells.
         digit: The rounding of places, as a share.
+        leaves: The spacing that the shape's leaves need; None for that of the lattice alone.
 
     Raises:
         MeshProblem: The shape cannot be meshed.
@@ -206,13 +211,23 @@ def extracted(
         kernels, lattice, extent.slopes, most, lambda share: watch(_SAMPLED * share), joined
     )
     suspected = lost_places(kernels, found.lost, step, extent.size)
-    if not len(found.bricks):
+    levels = levels_of(lattice)
+    needed = None if leaves is None else leaves.needed(lattice, found.near, levels)
+    halves = () if needed is None else needed.divided
+    if not len(found.bricks) and not halves:
         return Nothing(step, found.sampled, suspected)
     surface = _surface_cells(found)
-    looked_at = LookedAt(step, found.sampled, surface, suspected)
-    joins = joined is not None and levels_of(lattice) > 0
-    if joins and len(found.separate[-1]) * _MOST_SEPARATE < len(surface):
-        topology, tree = topology_of_tree(_joined_tree(kernels, lattice, found, surface))
+    looked_at = LookedAt(step, found.sampled, surface, suspected, needed)
+    joins = joined is not None and levels > 0
+    joins = joins and len(found.separate[-1]) * _MOST_SEPARATE < len(surface)
+    if joins or halves:
+        if joins:
+            tree = _joined_tree(kernels, lattice, found, surface)
+        else:
+            tree = Tree.of_equal_cells(kernels, lattice, keys_of(surface))
+        topology, tree = topology_of_tree(tree.with_halves(halves))
+        if not len(topology.segments.axis):
+            return Nothing(step, found.sampled, suspected)
         units = tree.values.lattice
         made = completed(kernels, extent, units, topology, looked_at, tolerance, watch)
         return replace(made, tree=tree)

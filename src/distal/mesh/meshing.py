@@ -24,7 +24,7 @@ from distal.mesh.extract import Extent, Extracted, Nothing
 from distal.mesh.files.parts import Finish, Finishes
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.palette import MOST as MOST_COLORS
-from distal.mesh.parts import PlacedPart, part_at, parts_at
+from distal.mesh.parts import PlacedPart, named, part_at, parts_at
 from distal.mesh.problems import MeshProblem
 from distal.mesh.requests import box_of, watch_of
 from distal.mesh.simplify import Simplified
@@ -381,6 +381,14 @@ def _report(node: Node, found: Extracted, wanted: Wanted, request: MeshRequest) 
             f"the tolerance {wanted.tolerance:g} is exceeded: {error:.3g} at "
             f"{shown_place(accuracy.place)}"
         )
+    needed = found.looked_at.needed
+    assert needed is not None
+    if needed.narrower and not lost:
+        near = ", ".join(sorted({named(leaf) for leaf in needed.narrower})[:_MOST_NAMED])
+        warnings.append(
+            f"parts, walls or gaps of {near} are thinner than the smallest possible cells, "
+            f"{needed.sure_to:.2g}: some may be missing"
+        )
     corner = found.corner
     if corner.distance > wanted.tolerance and not lost:
         part = part_at(node, np.array(corner.place), request.params, request.time)
@@ -397,6 +405,8 @@ def _report(node: Node, found: Extracted, wanted: Wanted, request: MeshRequest) 
     return {
         "tolerance": wanted.tolerance,
         "feature": found.step * BALL_CELLS,
+        "sure_to": needed.sure_to * BALL_CELLS,
+        "unknown_widths": sorted({named(leaf) for leaf in needed.unknown})[:_MOST_NAMED],
         "spacing": found.step,
         "levels": found.levels,
         "joined": found.joined,

@@ -15,6 +15,7 @@ from typing import Final
 from distal.mesh.dividing import bad_share, divided, typical_error
 from distal.mesh.extract import Extent, Extracted, Nothing, extracted
 from distal.mesh.kernels import FieldKernels
+from distal.mesh.leaf_spacing import LEAST_WALL, LeafSpacing
 
 # The first mesh has this many cells along the largest side of the box.
 FIRST_CELLS: Final = 24
@@ -82,6 +83,9 @@ def meshed(
     # Finer first where the tolerance is: a cell is rarely more than 50 times as long.
     step = min(extent.size / FIRST_CELLS, 50.0 * wanted.tolerance)
     step = max(step, extent.size / 64.0)
+    least = min(wanted.feature or math.inf, LEAST_WALL * wanted.tolerance) / BALL_CELLS
+    leaves = LeafSpacing(kernels, extent.slopes, extent.low, extent.high, least)
+    step = leaves.aligned(step)
     done = 0.0
     for number in range(_MOST_ROUNDS):
         share = (0.1 if number == 0 else 0.85) * (1.0 - done)
@@ -90,7 +94,9 @@ def meshed(
             watch(base + share * part)
 
         tolerance = wanted.tolerance
-        found = extracted(kernels, extent, step, tolerance, MOST_BRICKS, inner, tolerance)
+        found = extracted(
+            kernels, extent, step, tolerance, MOST_BRICKS, inner, tolerance, leaves=leaves
+        )
         if isinstance(found, Extracted) and _joined_too_large(found, tolerance, finest):
             found = divided(kernels, extent, found, tolerance, inner, joined_only=True)
         done += share

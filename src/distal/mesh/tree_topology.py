@@ -102,6 +102,18 @@ class Tree:
         both = zip(self.divided, more, strict=True)
         return replace(self, divided=balanced([np.concatenate(pair) for pair in both]))
 
+    def with_halves(self, needed: Divided) -> Tree:
+        """Return the tree in which some cells are divided that are not joined, and what they need.
+
+        Args:
+            needed: The keys of cells of the base level, of their halves, and so on.
+        """
+        if not needed:
+            return self
+        none = self.surface[:0]
+        after = self.levels - self.base - len(needed)
+        return self.with_divided((*(none,) * self.base, *needed, *(none,) * after))
+
 
 def topology_of_tree(tree: Tree) -> tuple[Topology, Tree]:
     """Return the topology of a tree, and the tree with what had to be divided or added for it.

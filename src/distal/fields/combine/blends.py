@@ -16,6 +16,7 @@ from distal.fields.combine import edge_profiles, smooth
 from distal.fields.combine import joins as combine
 from distal.fields.extents import Boxes, hull_of, moved_out, overlap
 from distal.fields.guarantees import UNBOUNDED, Growth, Limit, Operator, named, operator
+from distal.fields.widths import groove_width, pipe_width
 from distal.lang import Func, exp2, func, length, max, min, vec2
 
 # Limit of an exponent; 2 to this power is larger than any size.
@@ -251,6 +252,7 @@ PIPE = operator(
     bounds=pipe_box,
     limits={"k": Limit.POSITIVE},
     growth=Growth.CORNERED,
+    width=pipe_width,
 )
 ENGRAVE = operator(
     "engrave",
@@ -269,6 +271,7 @@ GROOVE = operator(
     bounds=combine.first_box,
     limits=_SIZES,
     growth=Growth.FIRST,
+    width=groove_width,
 )
 TONGUE = operator(
     "tongue",
@@ -277,6 +280,7 @@ TONGUE = operator(
     bounds=ridge_box,
     limits=_SIZES,
     growth=Growth.FIRST,
+    width=groove_width,
 )
 POWER = operator(
     "union power",

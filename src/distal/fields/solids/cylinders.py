@@ -21,6 +21,7 @@ from distal.fields.solids.axes import (
     discs_bounds,
     upright_bounds,
 )
+from distal.fields.widths import between_width, cylinder_width, radius_width
 from distal.lang import abs, clamp, dot, func, length, max, vec2, vec3
 
 
@@ -38,7 +39,11 @@ def infinite_cylinder_bounds(radius: float) -> Bounds:
 
 
 @primitive(
-    "InfiniteCylinder", EXACT, bounds=infinite_cylinder_bounds, chord=infinite_cylinder_chord
+    "InfiniteCylinder",
+    EXACT,
+    bounds=infinite_cylinder_bounds,
+    chord=infinite_cylinder_chord,
+    width=radius_width,
 )
 @func
 def infinite_cylinder(p: vec3, radius: float = 0.5) -> float:
@@ -79,7 +84,13 @@ def cylinder_chord(p: vec3, direction: vec3, radius: float, height: float) -> ve
     return in_cylinder(p, direction, UPWARD, 0.5 * height, radius)
 
 
-@primitive("Cylinder", EXACT, bounds=cylinder_bounds, chord=cylinder_chord)
+@primitive(
+    "Cylinder",
+    EXACT,
+    bounds=cylinder_bounds,
+    chord=cylinder_chord,
+    width=cylinder_width,
+)
 @func
 def cylinder(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
     """Upright cylinder, centred at the origin.
@@ -119,6 +130,7 @@ def cylinder_between_chord(p: vec3, direction: vec3, start: vec3, end: vec3, rad
     bounds=cylinder_between_bounds,
     requires=apart,
     chord=cylinder_between_chord,
+    width=between_width,
 )
 @func
 def cylinder_between(
@@ -156,7 +168,11 @@ def rounded_cylinder_bounds(radius: float, height: float, rounding: float) -> Bo
 
 
 @primitive(
-    "RoundedCylinder", EXACT, bounds=rounded_cylinder_bounds, requires=rounded_cylinder_requires
+    "RoundedCylinder",
+    EXACT,
+    bounds=rounded_cylinder_bounds,
+    requires=rounded_cylinder_requires,
+    width=cylinder_width,
 )
 @func
 def rounded_cylinder(
@@ -198,6 +214,7 @@ def capsule_chord(p: vec3, direction: vec3, radius: float, height: float) -> vec
     bounds=capsule_bounds,
     limits={"height": Limit.NOT_NEGATIVE},
     chord=capsule_chord,
+    width=radius_width,
 )
 @func
 def capsule(p: vec3, radius: float = 0.4, height: float = 1.0) -> float:
@@ -244,7 +261,13 @@ def capsule_between_chord(p: vec3, direction: vec3, start: vec3, end: vec3, radi
     return in_capsule(p - 0.5 * (start + end), direction, axis, half, radius)
 
 
-@primitive("CapsuleBetween", EXACT, bounds=capsule_between_bounds, chord=capsule_between_chord)
+@primitive(
+    "CapsuleBetween",
+    EXACT,
+    bounds=capsule_between_bounds,
+    chord=capsule_between_chord,
+    width=radius_width,
+)
 @func
 def capsule_between(
     p: vec3, start: vec3 = LOW_END, end: vec3 = HIGH_END, radius: float = 0.4
