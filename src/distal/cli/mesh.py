@@ -159,6 +159,12 @@ def _part_lines(title: str, made: Mesh, unit: str) -> Iterator[str]:
         f"at most {error['largest']:.2g} {unit} from the surface, {error['mean']:.2g} on average; "
         f"parts and gaps of {report['feature']:.2g} {unit} are found"
     )
+    yield ", ".join(
+        f"{report[name]:,} {name[:-1] if report[name] == 1 else name}"
+        for name in ("pieces", "holes", "voids")
+    )
+    for name in report["leaves"]["unchecked"]:
+        yield f"whether all of {name} is there is not known: its distance is an estimate"
     if "check" in report:
         found = report["check"]
         yield (
