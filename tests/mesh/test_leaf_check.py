@@ -65,9 +65,7 @@ def topology(made):
 def completed(shape, cells=COARSE):
     """What a coarse mesh becomes when all leaves are looked for."""
     kernels, extent, found, tolerance = coarse_mesh(shape, cells)
-    found, check = leaf_check.with_all_leaves(
-        kernels, extent, found, tolerance, lambda share: None
-    )
+    found, check = leaf_check.with_all_leaves(kernels, extent, found, tolerance, lambda share: None)
     assert not check.missing
     return found.made
 

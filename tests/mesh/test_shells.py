@@ -75,7 +75,7 @@ def test_a_chain_of_rings_has_a_piece_and_a_hole_for_each():
     for number in range(9):
         points, triangles = torus(24, 8)
         turned = points if number % 2 else points[:, [0, 2, 1]] * (1.0, 1.0, -1.0)
-        rings.append((turned + (1.4 * number, 0.0, 0.0), triangles))
+        rings.append(moved((turned, triangles), 1.4 * number, 0.0, 0.0))
     assert shells_of(*together(*rings)) == Shells(9, 9, 0)
     hollow = [*rings, inside_out(torus(24, 8, 1.0, 0.1))]
     assert shells_of(*together(moved(box((40.0, 40.0, 40.0)), 60.0, 0.0, 0.0), *hollow)) == Shells(

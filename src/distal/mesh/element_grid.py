@@ -50,7 +50,9 @@ class ElementGrid:
         for number in numbers_in(level):
             side = self._base * 2.0 ** int(number)
             own = np.flatnonzero(level == number)
-            self._levels.append((side, *_sorted(own, self._cells(low[own], side), self._cells(high[own], side))))
+            self._levels.append(
+                (side, *_sorted(own, self._cells(low[own], side), self._cells(high[own], side)))
+            )
 
     def _cells(self, places: Floats, side: float) -> Integers:
         return np.floor((places - self._origin) / side).astype(np.int64)

@@ -1,4 +1,4 @@
-"""Check that a mesh shows every leaf of its shape, in each copy, and divide cells where it does not.
+"""Check that a mesh shows every leaf of its shape, in each copy; divide cells where it does not.
 
 Input: a mesh and the shape that it was made from. Output: the mesh, divided where triangles were
 missing, and what is still missing. The places that are demanded do not depend on how the mesh was
@@ -84,7 +84,7 @@ class LeafCheck:
     def warnings(self) -> list[str]:
         """Return what is not certain, in words."""
         return [
-            f"{_text(leaf)} is thin in too many places: not all of them were looked up in the result"
+            f"{_text(leaf)} is thin in too many places: not all of them were looked up"
             for leaf in self.coarse
         ]
 

@@ -8,7 +8,8 @@ function. Works for solids and for flat shapes.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
@@ -96,7 +97,8 @@ class LeafKernels:
             np.concatenate([getattr(each, name) for each in bounds]) for name in ("low", "high")
         )
         self.slope, self.divisor = (
-            np.concatenate([getattr(each, name) for each in bounds]) for name in ("slope", "divisor")
+            np.concatenate([getattr(each, name) for each in bounds])
+            for name in ("slope", "divisor")
         )
 
     def values(self, leaf: Integers, places: Floats) -> Floats:
@@ -132,7 +134,7 @@ class LeafKernels:
     def _rows(self, leaf: Integers) -> Iterator[tuple[int, slice]]:
         """Yield the kinds of rows, and where they are."""
         at = np.searchsorted(leaf, self._ends)
-        for kind, (start, stop) in enumerate(zip(at[:-1], at[1:], strict=True)):
+        for kind, (start, stop) in enumerate(pairwise(at)):
             if start < stop:
                 yield kind, slice(int(start), int(stop))
 
@@ -163,9 +165,7 @@ class LeafKernels:
         if kind.alone is not None:
             (slope, divisor), low, high = box_of(kind.alone, self._params, self._time)
             return KindBounds(low[None], high[None], np.array([slope]), np.array([divisor]))
-        found = executor().call(
-            kind.boxes, kind.columns, {}, params=self._params, time=self._time
-        )
+        found = executor().call(kind.boxes, kind.columns, {}, params=self._params, time=self._time)
         low, high, slope, divisor = (np.asarray(part, np.float64) for part in found)
         return KindBounds(_ended(low), _ended(high), slope, divisor)
 
@@ -231,7 +231,9 @@ class _OfKind(Composed):
         given = {name: reads[name] for name, _ in self._types}
         value = assembly.call(self._function, {**given, "field": field})
         params = tuple(Param(name, type) for name, type in self.signature)
-        return assembly.define(self._function.name, params, value.type, (Return(value),), node.place)
+        return assembly.define(
+            self._function.name, params, value.type, (Return(value),), node.place
+        )
 
     def functions(self) -> Iterable[Func]:
         """Yield the scene functions that the leaves call."""

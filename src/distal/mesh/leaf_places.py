@@ -120,9 +120,7 @@ class LeafSearch:
         self._rows = 0
         self._halves = np.indices((2,) * len(low)).reshape(len(low), -1).T
         self._radius = 0.5 * np.sqrt(len(low)) * 1.000001
-        self._step_along = (
-            flat_arithmetic.step_along if node.flat else arithmetic.step_along
-        )
+        self._step_along = flat_arithmetic.step_along if node.flat else arithmetic.step_along
 
     def places(self) -> LeafRows:
         """Return places of all leaves."""
@@ -183,7 +181,9 @@ class LeafSearch:
         """Return the boxes in which leaf and shape can both be 0."""
         low = self._origin + level.cell * level.side
         keep = (low <= np.minimum(self._kernels.high[level.leaf], self._high)).all(axis=1)
-        keep &= (low + level.side >= np.maximum(self._kernels.low[level.leaf], self._low)).all(axis=1)
+        keep &= (low + level.side >= np.maximum(self._kernels.low[level.leaf], self._low)).all(
+            axis=1
+        )
         leaf, cell, parent = level.leaf[keep], level.cell[keep], level.parent[keep]
         radius = self._radius * level.side
         middle = self._origin + (cell + 0.5) * level.side
