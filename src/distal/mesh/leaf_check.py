@@ -14,7 +14,7 @@ from typing import Any, Final, NoReturn
 
 import numpy as np
 
-from distal.mesh.cell_tree import Divided, widened
+from distal.mesh.cell_tree import HALVES, Divided
 from distal.mesh.dividing import divided
 from distal.mesh.element_grid import ElementGrid
 from distal.mesh.extract import Extent, Extracted, completed
@@ -28,13 +28,15 @@ from distal.mesh.tree_topology import Tree, topology_of_tree
 from distal.polygons.whole_numbers import sorted_keys
 from distal.scene.tree.errors import refuse
 
-# A place that is farther than so many times the tolerance, or the largest error that was measured,
-# from the mesh is missing; a nearer one is an error.
+# A place that is farther from the mesh than so many times the tolerance, and the largest error that
+# was measured, is missing; a nearer one is an error.
 _MISSING: Final = 2.0
 _MOST_ROUNDS: Final = 8
 # The share of a box's side that cells get: a bore as wide as the box has a sample inside.
 _SHARE: Final = 1.0 / math.sqrt(3.0)
-_MOST_CELLS: Final = 200_000  # that are divided at once
+_MOST_CELLS: Final = 400_000  # that are divided at once
+# The corners and the middle of a box, from its middle.
+_AROUND: Final = np.concatenate([HALVES - 0.5, np.zeros((1, 3))])
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +143,7 @@ def with_all_leaves(
     search = LeafSearch(kernels, extent.low, extent.high, extent.slopes, tolerance)
     rows = search.places()
     watch(1.0)
-    reach = _MISSING * max(tolerance, found.error)
+    reach = _limit(found, tolerance)
     away = distances(rows, found.made.points[found.made.triangles], reach)
     for _ in range(_MOST_ROUNDS):
         far = away > tolerance
@@ -154,7 +156,12 @@ def with_all_leaves(
         found = divided(kernels, extent, finer, tolerance, lambda share: watch(1.0))
         rows = joined([rows, search.finer(rows.some(far))], rows.place.shape[1])
         away = distances(rows, found.made.points[found.made.triangles], reach)
-    return found, result_of(search, rows, away, _MISSING * max(tolerance, found.error))
+    return found, result_of(search, rows, away, _limit(found, tolerance))
+
+
+def _limit(found: Extracted, tolerance: float) -> float:
+    """Return how far a place may be from a mesh whose errors are reported."""
+    return _MISSING * max(tolerance, found.error, found.corner.distance)
 
 
 def distances(rows: LeafRows, corners: Floats, reach: float) -> Floats:
@@ -228,15 +235,16 @@ def _divided_at(
 
 
 def _cells_at(tree: Tree, rows: LeafRows) -> Divided:
-    """Return the keys of the cells to divide at places, and beside them, by level."""
+    """Return the keys of the cells to divide at boxes around places, by level."""
     lattice = tree.values.lattice
     found = []
     for level in range(tree.levels):
         side = lattice.step * (1 << tree.levels >> level)
-        large = rows.place[rows.side * _SHARE < side]
+        large = rows.some(rows.side * _SHARE < side)
         if level < tree.base or not len(large):
             found.append(np.empty(0, np.int64))
             continue
-        cells = np.floor((large - lattice.origin) / side).astype(np.int64)
-        found.append(widened(sorted_keys(keys_of(cells))))
+        near = large.place[:, None] + _AROUND * large.side[:, None, None]
+        cells = np.floor((near.reshape(-1, 3) - lattice.origin) / side).astype(np.int64)
+        found.append(sorted_keys(keys_of(cells)))
     return tuple(found)

@@ -198,7 +198,8 @@ def _record_leaves(report: dict[str, Any], leaves: LeafCheck, wanted: Wanted) ->
     """Add to the report what the comparison of leaves with the mesh found."""
     report["leaves"] = leaves.report()
     error = report["error"]
-    if leaves.error_at is not None and leaves.error > max(wanted.tolerance, error["largest"]):
+    known = max(wanted.tolerance, error["largest"], error["cut_corner"])
+    if leaves.error_at is not None and leaves.error > known:
         error["surface_to_mesh"] = error["largest"] = leaves.error
         error["place"] = list(leaves.error_at)
         report["warnings"].append(
