@@ -162,6 +162,12 @@ def _part_lines(title: str, made: Mesh, unit: str) -> Iterator[str]:
     if report["unknown_widths"]:
         unknown = ", ".join(report["unknown_widths"])
         yield f"without {unknown}, whose widths are not known, smaller ones would be"
+    yield ", ".join(
+        f"{report[name]:,} {name[:-1] if report[name] == 1 else name}"
+        for name in ("pieces", "holes", "voids")
+    )
+    for name in report["leaves"]["unchecked"]:
+        yield f"whether all of {name} is there is not known: its distance is an estimate"
     if "check" in report:
         found = report["check"]
         yield (

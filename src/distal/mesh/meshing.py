@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import time as clock
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import numpy as np
@@ -23,10 +23,12 @@ from distal.mesh.coloring import Painted, painted
 from distal.mesh.extract import Extent, Extracted, Nothing
 from distal.mesh.files.parts import Finish, Finishes
 from distal.mesh.kernels import FieldKernels
+from distal.mesh.leaf_check import LeafCheck, refuse_missing, with_all_leaves
 from distal.mesh.palette import MOST as MOST_COLORS
 from distal.mesh.parts import PlacedPart, named, part_at, parts_at
 from distal.mesh.problems import MeshProblem
 from distal.mesh.requests import box_of, watch_of
+from distal.mesh.shells import shells_of
 from distal.mesh.simplify import Simplified
 from distal.mesh.solid import Floats, Integers, Mesh
 from distal.mesh.spacing import BALL_CELLS, TooFine, Wanted, meshed
@@ -128,7 +130,9 @@ def mesh_of_node(node: Node, request: MeshRequest) -> Mesh:
     """
     begin = clock.process_time()
     found, wanted, kernels = found_mesh(node, request)
+    found, leaves = _with_all_leaves(node, kernels, found, wanted, request)
     report = _report(node, found, wanted, request)
+    _record_leaves(report, leaves, wanted)
     points, triangles, normals = found.made.points, found.made.triangles, found.normals
     paint = _paint(node, points, triangles, request)
     if paint is not None and paint.varies:
@@ -155,6 +159,7 @@ def mesh_of_node(node: Node, request: MeshRequest) -> Mesh:
             triangles = less.triangles
             points, normals = points[less.points], normals[less.points]
             at_points, of_triangles, finish = _appearance(paint, points, triangles, report)
+    report |= asdict(shells_of(points, triangles))
     if request.check:
         report["check"] = checked(points, triangles, watch_of(request))
     report["rows"] = kernels.rows
@@ -163,6 +168,45 @@ def mesh_of_node(node: Node, request: MeshRequest) -> Mesh:
         request.progress(1.0)
     made = (points, triangles, normals)
     return Mesh(*made, at_points, of_triangles, report, node.name, finish)
+
+
+def _with_all_leaves(
+    node: Node, kernels: FieldKernels, found: Extracted, wanted: Wanted, request: MeshRequest
+) -> tuple[Extracted, LeafCheck]:
+    """Return a mesh that shows all leaves of its tree, and what was compared.
+
+    Args:
+        node: The tree.
+        kernels: Its kernels.
+        found: The mesh.
+        wanted: The tolerance.
+        request: What was asked.
+
+    Raises:
+        SceneValueError: A leaf is missing, and cells cannot be small enough for it.
+    """
+    share = FIRST_SHARE if request.simplify else 1.0
+    watch = watch_of(replace(request, progress=None))
+    extent = extent_of(node, request)
+    found, leaves = with_all_leaves(kernels, extent, found, share * wanted.tolerance, watch)
+    if leaves.missing:
+        refuse_missing(leaves.missing, "mesh", "feature={width}, or a smaller tolerance=")
+    return found, leaves
+
+
+def _record_leaves(report: dict[str, Any], leaves: LeafCheck, wanted: Wanted) -> None:
+    """Add to the report what the comparison of leaves with the mesh found."""
+    report["leaves"] = leaves.report()
+    error = report["error"]
+    known = max(wanted.tolerance, error["largest"], error["cut_corner"])
+    if leaves.error_at is not None and leaves.error > known:
+        error["surface_to_mesh"] = error["largest"] = leaves.error
+        error["place"] = list(leaves.error_at)
+        report["warnings"].append(
+            f"the tolerance {wanted.tolerance:g} is exceeded: {leaves.error:.3g} at "
+            f"{shown_place(leaves.error_at)}"
+        )
+    report["warnings"] += leaves.warnings()
 
 
 def _paint(node: Node, points: Floats, triangles: Integers, request: MeshRequest) -> Painted | None:

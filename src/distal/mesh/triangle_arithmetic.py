@@ -74,6 +74,22 @@ def distance_to_triangle(p: vec3, a: vec3, b: vec3, c: vec3) -> float:
 
 
 @func
+def distance_if_alike(p: vec3, normal: vec3, a: vec3, b: vec3, c: vec3, least: float) -> float:
+    """Return the distance from a point to a triangle; 1e30 if its normal is another.
+
+    Args:
+        p: The point.
+        normal: The normal that is expected there, of length 1.
+        a: The first corner of the triangle.
+        b: The second corner.
+        c: The third corner.
+        least: The least cosine between the normal and that of the triangle.
+    """
+    outside = unit_or_zero(cross(b - a, c - a))
+    return distance_to_triangle(p, a, b, c) if dot(outside, normal) >= least else 1e30
+
+
+@func
 def distance_to_pair(p: vec3, a: vec3, b: vec3, c: vec3, d: vec3) -> float:
     """Return the distance from a point to the two triangles beside the line from a to c."""
     return min(distance_to_triangle(p, a, b, c), distance_to_triangle(p, a, c, d))
