@@ -40,7 +40,7 @@ def test_a_mesh_is_saved_and_described(run: Any) -> None:
     done = run("mesh", "parts.py:part", "-o", "part.stl", "--unit", "cm", "--check")
     assert done.exit_code == 0
     first, second, third = done.stderr.splitlines()
-    assert first.startswith("part.stl: ") and first.endswith(" triangles, 2 x 1 x 1 cm")
+    assert first.startswith("part.stl: ") and first.endswith(" triangles, 2 x 1 x 1 cm, 2 cubic cm")
     assert "cm from the surface" in second
     assert third == "0 open edges, 0 pinched points, 0 intersections"
     data = Path("part.stl").read_bytes()[84:]
