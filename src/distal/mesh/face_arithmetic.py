@@ -34,7 +34,7 @@ CLEARLY = 1e-4
 # Below this cosine between a triangle's normal and that of the surface, this is another face.
 SAME_FACE = 0.5
 # How many times the angle the surface may turn within a triangle where its radius is small.
-MOST_TURNS = 3.0
+MOST_TURNS = 2.75
 
 
 @func

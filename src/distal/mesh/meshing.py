@@ -44,7 +44,7 @@ DEFAULT_TOLERANCE: Final = 2e-3
 # Without an angle and without a tolerance it is this one, or a larger one where it would need more
 # triangles than these.
 DEFAULT_ANGLE: Final = math.radians(5.0)
-_MOST_BY_ANGLE: Final = 200_000
+_MOST_BY_ANGLE: Final = 150_000
 # A mesh that is simplified first takes this share of the tolerance, and leaves the rest.
 FIRST_SHARE: Final = 0.5
 _MOST_NAMED: Final = 8  # lost parts that are named

@@ -27,7 +27,9 @@ _LIMITS: Final[list[tuple[str, Type]]] = [
 # a tolerance of .4 by default, and the radius of a hole of 2.2 is 2.75 of these.
 LEAST_RADIUS: Final = 2.0
 # It may turn by the angle alone where its radius is at least so many tolerances.
-FROM_RADIUS: Final = 20.0
+FROM_RADIUS: Final = 45.0
+# What is measured is right within a few percent: cells are not divided for as little.
+_SLACK: Final = 1.15  # of the square
 # A triangle that is closer to the surface than this share of the tolerance, for each unit of the
 # angle squared, turns by less: a third of the height of a chord at the least radius.
 _FLAT: Final = 0.75
@@ -114,7 +116,8 @@ def turns(
         columns = (np.full(len(a), limit) for limit in limits)
         function = face_arithmetic.turn_in_triangle
         shares = kernels.call(function, a, b, c, *columns, types=[*_CORNERS, *_LIMITS])
-        found[rows] = shares.reshape(len(rows), -1).max(axis=1)
+        largest = shares.reshape(len(rows), -1).max(axis=1)
+        found[rows] = np.where(largest > _SLACK, largest, np.minimum(largest, 1.0))
 
     parallel_map(measure, _groups(counts[bent]))
     return found
