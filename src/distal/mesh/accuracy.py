@@ -17,7 +17,7 @@ from distal.mesh import arithmetic, face_arithmetic, triangle_arithmetic
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.lattice import Lattice, keys_of
 from distal.mesh.parallel import parallel_map, slices_of
-from distal.mesh.pieces import distances
+from distal.mesh.pieces import distances, turns
 from distal.mesh.places import Roots
 from distal.mesh.solid import Floats, Integers
 from distal.mesh.topology import Topology
@@ -69,11 +69,23 @@ class Misses:
         triangles: The largest distance of each triangle from the surface.
         points: The distance of each point.
         roots: The distance of each root to the triangles around its edge.
+        turns: How much the surface turns within each triangle, as a share of what it may, squared.
     """
 
     triangles: Floats
     points: Floats
     roots: Floats
+    turns: Floats
+
+    def excess(self, tolerance: float) -> Floats:
+        """Return the distances of triangles; where a turn exceeds what it may be by more, that.
+
+        As a distance does, the square of a turn falls with the square of the length of a cell.
+
+        Args:
+            tolerance: The distance that counts as much as a turn that is just small enough.
+        """
+        return np.maximum(self.triangles, tolerance * self.turns)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +102,13 @@ class CutCorner:
 
 
 def measured(
-    kernels: FieldKernels, made: Triangles, roots: Roots, topology: Topology, step: float
+    kernels: FieldKernels,
+    made: Triangles,
+    roots: Roots,
+    topology: Topology,
+    step: float,
+    tolerance: float,
+    angle: float,
 ) -> tuple[Accuracy, Floats, Misses]:
     """Return the accuracy of a mesh, the normals at its points, and each distance.
 
@@ -100,6 +118,8 @@ def measured(
         roots: The roots on edges of the lattice.
         topology: What belongs together.
         step: The length of a cell.
+        tolerance: How far the mesh may be from the surface.
+        angle: How much the surface may turn within a triangle, in radians; infinite for any angle.
     """
     at_points, normals = kernels.call(
         arithmetic.distance_and_normal,
@@ -128,8 +148,9 @@ def measured(
         x, y, z = made.points[int(np.argmax(at_points))].tolist()
         largest, place = worst_point, (x, y, z)
     cut = int((at_points > _CUT * step).sum())
+    turned = turns(kernels, made.points, made.triangles, counts, misses, tolerance, angle)
     accuracy = Accuracy(largest, found.mean, place, from_surface, worst_point, cut)
-    return accuracy, normals, Misses(misses, at_points, own)
+    return accuracy, normals, Misses(misses, at_points, own, turned)
 
 
 def _from_surface(

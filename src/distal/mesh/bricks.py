@@ -33,7 +33,7 @@ BRICKS_AT_ONCE: Final = 128
 # cell with a change of sign.
 SUSPICIOUS: Final = 0.9
 # Half of a cube's diagonal, for each unit of its side.
-_HALF_DIAGONAL: Final = 0.5 * float(np.sqrt(3.0))
+HALF_DIAGONAL: Final = 0.5 * float(np.sqrt(3.0))
 _NO_BLOCKS: Final[Blocks] = (np.empty(0, np.int64),) * 3
 Watch = Callable[[float], None]
 
@@ -135,7 +135,7 @@ def _near_blocks(
     values = kernels.call(distance_value, centers, types=[("p", VEC3)])
     check_numbers(values, centers)
     reach = np.where(values > 0.0, min(slopes.divisor, slopes.slope), slopes.slope)
-    near: Integers = blocks[np.abs(values) <= reach * (side * _HALF_DIAGONAL * 1.000001)]
+    near: Integers = blocks[np.abs(values) <= reach * (side * HALF_DIAGONAL * 1.000001)]
     return near
 
 

@@ -6,6 +6,7 @@ what they miss. ``spacing`` chooses the length of a cell.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Final
@@ -53,16 +54,18 @@ class Extent:
         low: The lowest corner of its box.
         high: The highest corner.
         slopes: How fast its values change.
+        measured: The largest side of the solid itself, if that is less; None if it is not measured.
     """
 
     low: Floats
     high: Floats
     slopes: Slopes
+    measured: float | None = None
 
     @property
     def size(self) -> float:
-        """The largest side of the box."""
-        return float((self.high - self.low).max())
+        """The largest side of the box, or of the solid."""
+        return self.measured or float((self.high - self.low).max())
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,6 +152,10 @@ class Extracted:
         """The largest distance, measured both ways."""
         return max(self.accuracy.largest, self.accuracy.from_surface)
 
+    def excess(self, tolerance: float) -> float:
+        """Return the largest distance, or turn as a distance (``Misses.excess``)."""
+        return max(self.error, float(self.misses.excess(tolerance).max()))
+
     @property
     def divisible(self) -> bool:
         """Whether its undivided cells can be halved."""
@@ -186,6 +193,7 @@ def extracted(
     joined: float | None = None,
     digit: float = DIGIT_OF_FILES,
     leaves: LeafSpacing | None = None,
+    angle: float = math.inf,
 ) -> Extracted | Nothing:
     """Return the mesh at one spacing.
 
@@ -200,6 +208,7 @@ def extracted(
             cells.
         digit: The rounding of places, as a share.
         leaves: The spacing that the shape's leaves need; None for that of the lattice alone.
+        angle: How much the surface may turn within a triangle, in radians.
 
     Raises:
         MeshProblem: The shape cannot be meshed.
@@ -229,11 +238,11 @@ def extracted(
         if not len(topology.segments.axis):
             return Nothing(step, found.sampled, suspected)
         units = tree.values.lattice
-        made = completed(kernels, extent, units, topology, looked_at, tolerance, watch)
+        made = completed(kernels, extent, units, topology, looked_at, tolerance, watch, angle)
         return replace(made, tree=tree)
     topology = topology_of(kernels, lattice, found)
     del found  # samples and masks are not needed any more
-    return completed(kernels, extent, lattice, topology, looked_at, tolerance, watch)
+    return completed(kernels, extent, lattice, topology, looked_at, tolerance, watch, angle)
 
 
 def _surface_cells(found: SurfaceBricks) -> Integers:
@@ -268,6 +277,7 @@ def completed(
     looked_at: LookedAt,
     tolerance: float,
     watch: Callable[[float], None],
+    angle: float = math.inf,
 ) -> Extracted:
     """Return the mesh of a topology.
 
@@ -279,6 +289,7 @@ def completed(
         looked_at: What equal cells have seen.
         tolerance: How far lines between points may be from the surface, in scene units.
         watch: Called with the share of the work that is done.
+        angle: How much the surface may turn within a triangle, in radians.
     """
     roots = roots_of(kernels, lattice, topology)
     watch(_ROOTS)
@@ -290,7 +301,8 @@ def completed(
     inside_first = topology.edges.first < 0.0
     made = triangulated(kernels, lattice, topology, roots, places, reach, inside_first, tolerance)
     watch(_TRIANGLES)
-    accuracy, normals, misses = measured(kernels, made, roots, topology, lattice.step)
+    limits = tolerance, angle
+    accuracy, normals, misses = measured(kernels, made, roots, topology, lattice.step, *limits)
     suspected, surface = looked_at.suspected, looked_at.surface
     lost, nearest = split_lost(lattice, topology, places, suspected, surface)
     lengths = np.sqrt(np.einsum("ij,ij->i", roots.slopes, roots.slopes))

@@ -9,6 +9,7 @@ from __future__ import annotations
 from distal.lang import (
     Field3,
     abs,
+    asin,
     clamp,
     cross,
     dot,
@@ -16,6 +17,7 @@ from distal.lang import (
     gradient,
     length,
     max,
+    min,
     sign,
     value_and_gradient,
     vec3,
@@ -40,6 +42,10 @@ BEYOND = 1.5
 # Signs beside a point of the surface are taken at so many times the distance within which it is on
 # the surface.
 ACROSS = 4.0
+# Below this cosine between a triangle's normal and that of the surface, this is another face.
+SAME_FACE = 0.5
+# How many times the angle the surface may turn within a triangle where its radius is small.
+MOST_TURNS = 2.75
 
 
 @func
@@ -329,6 +335,54 @@ def depth_along(
         if (field(p + way * distance) < 0.0) != inside or distance > most:
             break
     return distance
+
+
+@func
+def turn_in_triangle(
+    field: Field3,
+    a: vec3,
+    b: vec3,
+    c: vec3,
+    pieces: float,
+    angle: float,
+    from_radius: float,
+    least_radius: float,
+) -> float:
+    """Return how much the surface turns within a triangle, as a share of what it may, squared.
+
+    Normals are compared at three points inside, half as far apart as the corners: those at corners
+    are of both sides where a crease is. What faces another way than the triangle is another face
+    of the solid, beside a crease.
+
+    Args:
+        field: The field.
+        a: The first corner.
+        b: The second corner.
+        c: The third corner.
+        pieces: Of how many such triangles a side of the whole triangle is.
+        angle: How much the surface may turn within the whole triangle, in radians.
+        from_radius: Where the radius of the surface is smaller, it may turn more, up to
+            ``MOST_TURNS`` times as much.
+        least_radius: Where the radius is below this, it may turn by any angle.
+    """
+    middle = (a + b + c) / 3.0
+    points = [(a + middle) * 0.5, (b + middle) * 0.5, (c + middle) * 0.5]
+    face = unit_or_zero(cross(b - a, c - a))
+    normals = [vec3(0.0), vec3(0.0), vec3(0.0)]
+    for i in range(3):
+        normal = unit_or_zero(gradient(field, points[i]))
+        normals[i] = normal if dot(normal, face) > SAME_FACE else vec3(0.0)
+    turn = 0.0
+    rate = 1e-30
+    for i in range(3):
+        n, m = normals[i], normals[(i + 1) % 3]
+        if dot(n, n) > 0.0 and dot(m, m) > 0.0:
+            between = 2.0 * asin(min(0.5 * length(n - m), 1.0))
+            turn = max(turn, between)
+            rate = max(rate, between / max(length(points[i] - points[(i + 1) % 3]), 1e-30))
+    allowed = angle * clamp(from_radius * rate, 1.0, MOST_TURNS)
+    share = 2.0 * turn * pieces / allowed
+    return 0.0 if rate * least_radius > 1.0 else share * share
 
 
 @func

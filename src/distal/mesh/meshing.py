@@ -22,6 +22,7 @@ from distal.mesh.checks import checked
 from distal.mesh.coloring import Painted, painted
 from distal.mesh.extract import Extent, Extracted, Nothing
 from distal.mesh.files.parts import Finish, Finishes
+from distal.mesh.integrals import size_and_volume
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.leaf_check import LeafCheck, refuse_missing, with_all_leaves
 from distal.mesh.palette import MOST as MOST_COLORS
@@ -32,6 +33,7 @@ from distal.mesh.shells import shells_of
 from distal.mesh.simplify import Simplified
 from distal.mesh.solid import Floats, Integers, Mesh
 from distal.mesh.spacing import BALL_CELLS, TooFine, Wanted, meshed
+from distal.mesh.surface_box import with_size
 from distal.packages import imported
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
@@ -41,10 +43,19 @@ if TYPE_CHECKING:
 
 # Without a tolerance it is this share of the largest side of the box.
 DEFAULT_TOLERANCE: Final = 2e-3
+# Without an angle and without a tolerance it is this one, or a larger one where it would need more
+# triangles than these.
+DEFAULT_ANGLE: Final = math.radians(5.0)
+_MOST_BY_ANGLE: Final = 150_000
 # A mesh that is simplified first takes this share of the tolerance, and leaves the rest.
 FIRST_SHARE: Final = 0.5
 _MOST_NAMED: Final = 8  # lost parts that are named
 _MOST_ASKED: Final = 100  # members of a union that are asked for their ends
+_POSITIVE: Final = (
+    ("tolerance", "a length", "0.01"),
+    ("feature", "a length", "0.01"),
+    ("angle", "an angle in radians", "0.1"),
+)
 STEEP: Final = 1e6  # a slope above it says nothing
 
 
@@ -65,6 +76,8 @@ class MeshRequest:
         colors: Whether the mesh has the colors of the shape's materials; a number for at most so
             many different ones.
         simplify: Whether points that the tolerance can spare are removed.
+        angle: How much the surface may turn within a triangle, in radians; None for 5 degrees
+            without a tolerance, and for any angle with one or with ``simplify``, which keeps none.
     """
 
     tolerance: float | None = None
@@ -76,6 +89,7 @@ class MeshRequest:
     check: bool = False
     colors: bool | int = True
     simplify: bool = False
+    angle: float | None = None
 
     def __post_init__(self) -> None:
         """Check the numbers.
@@ -83,13 +97,13 @@ class MeshRequest:
         Raises:
             SceneValueError: One is not a positive number.
         """
-        for name in ("tolerance", "feature"):
+        for name, what, example in _POSITIVE:
             value = getattr(self, name)
             if value is None:
                 continue
             valid = isinstance(value, int | float) and not isinstance(value, bool)
             if not valid or not 0.0 < value < math.inf:
-                refuse(f"{name} is a length above 0, not {value!r:.40}", f"{name}=0.01")
+                refuse(f"{name} is {what} above 0, not {value!r:.40}", f"{name}={example}")
         wrong = not isinstance(self.colors, int) or not 0 <= self.colors <= MOST_COLORS
         if wrong:
             words = f"colors is True, False, or a number from 1 to {MOST_COLORS}"
@@ -160,6 +174,7 @@ def mesh_of_node(node: Node, request: MeshRequest) -> Mesh:
             points, normals = points[less.points], normals[less.points]
             at_points, of_triangles, finish = _appearance(paint, points, triangles, report)
     report |= asdict(shells_of(points, triangles))
+    report["size"], report["volume"] = size_and_volume(points, triangles)
     if request.check:
         report["check"] = checked(points, triangles, watch_of(request))
     report["rows"] = kernels.rows
@@ -257,9 +272,9 @@ def found_mesh(node: Node, request: MeshRequest) -> tuple[Extracted, Wanted, Fie
         Cancelled: ``request.cancel`` stopped the work.
         SceneValueError: The shape cannot be meshed; the message names it and says what to change.
     """
-    extent = extent_of(node, request)
     kernels = FieldKernels(node, request.params, request.time)
-    wanted = Wanted(request.tolerance or DEFAULT_TOLERANCE * extent.size, request.feature)
+    extent = with_size(kernels, extent_of(node, request))
+    wanted = _wanted(extent, request)
     share = FIRST_SHARE if request.simplify else 1.0
     first = replace(wanted, tolerance=share * wanted.tolerance)
     try:
@@ -273,6 +288,16 @@ def found_mesh(node: Node, request: MeshRequest) -> tuple[Extracted, Wanted, Fie
     if isinstance(found, Nothing):
         refuse_nothing(node, found, request)
     return found, wanted, kernels
+
+
+def _wanted(extent: Extent, request: MeshRequest) -> Wanted:
+    """Return what is wanted of a mesh."""
+    tolerance = request.tolerance or DEFAULT_TOLERANCE * extent.size
+    if request.angle is not None:
+        return Wanted(tolerance, request.feature, request.angle)
+    if request.tolerance is not None or request.simplify:
+        return Wanted(tolerance, request.feature)
+    return Wanted(tolerance, request.feature, DEFAULT_ANGLE, _MOST_BY_ANGLE)
 
 
 def extent_of(node: Node, request: MeshRequest) -> Extent:
@@ -448,6 +473,7 @@ def _report(node: Node, found: Extracted, wanted: Wanted, request: MeshRequest) 
         )
     return {
         "tolerance": wanted.tolerance,
+        "angle": wanted.angle if math.isfinite(wanted.angle) else None,
         "feature": found.step * BALL_CELLS,
         "sure_to": needed.sure_to * BALL_CELLS,
         "unknown_widths": sorted({named(leaf) for leaf in needed.unknown})[:_MOST_NAMED],
