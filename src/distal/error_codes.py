@@ -71,6 +71,7 @@ class ErrorCode(StrEnum):
     NO_BOX = "no-box", "the shape has no finite bounding box"
     NO_GROWTH = "no-growth", "the box is lost because the growth of a function is not known"
     BLEND_EVERYWHERE = "blend-everywhere", "a blend changes shapes far from where they meet"
+    FACE_MOVED = "face-moved", "a blend moves a face where there is no edge"
     PROVED = "proved", "the slope or the box is proved in a region"
     SLOPE_PROVED = "slope-proved", "the slope holds at every point of the box"
     SLOPE_NOT_PROVED = "slope-not-proved", "the slope is neither proved nor refuted"

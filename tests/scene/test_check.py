@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from distal import Box, Hexagon, Plane, Scene, Shape, Sphere, Torus, time, union
+from distal import Box, Cylinder, Hexagon, Plane, Scene, Shape, Sphere, Torus, time, union
 from distal.lang import func, length, max, sin, slider, vec3
 from distal.scene.checks.bounds_report import bounds_of_nodes
 from distal.scene.checks.measuring import measure
@@ -342,3 +342,60 @@ def test_the_bounds_of_each_of_many_parts_are_its_own():
         wanted = one.bounds()
         np.testing.assert_allclose((low, high), wanted, atol=1e-5)
         assert low[0] < 3.0 * i < high[0]
+
+
+def moved_faces(shape):
+    found = check(shape)
+    return [f for f in found.findings if f.diagnostic.code == "face-moved"]
+
+
+def test_a_blend_that_moves_no_face_is_not_named():
+    base, leg = Box(60, 14, 30).translate(0, 7, 0), Box(14, 50, 30).translate(-23, 25, 0)
+    turned = (base.rotate(x=0.4, z=1.0) | leg.rotate(x=0.4, z=1.0)).fillet(8)
+    for shape in (
+        (base | leg).fillet(8),
+        turned,
+        (Box(40, 6, 30) | Cylinder(8, 30).translate(y=12)).fillet(4),
+        (Box(60, 30, 30) & Box(40, 30, 50)).fillet(4),
+        (Box(60, 30, 30) - Cylinder(5, 80)).chamfer(1),
+        (Sphere(1.0) | Sphere(1.0).translate(1.2, 0, 0)).fillet(0.2),
+    ):
+        assert not moved_faces(shape)
+
+
+def test_a_face_that_a_blend_moves_is_named_with_the_amount():
+    # Two equal cylinders on one axis: their mantles are one face. By a circle through the points
+    # (k, 0) and (0, k) about (k, k), it moves by k (1 - sqrt(1/2)).
+    pins = Cylinder(10, 30) | Cylinder(10, 30).translate(y=10)
+    (found,) = moved_faces(pins.fillet(2))
+    assert found.severity is Severity.WARNING
+    amount = float(found.diagnostic.message.split("by up to ")[1].split(",")[0])
+    assert amount == pytest.approx(2.0 * (1.0 - math.sqrt(0.5)), rel=0.03)
+    assert "outwards" in found.diagnostic.message
+    # A smooth union bulges by its size, an intersection of other shapes shrinks.
+    (found,) = moved_faces(Box(60, 14, 30).union(Box(14, 14, 50), smooth=1.5))
+    assert found.severity is Severity.NOTE
+    assert "outwards by up to 1.5, at (" in found.diagnostic.message
+    assert "fillet(radius)" in found.diagnostic.hint
+    hollow = Box(60, 30, 30) - Box(60, 1, 1)
+    (found,) = moved_faces((hollow & Box(40, 30, 50)).fillet(4))
+    assert f"inwards by up to {4.0 * (1.0 - math.sqrt(0.5)):.3g}, at (" in found.diagnostic.message
+    assert found.diagnostic.hint == "let one of the two reach beyond the face, by 4 or more"
+    assert found.diagnostic.span.text.strip().startswith("(found,) = moved_faces((hollow")
+
+
+def test_a_profile_that_is_too_large_for_a_prism_is_named():
+    """In the middle of a plate of 6, both distances are at most 3."""
+    thin = (Box(60, 6, 30) & Box(40, 6, 50)).fillet(8)
+    (found,) = moved_faces(thin)
+    amount = 8.0 - math.sqrt(64.0 - 25.0)
+    assert f"inwards by up to {amount:.3g}: both shapes end in the same" in found.diagnostic.message
+    assert found.diagnostic.hint == "a size of at most 3, half of that"
+    x = np.array([20.0 - amount - 1e-6, 20.0 - amount + 1e-6])
+    assert (thin(np.stack([x, 0.0 * x, 0.0 * x], axis=1)) <= 0.0).tolist() == [True, False]
+    chamfered = (Box(60, 6, 30) & Box(40, 6, 50)).chamfer(5)
+    x = np.array([20.0 - 2.0 - 1e-6, 20.0 - 2.0 + 1e-6])
+    assert (chamfered(np.stack([x, 0.0 * x, 0.0 * x], axis=1)) <= 0.0).tolist() == [True, False]
+    assert "inwards by up to 2: " in moved_faces(chamfered)[0].diagnostic.message
+    (found,) = moved_faces((Box(60, 6, 30) & Box(40, 6, 50)).chamfer(8))
+    assert "leaves nothing: both shapes end in the same planes, 6 apart" in found.diagnostic.message

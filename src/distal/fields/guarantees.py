@@ -218,6 +218,8 @@ class Primitive:
             corners tell its topology (``fields.widths``). A number, or a function of the shape's
             numbers; ``UNBOUNDED`` for a surface without a second one near it. None if no closed
             form is known: a mesh then says to what width it is sure.
+        along: The axes along which it is a prism, "y" or "xyz": every section across the axis is
+            the same, from side to side of the box.
     """
 
     name: str
@@ -240,6 +242,7 @@ class Primitive:
     chord: Func | None = None
     endless: tuple[str, ...] = ()
     width: Rule | None = None
+    along: str = ""
 
     @property
     def flat(self) -> bool:
@@ -294,11 +297,15 @@ class Operator:
         linear: Whether the value is linear in p if that of the child is.
         turn: For a rigid move or a uniform scale: ``(p, …) -> vec3``, as ``point`` for a unit
             direction p. Chords of the child are those of the result, with ``finish`` for lengths.
+        within: For two children that may both be turned: ``(d, p, axes) -> float`` changes the
+            value so that nothing of the result is outside ``axes``, the ``TurnedBox`` around both
+            along the axes of the first. Not called if one of them is not turned.
         changes: How much the value changes at most for each unit of a number, by the number's name;
             of others it is found by intervals where a number differs from place to place.
         approximates: What the operator replaces by simpler pieces, or None.
         width: The width of the result, as of a primitive: a function of ``child_width``, ``slope``,
             ``bounds`` and numbers. None: the least of the children's.
+        along: The axes along which the result is a prism whatever the child is, as for a primitive.
     """
 
     name: str
@@ -324,9 +331,11 @@ class Operator:
     local: bool = True
     linear: bool = False
     turn: Func | None = None
+    within: Func | None = None
     changes: Mapping[str, float] = field(default_factory=dict)
     approximates: Approximation | None = None
     width: Func | None = None
+    along: str = ""
 
     @property
     def number_functions(self) -> tuple[Func, ...]:
@@ -337,7 +346,10 @@ class Operator:
     @property
     def point_functions(self) -> tuple[Func, ...]:
         """Return the functions that are called for each point."""
-        found = (self.point, self.finish, self.combine, self.mix, self.around, self.site)
+        found = (
+            *(self.point, self.finish, self.combine, self.mix, self.around, self.site),
+            self.within,
+        )
         return tuple(function for function in found if function is not None)
 
     def lies_flat(self, child: bool) -> bool:
@@ -412,6 +424,7 @@ def primitive(
     chord: Func | None = None,
     endless: tuple[str, ...] = (),
     width: Rule | None = None,
+    along: str = "",
 ) -> Callable[[F], F]:
     """Declare the ``@func`` below as a shape of the library; see ``Primitive`` for the attributes.
 
@@ -433,6 +446,7 @@ def primitive(
         chord: The function of the part of a line inside of a convex solid.
         endless: The names of sizes that may be infinite.
         width: The side of the largest cells that find it.
+        along: The axes along which it is a prism.
     """
 
     def declare(distance: F) -> F:
@@ -456,6 +470,7 @@ def primitive(
             chord=chord,
             endless=endless,
             width=width,
+            along=along,
         )
         return distance
 

@@ -1,9 +1,14 @@
 """Blends by name: each smooth minimum and shaped edge, for unions, intersections and differences.
 
 Input: unions from ``smooth`` and ``edge_profiles``. Output: ``BLENDS``, and an operator for each
-combination with each blend (``COMBINATIONS``). The other combinations follow from the union: an
-intersection is the complement of the union of the complements; a difference is the intersection
-with a complement.
+combination with each blend (``COMBINATIONS``; for some shapes ``FLAT_UNIONS`` and ``PRISMS``). The
+other combinations follow from the union: an intersection is the complement of the union of the
+complements; a difference is the intersection with a complement.
+
+A blend of two distances moves outwards wherever both are small, also where two faces lie in one
+plane and there is no edge. The unions of fillets and chamfers are cut by the box around both
+shapes, and if both are turned also by that along the axes of the first: what they add ends at the
+faces that lie in its sides.
 """
 
 from __future__ import annotations
@@ -14,10 +19,34 @@ from typing import Any, Final, TypeAlias
 
 from distal.fields.combine import edge_profiles, smooth
 from distal.fields.combine import joins as combine
-from distal.fields.extents import Boxes, hull_of, moved_out, overlap
-from distal.fields.guarantees import UNBOUNDED, Growth, Limit, Operator, named, operator
+from distal.fields.combine.prisms import (
+    cut_at_ends,
+    cut_at_ends_flat,
+    moved_inwards,
+    moved_inwards_flat,
+)
+from distal.fields.extents import (
+    Boxes,
+    at_least_one,
+    box_distance,
+    hull_of,
+    moved_out,
+    overlap,
+    rectangle_distance,
+)
+from distal.fields.guarantees import (
+    UNBOUNDED,
+    Bounds,
+    Bounds2,
+    Growth,
+    Limit,
+    Operator,
+    named,
+    operator,
+)
+from distal.fields.turned_boxes import within_axes, within_flat_axes
 from distal.fields.widths import groove_width, pipe_width
-from distal.lang import Func, exp2, func, length, max, min, vec2
+from distal.lang import Func, exp2, func, length, max, min, vec2, vec3
 
 # Limit of an exponent; 2 to this power is larger than any size.
 MOST_DOUBLINGS: Final = 60.0
@@ -40,6 +69,7 @@ class Blend:
         width: It equals the hard minimum where the distances differ by ``width * k`` or more. None
             if the difference alone does not say where.
         intersection: A separate intersection, if it does not follow from the union.
+        cut: Whether the union is cut by the box around both shapes.
     """
 
     union: Func[..., Any]
@@ -50,6 +80,7 @@ class Blend:
     change: float = 1.0
     width: float | None = None
     intersection: Func[..., Any] | None = None
+    cut: bool = False
 
 
 BLENDS: Final[dict[str, Blend]] = {
@@ -63,8 +94,8 @@ BLENDS: Final[dict[str, Blend]] = {
     "exponential": Blend(smooth.exponential, smooth.exponential_mix, local=False),
     "root": Blend(smooth.root, smooth.root_mix, local=False),
     "sigmoid": Blend(smooth.sigmoid, smooth.sigmoid_mix, local=False),
-    "chamfer": Blend(edge_profiles.chamfer, edge_profiles.edge_mix, steep=True),
-    "round": Blend(smooth.round_corner, smooth.round_corner_mix, steep=True),
+    "chamfer": Blend(edge_profiles.chamfer, edge_profiles.edge_mix, steep=True, cut=True),
+    "round": Blend(smooth.round_corner, smooth.round_corner_mix, steep=True, cut=True),
     "columns": Blend(
         edge_profiles.columns,
         edge_profiles.counted_edge_mix,
@@ -89,6 +120,12 @@ def crossed_slope(slope_a: float, slope_b: float) -> float:
     are parallel.
     """
     return length(vec2(slope_a, slope_b))
+
+
+@func
+def cut_slope(slope_a: float, slope_b: float) -> float:
+    """Return sqrt(slope_a^2 + slope_b^2), at least 1: that of a distance to a box."""
+    return at_least_one(crossed_slope(slope_a, slope_b))
 
 
 @func
@@ -118,6 +155,25 @@ def power_growth(growth: float, exponent: float) -> float:
     Where both distances are equal, the value is less by a factor: 2 to the power 1 / exponent.
     """
     return min(growth * exp2(min(1.0 / exponent, MOST_DOUBLINGS)), UNBOUNDED)
+
+
+# Unions that are cut by the box around both shapes
+
+
+def _cut(name: str, union: Shared) -> Func[..., Any]:
+    """Return the union without what it adds outside the box around both shapes."""
+
+    def cut(a: float, b: float, p: vec3, k: float, bounds_a: Bounds, bounds_b: Bounds) -> float:
+        return max(union(a, b, k), box_distance(p, hull_of(bounds_a, bounds_b)))
+
+    return named(f"union_{name}", cut)
+
+
+def _cut_flat(name: str, union: Shared) -> Func[..., Any]:
+    def cut(a: float, b: float, p: vec2, k: float, bounds_a: Bounds2, bounds_b: Bounds2) -> float:
+        return max(union(a, b, k), rectangle_distance(p, hull_of(bounds_a, bounds_b)))
+
+    return named(f"flat_union_{name}", cut)
 
 
 # Intersections, differences and exclusive ors, made from the union
@@ -223,26 +279,78 @@ def _declare(name: str, blend: Blend) -> None:
         },
         "xor": {"combine": exclusive, "growth": Growth.KEPT},
     }
+    if blend.cut:
+        # The value is at least the distance to the box around both.
+        boxed = {"bounds": hull_of, "growth": Growth.HELD, "slope": cut_slope}
+        rows["union"] |= boxed | {"combine": _cut(name, blend.union), "within": within_axes}
     for kind, row in rows.items():
-        COMBINATIONS[kind, name] = operator(
-            f"{kind} {name}",
-            slope=crossed_slope if blend.steep else None,
-            limits={"k": Limit.NOT_NEGATIVE},
-            requires=_count_requirement if counted else None,
-            local=blend.local,
-            changes={"k": blend.change},
-            **row,
-        )
+        COMBINATIONS[kind, name] = operator(f"{kind} {name}", **_row(blend, row))
+    if blend.cut:
+        own = {"combine": _cut_flat(name, blend.union), "within": within_flat_axes}
+        flat = Operator(f"union {name}", **_row(blend, rows["union"] | own))
+        FLAT_UNIONS[COMBINATIONS["union", name]] = flat
+        rule = COMBINATIONS["intersection", name]
+        row = _row(blend, rows["intersection"] | {"slope": cut_slope})
+        PRISMS[rule] = (_of_prisms(rule, row), _of_flat_prisms(rule, row))
+
+
+def _row(blend: Blend, row: dict[str, Any]) -> dict[str, Any]:
+    """Return the declaration of an operator; ``row`` is what differs between combinations."""
+    usual = {
+        "slope": crossed_slope if blend.steep else None,
+        "limits": {"k": Limit.NOT_NEGATIVE},
+        "requires": _count_requirement if blend.counted else None,
+        "local": blend.local,
+        "changes": {"k": blend.change},
+    }
+    return usual | row
+
+
+def _of_prisms(rule: Operator, row: dict[str, Any]) -> Operator:
+    """Return the intersection of two solids that are prisms along common axes, ``along``.
+
+    It is not in the catalogue: authors write the intersection.
+    """
+    intersection: Shared = row["combine"]
+
+    def cut(
+        a: float, b: float, p: vec3, k: float, along: vec3, bounds_a: Bounds, bounds_b: Bounds
+    ) -> float:
+        return cut_at_ends(intersection(a, b, k), p, k, along, bounds_a, bounds_b)
+
+    combined = named(f"{rule.name} of prisms".replace(" ", "_"), cut)
+    own = {"combine": combined, "point": moved_inwards}
+    return Operator(rule.name, **(row | own))
+
+
+def _of_flat_prisms(rule: Operator, row: dict[str, Any]) -> Operator:
+    intersection: Shared = row["combine"]
+
+    def cut(
+        a: float, b: float, p: vec2, k: float, along: vec2, bounds_a: Bounds2, bounds_b: Bounds2
+    ) -> float:
+        return cut_at_ends_flat(intersection(a, b, k), p, k, along, bounds_a, bounds_b)
+
+    combined = named(f"flat {rule.name} of prisms".replace(" ", "_"), cut)
+    own = {"combine": combined, "point": moved_inwards_flat}
+    return Operator(rule.name, **(row | own))
 
 
 # The operators, by the name of the sharp operator and that of the blend.
 COMBINATIONS: Final[dict[tuple[str, str], Operator]] = {}
+# The operators of flat shapes in place of unions. They are not in the catalogue: authors write the
+# union.
+FLAT_UNIONS: Final[dict[Operator, Operator]] = {}
+# The operators in place of intersections where both shapes are prisms along common axes: for solids
+# and for flat shapes. Their number ``along`` is 1 for these axes and 0 for the others.
+PRISMS: Final[dict[Operator, tuple[Operator, Operator]]] = {}
 for _name, _blend in BLENDS.items():
     _declare(_name, _blend)
-# The blends of the unions.
+# The blends of the unions, flat ones too.
 UNION_BLENDS: Final[dict[Operator, Blend]] = {
     COMBINATIONS["union", name]: blend for name, blend in BLENDS.items()
 }
+UNION_BLENDS.update({flat: UNION_BLENDS[solid] for solid, flat in FLAT_UNIONS.items()})
 
 PIPE = operator(
     "pipe",

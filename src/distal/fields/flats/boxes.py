@@ -87,6 +87,7 @@ def rectangle_bounds(size: vec2) -> Bounds2:
     bounds=rectangle_bounds,
     endless=("size",),
     width=rectangle_width,
+    along="xy",
 )
 @func
 def rectangle(p: vec2, size: vec2 = UNIT_SQUARE) -> float:

@@ -254,6 +254,7 @@ EXTRUDE = operator(
     point=flat_point,
     finish=extruded,
     keeps=EXACT,
+    along="z",
     slope=at_least_one,
     bounds=extruded_bounds,
     limits={"height": Limit.POSITIVE},
@@ -264,6 +265,7 @@ EXTRUDE_ENDLESS = operator(
     "extrude endless",
     point=flat_point,
     keeps=EXACT,
+    along="z",
     bounds=endless_bounds,
     growth=Growth.KEPT,
 )

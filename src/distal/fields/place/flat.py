@@ -23,6 +23,12 @@ def translated_flat(p: vec2, offset: vec2) -> vec2:
 
 
 @func
+def same_direction_flat(p: vec2) -> vec2:
+    """Return a direction before an operator that keeps all directions."""
+    return p
+
+
+@func
 def translated_flat_bounds(bounds: Bounds2, offset: vec2) -> Bounds2:
     """Return the rectangle, translated."""
     return Bounds2(bounds.low + offset, bounds.high + offset)
@@ -194,6 +200,7 @@ TRANSLATE_FLAT = operator(
     "flat translate",
     point=translated_flat,
     keeps=EXACT,
+    turn=same_direction_flat,
     bounds=translated_flat_bounds,
     growth=Growth.KEPT,
 )
@@ -201,6 +208,7 @@ ROTATE_FLAT = operator(
     "flat rotate",
     point=rotated_flat,
     keeps=EXACT,
+    turn=rotated_flat,
     bounds=rotated_flat_bounds,
     growth=Growth.TURNED,
 )
@@ -209,6 +217,7 @@ SCALE_FLAT = operator(
     point=scaled_flat,
     finish=scaled_value,
     keeps=EXACT,
+    turn=same_direction_flat,
     bounds=scaled_flat_bounds,
     limits={"factor": Limit.POSITIVE},
     growth=Growth.KEPT,

@@ -67,6 +67,7 @@ def box_chord(p: vec3, direction: vec3, size: vec3) -> vec2:
     chord=box_chord,
     endless=("size",),
     width=box_width,
+    along="xyz",
 )
 @func
 def box(p: vec3, size: vec3 = UNIT_CUBE) -> float:
@@ -95,6 +96,7 @@ def box(p: vec3, size: vec3 = UNIT_CUBE) -> float:
     chord=box_chord,
     endless=("size",),
     width=box_width,
+    along="xyz",
 )
 @func
 def box_cheap(p: vec3, size: vec3 = UNIT_CUBE) -> float:

@@ -44,6 +44,7 @@ def infinite_cylinder_bounds(radius: float) -> Bounds:
     bounds=infinite_cylinder_bounds,
     chord=infinite_cylinder_chord,
     width=radius_width,
+    along="y",
 )
 @func
 def infinite_cylinder(p: vec3, radius: float = 0.5) -> float:
@@ -90,6 +91,7 @@ def cylinder_chord(p: vec3, direction: vec3, radius: float, height: float) -> ve
     bounds=cylinder_bounds,
     chord=cylinder_chord,
     width=cylinder_width,
+    along="y",
 )
 @func
 def cylinder(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:

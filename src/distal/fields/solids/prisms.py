@@ -49,6 +49,7 @@ def tri_prism_bounds(apothem: float, height: float) -> Bounds:
     EXACT,
     bounds=tri_prism_bounds,
     width=prism_width,
+    along="y",
 )
 @func
 def tri_prism(p: vec3, apothem: float = 0.4, height: float = 1.0) -> float:
@@ -101,6 +102,7 @@ def hex_prism_chord(p: vec3, direction: vec3, apothem: float, height: float) -> 
     bounds=hex_prism_bounds,
     chord=hex_prism_chord,
     width=prism_width,
+    along="y",
 )
 @func
 def hex_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
@@ -134,6 +136,7 @@ def octagon_prism_bounds(apothem: float, height: float) -> Bounds:
     EXACT,
     bounds=octagon_prism_bounds,
     width=prism_width,
+    along="y",
 )
 @func
 def octagon_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
@@ -174,6 +177,7 @@ def prism_requires(count: int) -> str | None:
     bounds=prism_bounds,
     requires=prism_requires,
     width=prism_width,
+    along="y",
 )
 @func
 def prism(p: vec3, count: int = 5, apothem: float = 0.5, height: float = 1.0) -> float:

@@ -44,6 +44,7 @@ def plane_bounds(y: float) -> Bounds:
     linear=True,
     chord=plane_chord,
     width=UNBOUNDED,
+    along="xyz",
 )
 @func
 def plane(p: vec3, y: float = 0.0) -> float:
@@ -125,6 +126,7 @@ def slab_chord(p: vec3, direction: vec3, thickness: float) -> vec2:
     bounds=slab_bounds,
     chord=slab_chord,
     width=thickness_width,
+    along="xyz",
 )
 @func
 def slab(p: vec3, thickness: float = 0.5) -> float:

@@ -19,6 +19,7 @@ from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive, ende
 from distal.scene.checks.bounds_report import NodeBounds, bounds_of_nodes
 from distal.scene.checks.flush_report import FlushCut, flush_cuts
 from distal.scene.checks.measuring import Measured, Region, measure
+from distal.scene.checks.moved_faces import moved_face
 from distal.scene.checks.proof_report import proof_note
 from distal.scene.checks.smooth_report import SmoothReport, smooth_unions_of
 from distal.scene.checks.table_report import TableReport, table_of
@@ -150,6 +151,9 @@ def check(
         children = tuple(numbers[id(c)] for c in node.children)
         rows.append(ShapeReport(node, children, own, _raised(node, declared), measured))
     found = [f for i, row in enumerate(rows) for f in _findings(i, row, rows)]
+    found += _moved_faces(
+        [i for i, row in enumerate(rows) if id(row.node) in chosen], rows, given, time, seed
+    )
     found += _proofs(
         rows, {f.shape for f in found if f.diagnostic.code in _MEASURED_WRONG}, given, time
     )
@@ -314,6 +318,34 @@ def _cuts_at_faces(numbers: Mapping[int, int], cuts: Iterable[FlushCut]) -> Iter
         leaf, hint = cut.cutter.leaf, "let it go through by a little"
         diagnostic = Diagnostic(ErrorCode.FLUSH_CUT, cut.message, leaf.place, hint)
         yield CheckFinding(Severity.WARNING, numbers.get(id(leaf), 0), diagnostic)
+
+
+def _moved_faces(
+    chosen: Sequence[int],
+    rows: Sequence[ShapeReport],
+    params: Mapping[str, Any],
+    time: float,
+    seed: int,
+) -> Iterator[CheckFinding]:
+    """Yield how far blends move faces where there is no edge.
+
+    Args:
+        chosen: The shapes to look at.
+        rows: The reports about all shapes.
+        params: Values of parameters by name.
+        time: Time in seconds.
+        seed: Seed of the random places.
+    """
+    declared = {id(row.node): row.declared for row in rows}
+    for i in chosen:
+        node = rows[i].node
+        moved = moved_face(node, declared, params, time, seed)
+        if moved is None:
+            continue
+        severity = Severity.WARNING if moved.kind.keeps_faces else Severity.NOTE
+        message, hint = moved.text(described(node))
+        diagnostic = Diagnostic(ErrorCode.FACE_MOVED, message, node.place, hint)
+        yield CheckFinding(severity, i, diagnostic)
 
 
 def _violations(row: ShapeReport, measured: Measured, finding: Any) -> Iterator[CheckFinding]:

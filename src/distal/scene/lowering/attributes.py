@@ -180,7 +180,8 @@ def _visit_here(
     d, result = _visit(body, kind, first, sites[0], measured=needed)
     if joins:
         assert d is not None
-        d, result = _joined(body, kind, node, sites, given, (d, result))
+        steps = composer.steps(body, node, given, shares)
+        d, result = _joined(body, kind, node, sites, steps, (d, result))
     if rule is SECTION:
         assert d is not None
         result = body.let("shown", kind.sectioned({**given, "p": site.p, "d": d}, result))
@@ -334,13 +335,13 @@ def _joined(
     kind: Attribute,
     node: Node,
     sites: Sequence[AttributePoint],
-    given: dict[str, Expr],
+    steps: Sequence[Mapping[str, Expr]],
     first: tuple[Expr, Expr],
 ) -> tuple[Expr, Expr]:
     rule, composer = node.rule, kind.composer
     assert isinstance(rule, Operator) and rule.combine is not None
     a, result = first
-    for child, site in zip(node.children[1:], sites[1:], strict=True):
+    for child, site, given in zip(node.children[1:], sites[1:], steps, strict=True):
         if rule.cuts:
             b = composer.distance(body, child, site.p, site.cell, site.values)
             other = kind.cutter(body, child, site)
@@ -357,7 +358,7 @@ def _joined(
                 share = body.let("share", composer.call(rule.mix, pair))
                 shown = kind.blended(result, other, share)
             result = body.let("shown", shown)
-        a = body.let("d", composer.call(rule.combine, pair))
+        a = composer.joined(body, rule, pair)
     return a, result
 
 

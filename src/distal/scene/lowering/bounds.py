@@ -33,16 +33,16 @@ from distal.ir.contents import contents
 from distal.ir.nodes import Call, Const, Construct, Expr, Return
 from distal.ir.types import FLOAT, VEC2, VEC3, Type, tuple_type
 from distal.lang.functions import Func
-from distal.scene.lowering.existence import NEVER, exists_after, exists_of_either
-from distal.scene.lowering.parts.table import PartTable, TableNode
-from distal.scene.lowering.smooth.cells import CellNode, MemberGrid
-from distal.scene.lowering.turned_boxes import (
+from distal.scene.lowering.box_axes import (
     AT_ONCE,
     BoxAxes,
     is_move,
     passes_axes,
     turns_boxes_again,
 )
+from distal.scene.lowering.existence import NEVER, exists_after, exists_of_either
+from distal.scene.lowering.parts.table import PartTable, TableNode
+from distal.scene.lowering.smooth.cells import CellNode, MemberGrid
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values, plain_name
 
@@ -305,10 +305,40 @@ class BoundsComposer:
         inner = [
             self.of(body, child, share) for child, share in zip(node.children, shares, strict=True)
         ]
-        found = _named(inner[0], inner[1] if len(inner) > 1 else None)
-        if len(inner) == 1 and inner[0].exists is not None and node.rule is not COMPLEMENT:
+        if len(inner) > 1:
+            return self._joined_to(body, inner[0], inner[1])
+        found = _named(inner[0], None)
+        if inner[0].exists is not None and node.rule is not COMPLEMENT:
             found["exists"] = inner[0].exists
         return found
+
+    def steps(
+        self,
+        body: StatementList,
+        node: Node,
+        shares: Sequence[Sequence[Expr]],
+        own: Mapping[str, Expr],
+    ) -> list[dict[str, Expr]]:
+        """Return what ``given`` returns for each child but the first; ``a`` is all before it.
+
+        Args:
+            body: The statements to add to.
+            node: The node of an operator on several shapes.
+            shares: The numbers of each child.
+            own: The operator's numbers, by name.
+        """
+        assert isinstance(node.rule, Operator)
+        found: list[dict[str, Expr]] = []
+        before: ShapeBounds | None = None
+        for child, share in zip(node.children, shares, strict=True):
+            other = self.of(body, child, share)
+            if before is not None:
+                found.append(self._joined_to(body, before, other))
+            before = other if before is None else self._two(body, node.rule, before, other, own)
+        return found
+
+    def _joined_to(self, body: StatementList, a: ShapeBounds, b: ShapeBounds) -> dict[str, Expr]:
+        return _named(self._filled(body, a, b), self._filled(body, b, a))
 
     def of_primitive(
         self, body: StatementList, rule: Primitive, own: Mapping[str, Expr], *, flat: bool

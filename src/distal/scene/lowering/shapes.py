@@ -37,6 +37,7 @@ from distal.scene.lowering.selection import selected
 from distal.scene.lowering.sheets import Sheets
 from distal.scene.lowering.smooth.cells import CellNode, MemberGrid
 from distal.scene.lowering.smooth.functions import MemberFunctions
+from distal.scene.lowering.turned_boxes import TurnedBoxes
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values, plain_name
@@ -54,6 +55,7 @@ class ShapeComposer:
         self.call = assembly.call
         self.values = Values(assembly)
         self.bounds = BoundsComposer(self.values)
+        self._turned_boxes = TurnedBoxes(self.values, self.bounds)
         self.parts = SafeParts()
         self._keys: dict[int, int] = {}
         self._known_keys: dict[Any, int] = {}
@@ -340,9 +342,8 @@ class ShapeComposer:
         result = next(parts)
         if rule.combine is not None:
             # Each part is combined at once: few values are alive at a time.
-            for other in parts:
-                result = self.call(rule.combine, {**given, "a": result, "b": other})
-                result = body.let("d", result)
+            for step, other in zip(self.steps(body, node, given, shares), parts, strict=True):
+                result = self.joined(body, rule, {**step, "a": result, "b": other})
         if rule.finish is not None:
             result = body.let("d", self.call(rule.finish, {**given, "d": result}))
         return existing(body, given, result)
@@ -383,6 +384,51 @@ class ShapeComposer:
             if node.children and taken & BOUNDS_OF_CHILDREN:
                 given |= self.bounds.given(body, node, shares)
         return given, shares
+
+    def steps(
+        self,
+        body: StatementList,
+        node: Node,
+        given: Mapping[str, Expr],
+        shares: Sequence[Sequence[Expr]],
+    ) -> list[Mapping[str, Expr]]:
+        """Return the values for an operator's functions when each child but the first is joined.
+
+        They differ in the bounds: of three children, two were joined before the third. ``axes`` is
+        among them where the box along axes of the shapes' own cuts the result.
+
+        Args:
+            body: The statements to add to.
+            node: The operator's node.
+            given: The values when the second child is joined to the first.
+            shares: The numbers of each child.
+        """
+        rule = node.rule
+        assert isinstance(rule, Operator)
+        steps = [given] * (len(node.children) - 1)
+        with self.values.at(given["cell"], given["p"]):
+            if len(steps) > 1 and "bounds_a" in given:
+                bounds = self.bounds.steps(body, node, shares, given)
+                steps = [{**given, **own} for own in bounds]
+            if rule.within is not None:
+                for i, axes in enumerate(self._turned_boxes.joined(body, node, shares)):
+                    steps[i] = {**steps[i], "axes": axes}
+        return steps
+
+    def joined(self, body: StatementList, rule: Operator, given: Mapping[str, Expr]) -> Expr:
+        """Return the distance of two shapes of an operator.
+
+        Args:
+            body: The statements to add to.
+            rule: The operator.
+            given: The values of this step, with the distances ``a`` and ``b``.
+        """
+        assert rule.combine is not None
+        d = body.let("d", self.call(rule.combine, given))
+        if "axes" not in given:
+            return d
+        assert rule.within is not None
+        return body.let("d", self.call(rule.within, {**given, "d": d}))
 
     def moved(
         self, body: StatementList, rule: Operator, given: Mapping[str, Expr]

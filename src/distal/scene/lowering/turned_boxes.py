@@ -1,132 +1,143 @@
-"""The axes of a box, seen from a shape below moves: so that boxes are not turned several times.
+"""Boxes of shapes that were turned, along their own axes.
 
-Input: rigid moves and scales, from the outermost. Output: the axes of the outermost box, in the
-coordinates of what is below, and boxes along them. A box around a turned box is larger than the box
-around the turned shape: what is below a turn is asked for its box along the axes above it.
+Input: nodes. Output: expressions of numbers alone, which every target computes once per frame. The
+box of a turned shape along the axes of space is larger than the shape; the box along the shape's
+own axes is not, so that its sides lie in the faces of what was turned.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Final, TypeGuard, TypeVar
+from collections.abc import Callable, Sequence
+from itertools import accumulate, takewhile
+from typing import Final
 
-from distal.fields.combine.alternatives import SELECT
-from distal.fields.extents import along_axes, moved_along
-from distal.fields.guarantees import Growth, Operator, signature_types
-from distal.fields.repeat.varied import IN_CELLS
-from distal.ir.build import compose, multiply
-from distal.ir.build import number as constant_number
+from distal.fields.combine.joins import first_box
+from distal.fields.extents import hull_of, overlap
+from distal.fields.guarantees import Operator, Primitive
+from distal.fields.place.flat import same_direction_flat
+from distal.fields.place.solid import same_direction
+from distal.fields.turned_boxes import (
+    carried_box,
+    turned_hull,
+    turned_overlap,
+    upright_box,
+    upright_rectangle,
+)
+from distal.ir.build import compose, number
 from distal.ir.nodes import Expr
-from distal.ir.types import VEC3
+from distal.ir.types import VEC2, VEC3
 from distal.lang.functions import Func
+from distal.scene.lowering.bounds import BoundsComposer
 from distal.scene.tree.node import Node
-from distal.scene.tree.values import StatementList
+from distal.scene.tree.values import StatementList, Values
+from distal.scene.tree.varying import ZERO_CELL
 
-# The most children of an operator whose bounds are composed in one function.
-AT_ONCE: Final = 16
-_NUMBERS: Final = (constant_number(0.0), constant_number(1.0))
-Call = Callable[..., Expr]
+# What the box of a combination is, by the rule of the box along the axes of space.
+_COMBINED: Final[dict[Func | None, Func]] = {
+    None: turned_hull,
+    hull_of: turned_hull,
+    overlap: turned_overlap,
+}
+_UNTURNED: Final = (same_direction, same_direction_flat)
+_AXES: Final = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
-@dataclass(frozen=True, slots=True)
-class BoxAxes:
-    """The axes of a box, seen from a shape.
+def is_turned(node: Node) -> bool:
+    """Return whether a subtree has a box along axes of its own, other than those of space."""
+    return node.derived("is turned", lambda: _is_turned(node))
 
-    Attributes:
-        x: The vector whose product with a point of the shape is its place along the box's x axis,
-            but for ``at``.
-        y: The same for the y axis.
-        z: The same for the z axis.
-        at: Where the shape's origin is along the three axes.
-    """
 
-    x: Expr
-    y: Expr
-    z: Expr
-    at: Expr
+def _is_turned(node: Node) -> bool:
+    rule = node.rule
+    if isinstance(rule, Primitive) or node.has_rows:
+        return False
+    if rule.turn is not None:
+        return rule.turn not in _UNTURNED or is_turned(node.children[0])
+    if rule.combine is None or rule.point is not None or rule.finish is not None:
+        return False
+    if rule.bounds is first_box:
+        return is_turned(node.children[0])
+    return rule.bounds in _COMBINED and all(map(is_turned, node.children))
 
-    @staticmethod
-    def own() -> BoxAxes:
-        """Return the axes of the shape's own space."""
-        x, y, z = (_vector(*(int(i == j) for j in range(3))) for i in range(3))
-        return BoxAxes(x, y, z, _vector(0, 0, 0))
 
-    def below(
-        self, body: StatementList, call: Call, rule: Operator, own: Mapping[str, Expr]
-    ) -> BoxAxes:
-        """Return the axes, seen from the child of a rigid move or a scale.
+class TurnedBoxes:
+    """Composes the boxes of turned subtrees as IR expressions."""
+
+    def __init__(self, values: Values, bounds: BoundsComposer) -> None:
+        self._values = values
+        self._bounds = bounds
+        self._call: Callable[..., Expr] = values.assembly.call
+
+    def of(self, body: StatementList, node: Node, values: Sequence[Expr]) -> Expr:
+        """Return the box of a subtree along its own axes, a ``TurnedBox``.
 
         Args:
             body: The statements to add to.
-            call: Adds a call of a library function (``Assembly.call``).
+            node: The root of the subtree.
+            values: The numbers of the subtree.
+        """
+        if not is_turned(node):
+            upright = {"bounds": self._bounds.of(body, node, values).bounds}
+            make = upright_rectangle if node.flat else upright_box
+            return body.let("axes", self._call(make, upright))
+        rule = node.rule
+        assert isinstance(rule, Operator)
+        own, shares = self._values.split(node, values)
+        if rule.turn is not None:
+            inner = self.of(body, node.children[0], shares[0])
+            return self._carried(body, rule, own, inner, flat=node.flat)
+        if rule.bounds is first_box:
+            return self.of(body, node.children[0], shares[0])
+        return self.joined(body, node, shares)[-1]
+
+    def joined(
+        self, body: StatementList, node: Node, shares: Sequence[Sequence[Expr]]
+    ) -> list[Expr]:
+        """Return the box of the first two children of a combination, of the first three, and so on.
+
+        They end before the first child that is not turned.
+
+        Args:
+            body: The statements to add to.
+            node: The node of the combination.
+            shares: The numbers of each child.
+        """
+        assert isinstance(node.rule, Operator)
+        rule = _COMBINED[node.rule.bounds]
+        pairs = zip(node.children, shares, strict=True)
+        turned = takewhile(lambda pair: is_turned(pair[0]), pairs)
+        boxes = (self.of(body, child, share) for child, share in turned)
+        both = accumulate(boxes, lambda a, b: body.let("axes", self._call(rule, {"a": a, "b": b})))
+        return list(both)[1:]
+
+    def _carried(
+        self, body: StatementList, rule: Operator, own: dict[str, Expr], inner: Expr, *, flat: bool
+    ) -> Expr:
+        """Return the box of a shape after a rigid move or a uniform scale.
+
+        Args:
+            body: The statements to add to.
             rule: The operator.
-            own: Its numbers, by name.
+            own: The operator's numbers, by name.
+            inner: The box before.
+            flat: Whether the shape lies in the plane, which keeps the z axis.
         """
         assert rule.turn is not None
-        factor = None
-        if rule.finish is not None:  # what it makes of a distance of 1
-            factor = call(rule.finish, {**own, "d": _NUMBERS[1]})
-        ways = []
-        for way in (self.x, self.y, self.z):
-            turned = call(rule.turn, {**own, "p": way})
-            ways.append(body.let("way", turned if factor is None else multiply(turned, factor)))
-        origin = call(rule.point, {**own, "p": _vector(0, 0, 0)})
-        x, y, z = ways
-        moved = {"at": self.at, "origin": origin, "x": x, "y": y, "z": z}
-        return BoxAxes(x, y, z, body.let("start", call(moved_along, moved)))
-
-    def box(self, body: StatementList, call: Call, bounds: Expr) -> Expr:
-        """Return the box along these axes around a box of the shape's own space.
-
-        Args:
-            body: The statements to add to.
-            call: Adds a call of a library function (``Assembly.call``).
-            bounds: The box.
-        """
-        given = {"bounds": bounds, "x": self.x, "y": self.y, "z": self.z, "at": self.at}
-        return body.let("bounds", call(along_axes, given))
+        given = {**own, "cell": ZERO_CELL}
+        found = {"inner": inner, "origin": number(0.0, VEC3), "factor": number(1.0)}
+        if rule.point is not None:
+            origin = number(0.0, VEC2 if flat else VEC3)
+            found["origin"] = _in_space(self._call(rule.point, {**given, "p": origin}))
+        for name, axis in zip("xyz", _AXES, strict=True):
+            found[f"turned_{name}"] = way = compose(VEC3, *map(number, axis))
+            if flat and name == "z":
+                continue
+            p = compose(VEC2, *map(number, axis[:2])) if flat else way
+            found[f"turned_{name}"] = _in_space(self._call(rule.turn, {**given, "p": p}))
+        if rule.finish is not None:
+            found["factor"] = self._call(rule.finish, {**given, "d": number(1.0)})
+        return body.let("axes", self._call(carried_box, found))
 
 
-def _vector(x: int, y: int, z: int) -> Expr:
-    return compose(VEC3, _NUMBERS[x], _NUMBERS[y], _NUMBERS[z])
-
-
-def is_move(rule: object) -> TypeGuard[Operator]:
-    """Return whether a rule is a rigid move or a scale."""
-    return isinstance(rule, Operator) and rule.turn is not None
-
-
-def names_no_axis(rule: Operator) -> bool:
-    """Return whether the rules for box and growth hold along any axes: a shape stays where it is.
-
-    Rules that hold for boxes and rectangles alike name no axis.
-    """
-    if isinstance(rule.growth, Func):
-        return False
-    if rule.bounds is None:
-        return rule.point is None and rule.around is None
-    return isinstance(signature_types(rule.bounds)["return"], TypeVar)
-
-
-def passes_axes(node: Node) -> bool:
-    """Return whether the box of a node along any axes follows from those of its children."""
-    rule = node.rule
-    if not isinstance(rule, Operator) or rule is SELECT or rule is IN_CELLS:
-        return False
-    if node.has_rows or len(node.children) > AT_ONCE:
-        return False
-    return is_move(rule) or names_no_axis(rule)
-
-
-def turns_boxes_again(node: Node) -> bool:
-    """Return whether a node turns a shape whose box is not its own: one that is turned or combined.
-
-    Args:
-        node: The node.
-    """
-    turns = 0
-    while passes_axes(node) and is_move(node.rule):
-        turns += node.rule.growth is Growth.TURNED
-        (node,) = node.children
-    return turns > 1 or (turns == 1 and passes_axes(node))
+def _in_space(v: Expr) -> Expr:
+    return v if v.type is VEC3 else compose(VEC3, v, number(0.0))

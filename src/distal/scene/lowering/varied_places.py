@@ -226,13 +226,19 @@ class ShapeOfNumbers(_OfPlace):
         if isinstance(rule, Primitive):
             parts: tuple[Expr, ...] = (assembly.call(rule.distance, given),)
         else:
-            parts = self._of_operator(assembly, body, rule, given)
+            parts = self._of_operator(values, body, rule, given, shares)
         body.statements.append(Return(Construct(parts, self.result)))
         return assembly.define("shape_of_numbers", params, self.result, body.statements)
 
     def _of_operator(
-        self, assembly: Assembly, body: StatementList, rule: Operator, given: dict[str, Expr]
+        self,
+        values: Values,
+        body: StatementList,
+        rule: Operator,
+        given: dict[str, Expr],
+        shares: Sequence[Sequence[Expr]],
     ) -> tuple[Expr, ...]:
+        assembly = values.assembly
         inner: Expr = given["p"]
         if rule.point is not None:
             inner = body.let("inner", assembly.call(rule.point, given))
@@ -240,9 +246,10 @@ class ShapeOfNumbers(_OfPlace):
                 inner = field(inner, "p")
         first, *others = (Read(f"inner_{i}", FLOAT) for i in range(len(self._node.children)))
         d: Expr = first
-        for other in others:
+        steps = BoundsComposer(values).steps(body, self._node, shares, given)
+        for other, bounds in zip(others, steps, strict=True):
             assert rule.combine is not None
-            d = body.let("d", assembly.call(rule.combine, {**given, "a": d, "b": other}))
+            d = body.let("d", assembly.call(rule.combine, {**given, **bounds, "a": d, "b": other}))
         if rule.finish is not None:
             d = body.let("d", assembly.call(rule.finish, {**given, "d": d}))
         return inner, d

@@ -37,6 +37,7 @@ from distal.scene.objects.binding import bound, own_node
 from distal.scene.objects.materials import as_material
 from distal.scene.objects.other_names import instead
 from distal.scene.objects.proving import proved
+from distal.scene.objects.shaped_edges import suited
 from distal.scene.objects.vm_shapes import vm_node
 from distal.scene.tree.arguments import RESERVED, slots_of
 from distal.scene.tree.conversion import Asked, number, plain_choice
@@ -356,7 +357,9 @@ class BaseShape(Composed, Presentable):
         own = self.node
         if own.rule is bare and _bare(own):
             return self._of(Node(rule, self.flat, own.followed_by(nodes), {}, constants, place))
-        return self._of(Node(rule, self.flat, (own, *nodes), numbers, constants, place))
+        children = (own, *nodes)
+        rule, more = suited(rule, children, numbers)
+        return self._of(Node(rule, self.flat, children, {**numbers, **more}, constants, place))
 
     def union(
         self: S,

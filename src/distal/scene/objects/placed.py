@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final, TypeVar, overload
 
+from distal.fields.combine.blends import FLAT_UNIONS
 from distal.fields.deform import offsets
 from distal.fields.guarantees import Operator
 from distal.fields.library import OPERATORS
@@ -83,7 +84,10 @@ class Placed(BaseShape):
         place = author_place()
         if operator not in OPERATORS:
             refuse(f"there is no operator '{operator}'", did_you_mean(operator, OPERATORS), place)
-        return self._under(OPERATORS[operator], args, kwargs, place, others=tuple(others))
+        rule = OPERATORS[operator]
+        if self.flat:
+            rule = FLAT_UNIONS.get(rule, rule)
+        return self._under(rule, args, kwargs, place, others=tuple(others))
 
     def shown(self: S, condition: Number) -> S:
         """Show the shape only where a condition holds, else nothing.
@@ -279,7 +283,8 @@ class Placed(BaseShape):
 
         After ``|`` it fills the corner, after ``-`` and ``&`` it rounds the edge off; after
         ``extrude`` it rounds the ends. The radius is exact where the surfaces meet at a right angle
-        and the distances are true.
+        and the distances are true. Faces that both shapes have in a side of the box around them do
+        not move.
 
         Raises:
             SceneValueError: The last operator makes no edge that can be rounded.

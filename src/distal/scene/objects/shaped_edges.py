@@ -1,25 +1,29 @@
 """Fillets and chamfers: the edges of a shape's last operator, shaped afterwards.
 
-Input: the node of a shape. Output: a node with the same children, whose operator shapes the edge.
-Does not depend on the public classes.
+Input: the node of a shape. Output: a node with the same children, whose operator shapes the edge;
+for a combination with a blend, the operator that suits its shapes. Does not depend on the public
+classes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from distal.diagnostics import Span
 from distal.fields.combine import joins
-from distal.fields.combine.blends import COMBINATIONS
-from distal.fields.guarantees import Limit, Operator
+from distal.fields.combine.blends import COMBINATIONS, FLAT_UNIONS, PRISMS
+from distal.fields.guarantees import Limit, Operator, Primitive
 from distal.fields.lift import extrude
-from distal.ir.types import FLOAT
+from distal.fields.place.flat import same_direction_flat
+from distal.fields.place.solid import same_direction
+from distal.ir.types import FLOAT, VEC2, VEC3
 from distal.lang.places import CELL
 from distal.scene.objects.binding import bound
-from distal.scene.tree.conversion import Asked, number
+from distal.scene.tree.conversion import Asked, Number, number
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
+from distal.scene.tree.varying import VaryingNumber
 
 # The blend of each word, and the operator that replaces a plain extrusion, with its number.
 _BLENDS: Final[Mapping[str, str]] = {"fillet": "round", "chamfer": "chamfer"}
@@ -63,7 +67,8 @@ def shaped_edge(node: Node, word: str, size: Any, place: Span | None) -> Node:
         varies = frozenset((CELL,))
         number(size, Asked(name, word, FLOAT, Limit.NOT_NEGATIVE, place=place, varies=varies))
         numbers, constants = bound(shaped, (size,), {}, place)
-        return _replaced(node, shaped, numbers, constants, place)
+        shaped, more = suited(shaped, node.children, numbers)
+        return _replaced(node, shaped, {**numbers, **more}, constants, place)
     if rule is extrude.EXTRUDE:
         shaped, name = _EXTRUDED[word]
         height = (node.numbers.get("height") or node.constants["height"].number).value
@@ -78,6 +83,38 @@ def shaped_edge(node: Node, word: str, size: Any, place: Span | None) -> Node:
         found or f"call {word} right after the operator: (a - b).{word}({size!r:.20}).translate(…)",
         place,
     )
+
+
+def suited(
+    rule: Operator, children: Sequence[Node], numbers: Mapping[str, Number]
+) -> tuple[Operator, Mapping[str, Number]]:
+    """Return the operator for these shapes in place of a combination, and its further numbers.
+
+    Args:
+        rule: The combination, for solids.
+        children: The shapes.
+        numbers: The numbers of the combination.
+    """
+    flat = children[0].flat
+    if rule in PRISMS and len(children) == 2 and "k" in numbers:
+        common = _prism_axes(children[0]) & _prism_axes(children[1])
+        if common:
+            along = tuple(float(axis in common) for axis in "xyz"[: 2 if flat else 3])
+            return PRISMS[rule][flat], {"along": Number(VEC2 if flat else VEC3, along)}
+    return (FLAT_UNIONS.get(rule, rule) if flat else rule), {}
+
+
+def _prism_axes(node: Node) -> frozenset[str]:
+    """Return the axes along which a shape is a prism that ends at the sides of its box."""
+    while True:
+        rule = node.rule
+        if any(isinstance(value, VaryingNumber) for value in node.constants.values()):
+            return frozenset()
+        if isinstance(rule, Primitive) or rule.along:
+            return frozenset(rule.along)
+        if rule.turn not in (same_direction, same_direction_flat):
+            return frozenset()
+        node = node.children[0]
 
 
 def _replaced(
