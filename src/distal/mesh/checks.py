@@ -94,6 +94,7 @@ def intersecting_pairs(
     triangles: Integers,
     some: Bools | None = None,
     watch: Callable[[float], None] | None = None,
+    faces: Integers | None = None,
 ) -> Integers:
     """Return the pairs of triangles that meet where they have no point or side in common, (k, 2).
 
@@ -102,11 +103,15 @@ def intersecting_pairs(
         triangles: Of shape (m, 3).
         some: Pairs without one of these triangles are not looked at; None for all.
         watch: Called now and then.
+        faces: Triangles with the same number from 0 are known to be apart.
     """
     found = []
     for first, second in close_pairs(points, triangles, some):
         if watch is not None:
             watch(1.0)
+        if faces is not None:
+            unknown = (faces[first] != faces[second]) | (faces[first] < 0)
+            first, second = first[unknown], second[unknown]
         one, other, shared = _aligned(triangles[first], triangles[second])
         unsure = np.flatnonzero(~_apart(points, one, other, shared))
         for row in unsure.tolist():
@@ -239,7 +244,11 @@ def _keys(cells: Integers) -> Integers:
 
 
 def meeting_triangles(
-    points: Floats, triangles: Integers, some: Bools, watch: Callable[[float], None]
+    points: Floats,
+    triangles: Integers,
+    some: Bools,
+    watch: Callable[[float], None],
+    faces: Integers | None = None,
 ) -> Integers:
     """Return the triangles of pairs that intersect, in 64 or in 32 bits, one of which is given.
 
@@ -248,10 +257,13 @@ def meeting_triangles(
         triangles: Of shape (m, 3).
         some: The triangles that are looked at.
         watch: Called now and then.
+        faces: Triangles with the same number from 0 are known to be apart.
     """
     if not some.any():
         return np.empty(0, np.int64)
     single = points.astype(np.float32).astype(np.float64)
-    pairs = [intersecting_pairs(places, triangles, some, watch) for places in (points, single)]
+    pairs = [
+        intersecting_pairs(places, triangles, some, watch, faces) for places in (points, single)
+    ]
     found: Integers = np.unique(np.concatenate(pairs))
     return found

@@ -31,7 +31,7 @@ LEAST_HEIGHT: Final = 0.2
 # How far a triangle may turn at once: 45 degrees.
 _COSINE: Final = 0.7
 # What of the tolerance is used: between the places that are measured the surface is farther away.
-_SHARE: Final = 0.95
+_SHARE: Final = 0.9
 _MOST_TRIES: Final = 3
 _MOST_NEIGHBORS: Final = 24
 _MOST_ROUNDS: Final = 400

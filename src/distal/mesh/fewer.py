@@ -129,17 +129,26 @@ def _without_points(
         watch: Called now and then.
     """
     mesh = Collapsing.of(kernels, points, rows, tolerance, step, ~fixed)
-    for _ in range(_MOST_REPEATS):
+    for number in range(_MOST_REPEATS):
         collapsed(mesh, watch)
         found, bad = _measured(mesh)
         bad[meeting_triangles(points, mesh.triangles, mesh.changed, watch)] = True
         if not bad.any():
             return found
-        # What was close to the bad triangles stays, in the same order by chance.
-        fixed[mesh.triangles[bad].reshape(-1)] = True
-        fixed[np.flatnonzero(mesh.nearest >= 0)[bad[mesh.nearest[mesh.nearest >= 0]]]] = True
+        fixed |= _around(mesh, bad, number)
         mesh = Collapsing.of(kernels, points, rows, tolerance, step, ~fixed)
     return Spared(np.empty(0, np.int64), rows)
+
+
+def _around(mesh: Collapsing, bad: Bools, rings: int) -> Bools:
+    """Return the points that are closest to some triangles, and those of rings around them."""
+    followed = np.flatnonzero(mesh.nearest >= 0)
+    found = np.zeros(len(mesh.points), np.bool_)
+    for _ in range(rings + 1):
+        found[mesh.triangles[bad].reshape(-1)] = True
+        found[followed[bad[mesh.nearest[followed]]]] = True
+        bad = found[mesh.triangles].any(axis=1)
+    return found
 
 
 def _with_flat_faces(
@@ -150,7 +159,7 @@ def _with_flat_faces(
     groups = face_groups(points, triangles, labels, close)
     for _ in range(_MOST_REPEATS):
         rows, of = without_spare_points(points, triangles, groups, close)
-        bad = meeting_triangles(points, rows, of >= 0, watch)
+        bad = meeting_triangles(points, rows, of >= 0, watch, of)
         faces = np.unique(of[bad])
         if not len(faces):
             return rows

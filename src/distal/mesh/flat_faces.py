@@ -166,7 +166,8 @@ def _chosen(
     heights = faces.heights(made, of[stars.triangle[every]])
     before = np.full(len(points), np.inf)
     np.minimum.at(before, stars.owner, heights[: len(stars.owner)])
-    least = np.full(len(stars.owner), np.inf)
+    least = np.full(len(stars.owner), -np.inf)
+    least[target] = np.inf
     np.minimum.at(least, target, heights[len(stars.owner) :])
     needed = np.maximum(np.minimum(faces.least, before), 0.0)[stars.owner]
     rows = np.flatnonzero(allowed & (least > needed))
@@ -208,7 +209,7 @@ def _flip_at(
     of: Integers,
     flips: Bools,
 ) -> Bools:
-    """Flip a line at each of some points, so that it has a neighbor less; return where it is done.
+    """Flip lines at some points, so that they have fewer neighbors; return where it is done.
 
     Args:
         faces: The mesh.
@@ -231,8 +232,14 @@ def _flip_at(
     fits = height > np.maximum(np.minimum(faces.least, now), 0.0)
     fits &= ~_are_joined(triangles, left, right, len(faces.points))
     some = np.flatnonzero(fits)
-    some = some[np.lexsort((-height[some], stars.owner[rows[some]]))]
-    some = some[np.flatnonzero(np.diff(stars.owner[rows[some]], prepend=-1))]
+    other = stars.triangle[across[rows]]
+    some = some[_first_at_both(height[some], stars.triangle[rows[some]], other[some], len(of))]
+    # Half of the neighbors that are too many: three stay.
+    owner = stars.owner[rows[some]]
+    order = np.lexsort((-height[some], owner))
+    place = np.arange(len(some)) - np.searchsorted(owner[order], owner[order])
+    most = np.maximum((np.bincount(stars.owner, minlength=len(points)) - 3) // 2, 1)
+    some = some[order[place < most[owner[order]]]]
     # Two points may flip to the same line.
     ends = np.stack([left[some], right[some]], axis=1)
     keys = ends.min(axis=1) * np.int64(len(faces.points)) + ends.max(axis=1)
@@ -265,7 +272,7 @@ def _flip(faces: _Faces) -> None:
     own, of = faces.triangles[rows], faces.of[rows]
     near = np.zeros(size, np.bool_)
     near[own.reshape(-1)] = True
-    others = faces.triangles[(faces.of < 0) & (near[faces.triangles].sum(axis=1) == 2)]
+    others = faces.triangles[(faces.of < 0) & (near[faces.triangles].sum(axis=1) >= 2)]
     for _ in range(_MOST_FLIPS):
         half, mate = _inner_sides(own, of, size)
         one, other = half // 3, mate // 3

@@ -6,12 +6,16 @@ Input: triangles. Output: rows of whole numbers. Does not depend on where points
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from distal.mesh.accuracy import runs
 from distal.mesh.solid import Bools, Floats, Integers
 from distal.polygons.whole_numbers import stable_order
+
+# A point with more neighbors is moved onto some of them only: pairs grow as the square.
+_MOST_TARGETS: Final = 32
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,10 +35,12 @@ class Stars:
     before: Integers
 
     def pairs(self) -> tuple[Integers, Integers]:
-        """Return each row with each row of the same point."""
+        """Return rows with each row of the same point: all rows, some of points with many."""
         count = np.bincount(self.owner)
         first = np.cumsum(count) - count
-        return runs(np.arange(len(self.owner)), first[self.owner], count[self.owner])
+        number = np.arange(len(self.owner)) - first[self.owner]
+        some = np.flatnonzero(number % -(-count // _MOST_TARGETS)[self.owner] == 0)
+        return runs(some, first[self.owner[some]], count[self.owner[some]])
 
     def across(self) -> Integers:
         """Return for each row the one on the other side of the line to its corner ``after``."""
