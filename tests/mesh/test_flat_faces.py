@@ -248,7 +248,7 @@ def test_gradients_keep_their_points() -> None:
     corners = made.points[made.triangles]
     ends = (np.abs(corners[:, :, 1]) > 0.499).all(axis=1)
     # The sides vary: they keep their triangles. Top and bottom do not, and have points at edges.
-    assert np.ptp(corners[~ends][:, :, 1], axis=1).max() < 0.2
+    assert np.ptp(corners[~ends][:, :, 1], axis=1).max() < 0.3  # joined cells
     assert (np.abs(corners[ends][:, :, ::2]).max(axis=2) > 0.499).all()
     assert 0.5 * made.report["triangles_before"] < len(made.triangles)
     assert len(made.triangles) < made.report["triangles_before"]
