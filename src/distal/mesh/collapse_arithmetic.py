@@ -5,7 +5,7 @@ Input: corners of triangles. Output: numbers. One row for each triangle. Needs n
 
 from __future__ import annotations
 
-from distal.lang import cross, dot, func, length, max, sqrt, vec3
+from distal.lang import atan2, cross, dot, func, length, max, sqrt, vec3
 from distal.mesh.triangle_arithmetic import distance_to_triangle
 
 
@@ -44,3 +44,9 @@ def height_of(doubled: vec3, a: vec3, b: vec3, c: vec3) -> float:
     """
     longest = max(dot(b - a, b - a), max(dot(c - b, c - b), dot(a - c, a - c)))
     return length(doubled) / sqrt(max(longest, 1e-300))
+
+
+@func
+def angle(a: vec3, b: vec3, c: vec3) -> float:
+    """Return the angle of a triangle at its first corner, in radians."""
+    return atan2(length(cross(b - a, c - a)), dot(b - a, c - a))

@@ -13,11 +13,12 @@ from typing import Any, Final
 
 import numpy as np
 
+from distal.mesh import collapse_arithmetic, triangle_arithmetic
 from distal.mesh.checks import meeting_triangles
 from distal.mesh.collapses import Collapsing, collapsed, pieces_of
 from distal.mesh.face_groups import face_groups
 from distal.mesh.flat_faces import without_spare_points
-from distal.mesh.kernels import FieldKernels
+from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.parallel import by_one_thread
 from distal.mesh.pieces import distances
 from distal.mesh.solid import Bools, Floats, Integers
@@ -28,6 +29,8 @@ _FLAT: Final = 1e-6
 _MOST_REPEATS: Final = 6
 # In the end triangles are measured in up to so many pieces along each side.
 _MOST_PIECES: Final = 16
+# The least share of the normals around a corner in each direction; that of a cube has a third.
+_CORNER: Final = 0.1
 # So many triangles are handled in one thread: each round would start others for few rows.
 _FEW: Final = 1 << 16
 
@@ -102,7 +105,7 @@ def with_fewer_triangles(
         rows = _with_flat_faces(points, triangles, labels, watch)
         if tolerance is None:
             return _numbered(Spared(np.empty(0, np.int64), rows))
-        fixed = _at_borders(triangles, labels, len(points))
+        fixed = _at_borders(triangles, labels, len(points)) | _at_corners(points, rows)
         return _numbered(_without_points(kernels, points, rows, fixed, tolerance, step, watch))
 
     return by_one_thread(spared) if len(triangles) <= _FEW else spared()
@@ -180,6 +183,32 @@ def _at_borders(triangles: Integers, labels: Integers | None, count: int) -> Boo
     np.maximum.at(highest, corners, of)
     fixed[corners] = (lowest[corners] < highest[corners]) | (lowest[corners] < 0)
     return fixed
+
+
+def _at_corners(points: Floats, triangles: Integers) -> Bools:
+    """Return which points are corners: the normals around them go in three directions.
+
+    They are the sizes of a part: the tolerance must not cut them.
+
+    Args:
+        points: Of shape (n, 3).
+        triangles: Of shape (m, 3).
+    """
+    corners = points[triangles]
+    _, normals = rows_of(triangle_arithmetic.face, *(corners[:, i] for i in range(3)))
+    squares = normals[:, :, None] * normals[:, None, :]
+    sums = np.zeros((len(points), 3, 3))
+    for i in range(3):
+        ways = np.roll(corners, -i, axis=1)
+        angle = rows_of(collapse_arithmetic.angle, *(ways[:, k] for k in range(3)))
+        for row, column in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)):
+            part = np.bincount(triangles[:, i], angle * squares[:, row, column], len(points))
+            sums[:, row, column] += part
+            if row != column:
+                sums[:, column, row] += part
+    shares = np.linalg.eigvalsh(sums)
+    found: Bools = shares[:, 0] > _CORNER * shares.sum(axis=1)
+    return found
 
 
 def _measured(mesh: Collapsing) -> tuple[Spared, Bools]:
