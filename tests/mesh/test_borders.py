@@ -152,7 +152,8 @@ def test_gradients_are_not_cut() -> None:
     made = Sphere(1.0).paint(ramp).mesh(0.01)
     assert made.report["border_points"] == 0 and made.triangle_colors is None
     plain = Sphere(1.0).mesh(0.01)
-    np.testing.assert_array_equal(made.triangles, plain.triangles)
+    # No triangle is cut, and none is spared: the color varies in each.
+    assert len(made.triangles) == plain.report["triangles_before"] > len(plain.triangles)
     wide = BALLS[0].union(BALLS[1], smooth=0.15).mesh(0.002)
     assert wide.report["border_points"] == 0
 

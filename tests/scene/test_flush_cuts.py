@@ -87,7 +87,7 @@ def test_others_are_not(name: str, seed: int) -> None:
 
 def test_both_shapes_and_what_to_do_are_named() -> None:
     part = Box(20.0, 4.0, 12.0).named("plate") - Cylinder(0.7, 4.0).named("screw hole")
-    (found,) = [f for f in check(part).findings if f.diagnostic.code is ErrorCode.FLUSH_CUT]
+    (found,) = [f for f in check(part).findings if f.diagnostic.code is ErrorCode.FLUSH_FACES]
     assert found.severity is Severity.WARNING
     text = found.diagnostic.message
     assert text.startswith("'screw hole' (Cylinder) ends exactly on a face of 'plate' (Box) (line ")
@@ -109,4 +109,4 @@ def test_it_follows_parameters_and_time() -> None:
     assert flush_cuts(part.node, {"height": 4.0}, 0.0)
     # The body has no such parameter.
     codes = [finding.diagnostic.code for finding in check(part, {"height": 4.0}).findings]
-    assert ErrorCode.FLUSH_CUT in codes
+    assert ErrorCode.FLUSH_FACES in codes

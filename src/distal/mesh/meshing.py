@@ -21,6 +21,7 @@ from distal.mesh.bricks import Slopes
 from distal.mesh.checks import checked
 from distal.mesh.coloring import Painted, painted
 from distal.mesh.extract import Extent, Extracted, Nothing
+from distal.mesh.fewer import with_fewer_triangles
 from distal.mesh.files.parts import Finish, Finishes
 from distal.mesh.integrals import size_and_volume
 from distal.mesh.kernels import FieldKernels
@@ -155,6 +156,17 @@ def mesh_of_node(node: Node, request: MeshRequest) -> Mesh:
         points, triangles, normals = cut.points, cut.triangles, cut.normals
         report["points"], report["triangles"] = len(points), len(triangles)
         report["border_points"] = cut.added
+    spared = with_fewer_triangles(
+        kernels,
+        points,
+        triangles,
+        paint.labels(points, triangles) if paint is not None and paint.varies else None,
+        tolerance=None if request.simplify else wanted.tolerance,
+        step=found.step,
+        watch=watch_of(replace(request, progress=None)),
+    )
+    spared.record(report)
+    points, normals, triangles = points[spared.points], normals[spared.points], spared.triangles
     at_points, of_triangles, finish = _appearance(paint, points, triangles, report)
     if request.simplify:
         imported(simplify.PACKAGE)
@@ -252,7 +264,6 @@ def _record_simplified(report: dict[str, Any], less: Simplified | None) -> None:
         )
         return
     error = report["error"]
-    report["triangles_before"] = report["triangles"]
     report["points"], report["triangles"] = len(less.points), len(less.triangles)
     # What manifold3d removes moves the surface by less than it is allowed to.
     error["surface_to_mesh"] += less.moved

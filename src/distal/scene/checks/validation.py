@@ -316,7 +316,7 @@ def _cuts_at_faces(numbers: Mapping[int, int], cuts: Iterable[FlushCut]) -> Iter
     """
     for cut in cuts:
         leaf, hint = cut.cutter.leaf, "let it go through by a little"
-        diagnostic = Diagnostic(ErrorCode.FLUSH_CUT, cut.message, leaf.place, hint)
+        diagnostic = Diagnostic(ErrorCode.FLUSH_FACES, cut.message, leaf.place, hint)
         yield CheckFinding(Severity.WARNING, numbers.get(id(leaf), 0), diagnostic)
 
 
@@ -344,7 +344,7 @@ def _moved_faces(
             continue
         severity = Severity.WARNING if moved.kind.keeps_faces else Severity.NOTE
         message, hint = moved.text(described(node))
-        diagnostic = Diagnostic(ErrorCode.FACE_MOVED, message, node.place, hint)
+        diagnostic = Diagnostic(ErrorCode.FLUSH_FACES, message, node.place, hint)
         yield CheckFinding(severity, i, diagnostic)
 
 
