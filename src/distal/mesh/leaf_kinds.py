@@ -17,6 +17,7 @@ from distal.frontend import Assembly
 from distal.ir.build import field
 from distal.ir.nodes import Construct, Param, Read, Return
 from distal.ir.types import FLOAT, VEC3, VEC4, Type, tuple_type
+from distal.lang.chosen_values import by_key
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.runtime_access import executor
@@ -103,8 +104,10 @@ class LeafKinds:
         for own in self.kinds:
             rows = own.rows
             # One row for each: compiling it would take longer.
-            given = {"params": params, "time": time, "device": "reference"}
-            found = executor().call(own.numbers, own.columns, {}, **given)
+            given = _read_by(own.numbers, params)
+            found = executor().call(
+                own.numbers, own.columns, {}, params=given, time=time, device="reference"
+            )
             slope[rows], low[rows], high[rows], width[rows] = found
             known[rows] = has_width(own.kind.node)
         # Surfaces without an inside have no width; nothing of them is meshed.
@@ -131,7 +134,8 @@ class LeafKinds:
             if len(some):
                 columns = [column[row_of[leaf[some]]] for column in own.columns]
                 args = [places[some], *columns]
-                found[some] = executor().call(own.values, args, {}, params=params, time=time)
+                given = _read_by(own.values, params)
+                found[some] = executor().call(own.values, args, {}, params=given, time=time)
         return found[:, 0], found[:, 1:]
 
     def _kind_of(self) -> tuple[Integers, Integers]:
@@ -140,6 +144,14 @@ class LeafKinds:
         for number, own in enumerate(self.kinds):
             kind[own.rows], row[own.rows] = number, np.arange(len(own.rows))
         return kind, row
+
+
+def _read_by(function: Composed, params: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the values of the parameters that a function reads; others would be refused."""
+    if not params:
+        return params
+    known = by_key(function.parameters())
+    return {key: value for key, value in params.items() if key in known}
 
 
 def leaf_kinds(root: Node) -> LeafKinds:
