@@ -161,8 +161,15 @@ def test_a_leaf_that_stays_missing_is_an_error_at_its_line(monkeypatch):
 
 
 def test_estimates_are_not_checked_and_said():
-    made = Mandelbulb().mesh(tolerance=0.05, colors=False)
-    assert [name for name in made.report["leaves"]["unchecked"] if "Mandelbulb" in name]
+    shape = Mandelbulb() | Sphere(0.3).translate(2.0, 0, 0)
+    kernels = FieldKernels(shape.node, {}, 0.0)
+    extent = extent_of(shape.node, MeshRequest())
+    search = LeafSearch(kernels, extent.low, extent.high, extent.slopes, 0.01)
+    rows = search.places()
+    found = leaf_check.result_of(search, rows, np.zeros(len(rows)), 1.0)
+    assert {search.leaves[number].leaf.rule.name for number in rows.leaf} == {"Sphere"}
+    (name,) = found.report()["unchecked"]
+    assert name.startswith("'Mandelbulb' (line ")
 
 
 def random_plate(rng):

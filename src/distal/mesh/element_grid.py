@@ -21,7 +21,7 @@ from distal.mesh.triangle_arithmetic import distance_if_alike as distance_to_tri
 from distal.polygons.whole_numbers import numbers_in
 
 # The least cosine between the normal at a place and that of an element that shows it.
-_ALIKE: Final = 0.3
+_ALIKE: Final = 1e-3
 _MOST_LEVELS: Final = 18  # keys have 21 bits for each coordinate
 _PLACES_AT_ONCE: Final = 1 << 13
 

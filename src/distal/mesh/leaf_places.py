@@ -36,7 +36,7 @@ _LEAST_SIDE: Final = 0.05
 _STEEP: Final = 1e6  # a slope above it says nothing
 _NEWTON_STEPS: Final = 3
 _TURNS: Final = 2  # how often a place that is beside the shape's surface is moved along the leaf
-_BACK: Final = -0.5  # the cosine between normals below which a leaf turns back
+_BACK: Final = -0.75  # the cosine between normals below which a leaf turns back
 _SHIFT: Final = (0.0131, 0.0173, 0.0157)  # keeps middles of boxes off axes of symmetry
 
 
