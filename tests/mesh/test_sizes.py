@@ -137,8 +137,8 @@ def test_a_tolerance_alone_sets_no_angle_and_flat_faces_need_none():
 
 def test_radii_below_tolerances_are_left_out():
     rounded = Box(18, 18, 18).round(1.0)
-    plain = len(rounded.mesh(0.7).triangles)
-    assert len(rounded.mesh(0.7, angle=0.02).triangles) == plain
+    plain = len(rounded.mesh(1.4).triangles)
+    assert len(rounded.mesh(1.4, angle=0.1).triangles) == plain
     assert len(rounded.mesh(0.3, angle=0.1).triangles) > 4 * plain
 
 
