@@ -113,7 +113,7 @@ def test_the_default_file_of_a_socket_screw_has_its_volume():
 
 @pytest.mark.parametrize("angle", [0.3, 0.1])
 def test_no_triangle_turns_by_more_than_the_angle(angle):
-    shape, tolerance = Torus(10.0, 3.0), 0.1
+    shape, tolerance = Torus(10.0, 3.0), 0.05
     mesh = shape.mesh(tolerance, angle=angle, check=True, colors=False)
     corners = mesh.points[mesh.triangles]
     ring = corners * (1, 0, 1)
@@ -122,7 +122,7 @@ def test_no_triangle_turns_by_more_than_the_angle(angle):
     cosines = np.einsum("tij,tij->ti", normals, np.roll(normals, 1, axis=1))
     turns = np.arccos(np.clip(cosines, -1.0, 1.0)).max(axis=1)
     # Normals inside, half as far apart, say what those at the corners are, but for third orders.
-    assert turns.max() <= 1.05 * angle
+    assert turns.max() <= 1.1 * angle
     assert turns.max() > 0.5 * angle  # and not by far less
     assert mesh.report["check"] == SOUND and mesh.report["angle"] == angle
 
@@ -135,14 +135,14 @@ def test_a_tolerance_alone_sets_no_angle_and_flat_faces_need_none():
     assert len(part.mesh(0.06).triangles) == len(part.mesh(0.06, angle=0.02).triangles)
 
 
-def test_radii_below_two_tolerances_are_left_out():
+def test_radii_below_tolerances_are_left_out():
     rounded = Box(18, 18, 18).round(1.0)
-    plain = len(rounded.mesh(0.55).triangles)
-    assert len(rounded.mesh(0.55, angle=0.02).triangles) == plain
+    plain = len(rounded.mesh(1.4).triangles)
+    assert len(rounded.mesh(1.4, angle=0.1).triangles) == plain
     assert len(rounded.mesh(0.3, angle=0.1).triangles) > 4 * plain
 
 
-def test_small_radii_turn_by_up_to_three_times_the_angle():
+def test_small_radii_turn_by_more_than_the_angle():
     counts = [len(Cylinder(2.0, 20).mesh(t, angle=0.1).triangles) for t in (0.6, 0.05)]
     assert 4 * counts[0] < counts[1]
 

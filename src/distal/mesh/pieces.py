@@ -23,16 +23,17 @@ _CORNERS: Final[list[tuple[str, Type]]] = [(name, VEC3) for name in "abc"]
 _LIMITS: Final[list[tuple[str, Type]]] = [
     (name, FLOAT) for name in ("pieces", "angle", "from_radius", "least_radius")
 ]
-# The surface may turn by any angle where its radius is below so many tolerances: a plate of 200 has
-# a tolerance of .4 by default, and the radius of a hole of 2.2 is 2.75 of these.
-LEAST_RADIUS: Final = 2.0
+# The surface may turn by any angle where its radius is below so many tolerances. A plate of 200 has
+# a tolerance of .4 by default, turned by 45 degrees of .57: the radius of a hole of 2.2 is 1.9 of
+# these.
+LEAST_RADIUS: Final = 1.5
 # It may turn by the angle alone where its radius is at least so many tolerances.
 FROM_RADIUS: Final = 45.0
 # What is measured is right within a few percent: cells are not divided for as little.
 _SLACK: Final = 1.15  # of the square
 # A triangle that is closer to the surface than this share of the tolerance, for each unit of the
 # angle squared, turns by less: a third of the height of a chord at the least radius.
-_FLAT: Final = 0.75
+_FLAT: Final = 0.5
 
 
 @dataclass(frozen=True, slots=True)

@@ -65,7 +65,9 @@ def largest_side(kernels: FieldKernels, extent: Extent) -> float:
         largest = float((high - low).max())
         if largest >= _TIGHT * extent.size:
             return extent.size
-        middles = middles[_reaches_out(middles, 0.5 * side, low, high, _CLOSE * extent.size)]
+        if len(middles):
+            beyond = _reaches_out(middles, 0.5 * side, low, high, _CLOSE * extent.size)
+            middles = middles[beyond]
         if not len(middles):
             return largest if largest > 0.0 else extent.size
         side *= 0.5
