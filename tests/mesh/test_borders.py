@@ -168,7 +168,7 @@ def test_patterns_on_flat_faces_keep_volume_and_bounds() -> None:
     a, b, c = np.moveaxis(made.points[made.triangles], 1, 0)
     assert np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0 == pytest.approx(1.0, rel=1e-3)
     plain = Box(1.0).rotate(x=0.3, y=0.4).mesh(0.02)
-    assert made.bounds == plain.bounds
+    np.testing.assert_allclose(made.bounds, plain.bounds, rtol=0.0, atol=1e-12)
     # Colors beside borders too: points that are not middles, away from the border by a little.
     # Places are spread evenly over the surface.
     rng = np.random.default_rng(5)
