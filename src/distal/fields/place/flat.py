@@ -201,6 +201,7 @@ TRANSLATE_FLAT = operator(
     point=translated_flat,
     keeps=EXACT,
     turn=same_direction_flat,
+    linear=True,
     bounds=translated_flat_bounds,
     growth=Growth.KEPT,
 )
@@ -209,6 +210,7 @@ ROTATE_FLAT = operator(
     point=rotated_flat,
     keeps=EXACT,
     turn=rotated_flat,
+    linear=True,
     bounds=rotated_flat_bounds,
     growth=Growth.TURNED,
 )
@@ -218,6 +220,7 @@ SCALE_FLAT = operator(
     finish=scaled_value,
     keeps=EXACT,
     turn=same_direction_flat,
+    linear=True,
     bounds=scaled_flat_bounds,
     limits={"factor": Limit.POSITIVE},
     growth=Growth.KEPT,

@@ -46,7 +46,7 @@ REACH: Final = 6.0
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class BlendKind:
     """What a blend does to values.
 
     Attributes:
@@ -67,13 +67,13 @@ class Kind:
         return BLENDS[self.name].cut
 
 
-def _kinds() -> dict[Operator, Kind]:
-    found: dict[Operator, Kind] = {}
+def _kinds() -> dict[Operator, BlendKind]:
+    found: dict[Operator, BlendKind] = {}
     for (sharp, name), rule in COMBINATIONS.items():
         kinds = {
-            "union": Kind(name, joins.UNION, 1.0, 1.0),
-            "intersection": Kind(name, joins.INTERSECTION, -1.0, 1.0),
-            "difference": Kind(name, joins.DIFFERENCE, -1.0, -1.0),
+            "union": BlendKind(name, joins.UNION, 1.0, 1.0),
+            "intersection": BlendKind(name, joins.INTERSECTION, -1.0, 1.0),
+            "difference": BlendKind(name, joins.DIFFERENCE, -1.0, -1.0),
         }
         if name in BLENDS and sharp in kinds:
             of_rule = (rule, FLAT_UNIONS.get(rule, rule), *PRISMS.get(rule, ()))
@@ -98,7 +98,7 @@ class MovedFace:
             the profile; else None.
     """
 
-    kind: Kind
+    kind: BlendKind
     size: float
     amount: float
     place: tuple[float, ...] | None
@@ -163,14 +163,14 @@ def moved_face(
     random = np.random.default_rng(seed)
     count = -(-PLACES // len(regions))
     p = np.concatenate([random.uniform(*region, (count, n)) for region in regions])
-    return _Places(node, kind, size, params, time).moved(p)
+    return _FlushPlaces(node, kind, size, params, time).moved(p)
 
 
-class _Places:
+class _FlushPlaces:
     """A blend and its shapes, evaluated at places."""
 
     def __init__(
-        self, node: Node, kind: Kind, size: float, params: Mapping[str, Any], time: float
+        self, node: Node, kind: BlendKind, size: float, params: Mapping[str, Any], time: float
     ) -> None:
         self._node, self._kind, self._size = node, kind, size
         self._params, self._time = params, time
@@ -257,7 +257,7 @@ class _Places:
 
 
 def _thin_prism(
-    node: Node, kind: Kind, boxes: Sequence[NodeBounds], size: float
+    node: Node, kind: BlendKind, boxes: Sequence[NodeBounds], size: float
 ) -> MovedFace | None:
     """Return how far faces move between ends that both prisms share, if these are too near.
 
