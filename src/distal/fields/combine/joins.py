@@ -16,7 +16,6 @@ from distal.fields.guarantees import (
     Limit,
     operator,
 )
-from distal.fields.widths import clearance_width
 from distal.lang import abs, clamp, func, max, min, mix, select
 
 # Materials of combinations
@@ -198,7 +197,6 @@ CLEARANCE = operator(
     bounds=first_box,
     limits={"gap": Limit.NOT_NEGATIVE},
     growth=Growth.FIRST,
-    width=clearance_width,
 )
 MORPH = operator(
     "morph",

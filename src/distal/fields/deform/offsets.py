@@ -25,7 +25,6 @@ from distal.fields.guarantees import (
     Operator,
     operator,
 )
-from distal.fields.widths import eroded_width, offset_width, rounded_width, shell_width
 from distal.lang import abs, dot, func, max, vec2, vec3
 
 INSIDE_ALONE = frozenset({Guarantee.EXACT_INSIDE})
@@ -125,7 +124,6 @@ ROUND = operator(
     limits={"radius": Limit.NOT_NEGATIVE},
     growth=Growth.KEPT,
     fills=True,
-    width=rounded_width,
 )
 OFFSET = operator(
     "offset",
@@ -133,7 +131,6 @@ OFFSET = operator(
     bounds=offset_bounds,
     growth=Growth.KEPT,
     fills=True,
-    width=offset_width,
 )
 DILATE = operator(
     "dilate",
@@ -144,7 +141,6 @@ DILATE = operator(
     limits={"distance": Limit.NOT_NEGATIVE},
     growth=Growth.KEPT,
     fills=True,
-    width=offset_width,
 )
 ERODE = operator(
     "erode",
@@ -152,7 +148,6 @@ ERODE = operator(
     keeps=INSIDE_ALONE,
     limits={"distance": Limit.NOT_NEGATIVE},
     growth=Growth.KEPT,
-    width=eroded_width,
 )
 THICK = {"thickness": Limit.POSITIVE}
 SHELL_INNER = operator(
@@ -161,7 +156,6 @@ SHELL_INNER = operator(
     keeps_exact=EXACT_OUTSIDE,
     limits=THICK,
     growth=Growth.KEPT,
-    width=shell_width,
 )
 SHELL_CENTRE = operator(
     "shell centre",
@@ -171,7 +165,6 @@ SHELL_CENTRE = operator(
     limits=THICK,
     growth=Growth.KEPT,
     fills=True,
-    width=shell_width,
 )
 SHELL_OUTER = operator(
     "shell outer",
@@ -181,7 +174,6 @@ SHELL_OUTER = operator(
     limits=THICK,
     growth=Growth.KEPT,
     fills=True,
-    width=shell_width,
 )
 CUT: Final[Mapping[str, Any]] = {
     "keeps": INSIDE_AND_BOUND,

@@ -13,8 +13,7 @@ from typing import Final
 
 from distal.fields.constants import HALF_ROOT, TINY
 from distal.fields.flats.edges import centred_bounds, disc_bounds, nearer
-from distal.fields.guarantees import EXACT, UNBOUNDED, Bounds2, Limit, primitive
-from distal.fields.widths import blobby_width, ellipse_width, gap_width, radius_width, segment_width
+from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
 from distal.lang import abs, dot, func, length, max, min, pow, select, sqrt, vec2
 
 WIDE: Final = vec2(0.7, 0.4)
@@ -54,12 +53,7 @@ def parabola_foot(q: vec2, curvature: float) -> float:
     return largest_root(2.0 - 2.0 * double * q.y, 2.0 * double * q.x) / double
 
 
-@primitive(
-    "Parabola",
-    EXACT,
-    limits={"curvature": Limit.POSITIVE},
-    width=UNBOUNDED,
-)
+@primitive("Parabola", EXACT, limits={"curvature": Limit.POSITIVE})
 @func
 def parabola(p: vec2, curvature: float = 1.0) -> float:
     """Region above the parabola y = curvature x^2.
@@ -88,12 +82,7 @@ def parabola_segment_bounds(width: float, height: float) -> Bounds2:
     return Bounds2(vec2(-0.5 * width, 0.0), vec2(0.5 * width, height))
 
 
-@primitive(
-    "ParabolaSegment",
-    EXACT,
-    bounds=parabola_segment_bounds,
-    width=segment_width,
-)
+@primitive("ParabolaSegment", EXACT, bounds=parabola_segment_bounds)
 @func
 def parabola_segment(p: vec2, width: float = 1.0, height: float = 0.8) -> float:
     """Region between a parabola that opens downwards and the x axis.
@@ -123,12 +112,7 @@ def parabola_segment(p: vec2, width: float = 1.0, height: float = 0.8) -> float:
     return select(inside, -d, d)
 
 
-@primitive(
-    "QuadraticCircle",
-    EXACT,
-    bounds=disc_bounds,
-    width=radius_width,
-)
+@primitive("QuadraticCircle", EXACT, bounds=disc_bounds)
 @func
 def quadratic_circle(p: vec2, radius: float = 0.5) -> float:
     """Approximate circle made of four parabolas, each perpendicular to two axes at its ends.
@@ -167,7 +151,6 @@ def _points_stay(radius: float, depth: float) -> str | None:
     bounds=disc_bounds,
     limits={"depth": Limit.POSITIVE},
     requires=_points_stay,
-    width=blobby_width,
 )
 @func
 def blobby_cross(p: vec2, radius: float = 0.6, depth: float = 0.15) -> float:
@@ -218,12 +201,7 @@ def ellipse_start(scaled: vec2, gap: float) -> float:
     return BELOW_BOTH * min(flat, steep)
 
 
-@primitive(
-    "Ellipse",
-    EXACT,
-    bounds=ellipse_bounds,
-    width=ellipse_width,
-)
+@primitive("Ellipse", EXACT, bounds=ellipse_bounds)
 @func
 def ellipse(p: vec2, radii: vec2 = WIDE) -> float:
     """Ellipse with its axes along x and y.
@@ -281,12 +259,7 @@ def hyperbola_start(m: float, c: float, past: float) -> float:
     return min(pow(0.4 * by_c, 1.0 / 3.0), sqrt(0.4 * rest / beyond), 0.2 * by_c)
 
 
-@primitive(
-    "Hyperbola",
-    EXACT,
-    limits={"steepness": Limit.POSITIVE},
-    width=gap_width,
-)
+@primitive("Hyperbola", EXACT, limits={"steepness": Limit.POSITIVE})
 @func
 def hyperbola(p: vec2, radius: float = 0.4, steepness: float = 1.0) -> float:
     """Region outside of the two branches of a hyperbola, on the left and on the right.

@@ -19,16 +19,6 @@ from distal.fields.flats.edges import (
 )
 from distal.fields.flats.slanted import isosceles_trapezoid, trapezoid_bounds
 from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
-from distal.fields.widths import (
-    corners_width,
-    equilateral_width,
-    half_radius_width,
-    isosceles_width,
-    pentagram_width,
-    polygon_width,
-    round_solid_width,
-    star_width,
-)
 from distal.lang import abs, cos, func, length, max, min, select, sin, vec2
 
 LEFT_CORNER: Final = vec2(-0.5, -0.4)
@@ -83,12 +73,7 @@ def triangle_bounds(size: float) -> Bounds2:
     )
 
 
-@primitive(
-    "EquilateralTriangle",
-    EXACT,
-    bounds=triangle_bounds,
-    width=equilateral_width,
-)
+@primitive("EquilateralTriangle", EXACT, bounds=triangle_bounds)
 @func
 def equilateral_triangle(p: vec2, size: float = 1.0) -> float:
     """Equilateral triangle with a corner at the top, centred at the origin.
@@ -114,12 +99,7 @@ def isosceles_triangle_bounds(width: float, height: float) -> Bounds2:
     return trapezoid_bounds(width, 0.0, height)
 
 
-@primitive(
-    "IsoscelesTriangle",
-    EXACT,
-    bounds=isosceles_triangle_bounds,
-    width=isosceles_width,
-)
+@primitive("IsoscelesTriangle", EXACT, bounds=isosceles_triangle_bounds)
 @func
 def isosceles_triangle(p: vec2, width: float = 0.8, height: float = 1.0) -> float:
     """Isosceles triangle with its tip at the top; y = 0 is at half of its height.
@@ -145,13 +125,7 @@ def triangle2_bounds(first: vec2, second: vec2, third: vec2) -> Bounds2:
     return Bounds2(min(first, second, third), max(first, second, third))
 
 
-@primitive(
-    "Triangle2",
-    EXACT,
-    bounds=triangle2_bounds,
-    requires=_not_in_line,
-    width=corners_width,
-)
+@primitive("Triangle2", EXACT, bounds=triangle2_bounds, requires=_not_in_line)
 @func
 def triangle2(
     p: vec2,
@@ -187,12 +161,7 @@ def triangle2(
     return select(inside > 0.0, -d, d)
 
 
-@primitive(
-    "Pentagon",
-    EXACT,
-    bounds=disc_bounds,
-    width=round_solid_width,
-)
+@primitive("Pentagon", EXACT, bounds=disc_bounds)
 @func
 def pentagon(p: vec2, radius: float = 0.5) -> float:
     """Regular pentagon with a corner at the top.
@@ -212,12 +181,7 @@ def pentagon(p: vec2, radius: float = 0.5) -> float:
     return past_corner(q, radius, PI / 5.0)
 
 
-@primitive(
-    "Hexagon",
-    EXACT,
-    bounds=disc_bounds,
-    width=round_solid_width,
-)
+@primitive("Hexagon", EXACT, bounds=disc_bounds)
 @func
 def hexagon(p: vec2, radius: float = 0.5) -> float:
     """Regular hexagon with a corner at the top.
@@ -237,12 +201,7 @@ def hexagon(p: vec2, radius: float = 0.5) -> float:
     return past_corner(q, radius, PI / 6.0)
 
 
-@primitive(
-    "Octagon",
-    EXACT,
-    bounds=disc_bounds,
-    width=round_solid_width,
-)
+@primitive("Octagon", EXACT, bounds=disc_bounds)
 @func
 def octagon(p: vec2, radius: float = 0.5) -> float:
     """Regular octagon with a corner at the top.
@@ -262,13 +221,7 @@ def octagon(p: vec2, radius: float = 0.5) -> float:
     return past_corner(q, radius, PI / 8.0)
 
 
-@primitive(
-    "RegularPolygon",
-    EXACT,
-    bounds=disc_bounds,
-    requires=_three_corners,
-    width=polygon_width,
-)
+@primitive("RegularPolygon", EXACT, bounds=disc_bounds, requires=_three_corners)
 @func
 def regular_polygon(p: vec2, radius: float = 0.5, count: int = 7) -> float:
     """Regular polygon with a corner at the top.
@@ -300,12 +253,7 @@ def past_point_of_star(q: vec2, radius: float, inner: float, angle: float) -> fl
     return select(turned_from(notch - point, q - point) < 0.0, -d, d)
 
 
-@primitive(
-    "Hexagram",
-    EXACT,
-    bounds=disc_bounds,
-    width=half_radius_width,
-)
+@primitive("Hexagram", EXACT, bounds=disc_bounds)
 @func
 def hexagram(p: vec2, radius: float = 0.5) -> float:
     """Star with six points made of two triangles; one point is at the top.
@@ -325,12 +273,7 @@ def hexagram(p: vec2, radius: float = 0.5) -> float:
     return past_point_of_star(q, radius, radius / ROOT_THREE, PI / 6.0)
 
 
-@primitive(
-    "Pentagram",
-    EXACT,
-    bounds=disc_bounds,
-    width=pentagram_width,
-)
+@primitive("Pentagram", EXACT, bounds=disc_bounds)
 @func
 def pentagram(p: vec2, radius: float = 0.5) -> float:
     """Star with five points made of the diagonals of a pentagon; one point is at the top.
@@ -351,12 +294,7 @@ def pentagram(p: vec2, radius: float = 0.5) -> float:
 
 
 @primitive(
-    "RegularStar",
-    EXACT,
-    bounds=disc_bounds,
-    limits={"inner": Limit.POSITIVE},
-    requires=_is_a_star,
-    width=star_width,
+    "RegularStar", EXACT, bounds=disc_bounds, limits={"inner": Limit.POSITIVE}, requires=_is_a_star
 )
 @func
 def regular_star(p: vec2, radius: float = 0.5, inner: float = 0.25, count: int = 7) -> float:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from distal.fields.extents import at_least_one, box_distance, smallest, turned
 from distal.fields.guarantees import EXACT, LOWER_BOUND, NOTHING, Bounds, Growth, Limit, operator
-from distal.fields.widths import deformed_width, scaled_width, stretched_width
 from distal.lang import (
     abs,
     cos,
@@ -432,7 +431,6 @@ SCALE = operator(
     bounds=scaled_bounds,
     limits={"factor": Limit.POSITIVE},
     growth=Growth.KEPT,
-    width=scaled_width,
 )
 STRETCH = operator(
     "scale axes",
@@ -443,7 +441,6 @@ STRETCH = operator(
     bounds=stretched_bounds,
     limits={"factors": Limit.POSITIVE},
     growth=Growth.HELD,
-    width=stretched_width,
 )
 SHEAR = operator(
     "shear",
@@ -453,5 +450,4 @@ SHEAR = operator(
     slope=sheared_slope,
     bounds=sheared_bounds,
     growth=Growth.HELD,
-    width=deformed_width,
 )

@@ -32,7 +32,6 @@ from distal.fields.repeat.cells import (
     site_in,
     slope_in,
     value_in,
-    width_of_copies,
 )
 from distal.fields.repeat.varied import cells_of_copies
 from distal.lang import floor, func, round, vec3
@@ -59,7 +58,6 @@ class CellFunctions:
     bounds: Func
     nearest_distance: Func
     nearest_site: Func
-    width: Func
 
 
 def one_cell(
@@ -86,7 +84,6 @@ def one_cell(
         point=functions.site,
         finish=functions.value,
         fixed={"neighbours": 0, "limited": limited},
-        width=functions.width,
         keeps=INSIDE_AND_BOUND,
         slope=functions.slope,
         bounds=functions.bounds,
@@ -121,7 +118,6 @@ def several_cells(
         around=functions.nearest_distance,
         site=functions.nearest_site,
         fixed={"limited": limited},
-        width=functions.width,
         keeps=LOWER_BOUND,
         slope=functions.slope,
         bounds=functions.bounds,
@@ -176,13 +172,7 @@ def interval_requirement(
 
 
 SOLID: Final = CellFunctions(
-    site_in,
-    value_in,
-    slope_in,
-    bounds_in,
-    nearest_copy_distance,
-    nearest_copy_site,
-    width_of_copies,
+    site_in, value_in, slope_in, bounds_in, nearest_copy_distance, nearest_copy_site
 )
 REPEAT = one_cell("repeat", SOLID, endless, limited=False)
 REPEAT_NEIGHBOURS = several_cells("repeat neighbours", SOLID, endless, limited=False)

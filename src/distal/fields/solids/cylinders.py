@@ -21,7 +21,6 @@ from distal.fields.solids.axes import (
     discs_bounds,
     upright_bounds,
 )
-from distal.fields.widths import between_width, cylinder_width, radius_width
 from distal.lang import abs, clamp, dot, func, length, max, vec2, vec3
 
 
@@ -43,7 +42,6 @@ def infinite_cylinder_bounds(radius: float) -> Bounds:
     EXACT,
     bounds=infinite_cylinder_bounds,
     chord=infinite_cylinder_chord,
-    width=radius_width,
     along="y",
 )
 @func
@@ -85,14 +83,7 @@ def cylinder_chord(p: vec3, direction: vec3, radius: float, height: float) -> ve
     return in_cylinder(p, direction, UPWARD, 0.5 * height, radius)
 
 
-@primitive(
-    "Cylinder",
-    EXACT,
-    bounds=cylinder_bounds,
-    chord=cylinder_chord,
-    width=cylinder_width,
-    along="y",
-)
+@primitive("Cylinder", EXACT, bounds=cylinder_bounds, chord=cylinder_chord, along="y")
 @func
 def cylinder(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
     """Upright cylinder, centred at the origin.
@@ -132,7 +123,6 @@ def cylinder_between_chord(p: vec3, direction: vec3, start: vec3, end: vec3, rad
     bounds=cylinder_between_bounds,
     requires=apart,
     chord=cylinder_between_chord,
-    width=between_width,
 )
 @func
 def cylinder_between(
@@ -170,11 +160,7 @@ def rounded_cylinder_bounds(radius: float, height: float, rounding: float) -> Bo
 
 
 @primitive(
-    "RoundedCylinder",
-    EXACT,
-    bounds=rounded_cylinder_bounds,
-    requires=rounded_cylinder_requires,
-    width=cylinder_width,
+    "RoundedCylinder", EXACT, bounds=rounded_cylinder_bounds, requires=rounded_cylinder_requires
 )
 @func
 def rounded_cylinder(
@@ -216,7 +202,6 @@ def capsule_chord(p: vec3, direction: vec3, radius: float, height: float) -> vec
     bounds=capsule_bounds,
     limits={"height": Limit.NOT_NEGATIVE},
     chord=capsule_chord,
-    width=radius_width,
 )
 @func
 def capsule(p: vec3, radius: float = 0.4, height: float = 1.0) -> float:
@@ -263,13 +248,7 @@ def capsule_between_chord(p: vec3, direction: vec3, start: vec3, end: vec3, radi
     return in_capsule(p - 0.5 * (start + end), direction, axis, half, radius)
 
 
-@primitive(
-    "CapsuleBetween",
-    EXACT,
-    bounds=capsule_between_bounds,
-    chord=capsule_between_chord,
-    width=radius_width,
-)
+@primitive("CapsuleBetween", EXACT, bounds=capsule_between_bounds, chord=capsule_between_chord)
 @func
 def capsule_between(
     p: vec3, start: vec3 = LOW_END, end: vec3 = HIGH_END, radius: float = 0.4
