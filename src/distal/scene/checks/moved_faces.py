@@ -66,6 +66,10 @@ class BlendKind:
         """Whether the blend should move no face: a fillet or a chamfer."""
         return BLENDS[self.name].cut
 
+    def sign(self, number: int) -> float:
+        """Return -1 for a shape that is subtracted, else 1."""
+        return self.second if number else 1.0
+
 
 def _kinds() -> dict[Operator, BlendKind]:
     found: dict[Operator, BlendKind] = {}
@@ -193,11 +197,10 @@ class _FlushPlaces:
         faces inwards also shapes the edges of the face: these are farther away, too.
         """
         node, kind = self._node, self._kind
-        signs = [1.0, *[kind.second] * (len(node.children) - 1)]
         off, ways = [], []
-        for child, sign in zip(node.children, signs, strict=True):
+        for n, child in enumerate(node.children):
             off.append(np.abs(self._value(child, p)))
-            way = sign * self._value(child, p, GradientOf)
+            way = kind.sign(n) * self._value(child, p, GradientOf)
             ways.append(way / np.maximum(np.linalg.norm(way, axis=1), 1e-12)[:, None])
         away, out = np.array(off), np.array(ways)
         flush, found = np.zeros(len(p), bool), np.zeros_like(p)
@@ -214,7 +217,6 @@ class _FlushPlaces:
 
     def _far_from_edges(self, i: int, j: int, p: Floats, way: Floats) -> NDArray[np.bool_]:
         """Return around which places of a face two shapes remain the same, as far as a blend is."""
-        signs = [1.0 if n == 0 else self._kind.second for n in (i, j)]
         same = np.ones(len(p), bool)
         aside = np.roll(way, 1, axis=1) * [1.0, -1.0, 1.0][: p.shape[1]]
         aside -= (aside * way).sum(axis=1, keepdims=True) * way
@@ -223,10 +225,7 @@ class _FlushPlaces:
         for angle in np.arange(8) * (0.25 * np.pi):
             around = np.cos(angle) * aside + np.sin(angle) * across
             q = p + BESIDE * self._size * around
-            a, b = (
-                sign * self._value(self._node.children[n], q)
-                for n, sign in zip((i, j), signs, strict=True)
-            )
+            a, b = (self._kind.sign(n) * self._value(self._node.children[n], q) for n in (i, j))
             same &= np.abs(a - b) < NEAR * self._size
         return same
 
