@@ -20,8 +20,9 @@ from distal import Box, Cylinder, DistantLight, HemisphereLight, OrbitCamera, Sc
 from distal.lang import func, length, sin, vec2, vec3, vec4
 from distal.mesh import preview_arithmetic
 from distal.mesh.files.parts import display_codes
+from distal.mesh.files.shading import corner_normals
 from distal.mesh.kernels import rows_of
-from distal.mesh.preview import corner_normals, fewer, preview_of
+from distal.mesh.preview import fewer, preview_of
 from distal.mesh.preview_arithmetic import AZIMUTH, ELEVATION, LOOK, OPENING, UP, seen_corner
 from distal.mesh.solid import Mesh
 from distal.notebook.mesh_cell import html_of

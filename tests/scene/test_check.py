@@ -346,7 +346,7 @@ def test_the_bounds_of_each_of_many_parts_are_its_own():
 
 def moved_faces(shape):
     found = check(shape)
-    return [f for f in found.findings if f.diagnostic.code == "face-moved"]
+    return [f for f in found.findings if f.diagnostic.code == "flush-faces"]
 
 
 def test_a_blend_that_moves_no_face_is_not_named():

@@ -132,10 +132,32 @@ def distance_and_normal(field: Field3, p: vec3, step: float) -> tuple[float, vec
 
 
 @func
+def value_and_slope(field: Field3, p: vec3) -> vec4:
+    """Return the value and the gradient at a point."""
+    value, slope = value_and_gradient(field, p)
+    return vec4(value, slope.x, slope.y, slope.z)
+
+
+@func
 def distance_to_field(field: Field3, p: vec3) -> float:
     """Return the distance from a point to the surface, to first order."""
     value, slope = value_and_gradient(field, p)
     return first_order_distance(value, slope)
+
+
+@func
+def step_along(away: float, normal: vec3, held: vec3, beyond: float) -> vec3:
+    """Return the step to the surface of a shape along a plane.
+
+    Args:
+        away: The signed distance to the shape.
+        normal: The shape's normal.
+        held: The normal of the plane, of length 1.
+        beyond: How far behind the surface the step ends.
+    """
+    way = normal - held * dot(normal, held)
+    goal = away + (beyond if away > 0.0 else -beyond)
+    return way * (-goal / max(dot(way, way), 0.01))
 
 
 @func

@@ -169,7 +169,7 @@ def measures_of(
     extent = _widened(extent_of(node, request))
     step = None
     if request.tolerance is not None or request.feature is not None:
-        step = found_mesh(node, replace(request, progress=None))[0].step
+        step = found_mesh(node, replace(request, progress=None, angle=math.pi))[0].step
     kernels = FieldKernels(node, request.params, request.time)
     try:
         found = climbed(kernels, extent, watch_of(request), volume_tolerance, step)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import time as clock
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import numpy as np
@@ -21,15 +21,20 @@ from distal.mesh.bricks import Slopes
 from distal.mesh.checks import checked
 from distal.mesh.coloring import Painted, painted
 from distal.mesh.extract import Extent, Extracted, Nothing
+from distal.mesh.fewer import with_fewer_triangles
 from distal.mesh.files.parts import Finish, Finishes
+from distal.mesh.integrals import size_and_volume
 from distal.mesh.kernels import FieldKernels
+from distal.mesh.leaf_check import LeafCheck, refuse_missing, with_all_leaves
 from distal.mesh.palette import MOST as MOST_COLORS
-from distal.mesh.parts import PlacedPart, part_at, parts_at
+from distal.mesh.parts import PlacedPart, named, part_at, parts_at
 from distal.mesh.problems import MeshProblem
 from distal.mesh.requests import box_of, watch_of
+from distal.mesh.shells import shells_of
 from distal.mesh.simplify import Simplified
 from distal.mesh.solid import Floats, Integers, Mesh
 from distal.mesh.spacing import BALL_CELLS, TooFine, Wanted, meshed
+from distal.mesh.surface_box import with_size
 from distal.packages import imported
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
@@ -39,10 +44,19 @@ if TYPE_CHECKING:
 
 # Without a tolerance it is this share of the largest side of the box.
 DEFAULT_TOLERANCE: Final = 2e-3
+# Without an angle and without a tolerance it is this one, or a larger one where it would need more
+# triangles than these.
+DEFAULT_ANGLE: Final = math.radians(5.0)
+_MOST_BY_ANGLE: Final = 150_000
 # A mesh that is simplified first takes this share of the tolerance, and leaves the rest.
 FIRST_SHARE: Final = 0.5
 _MOST_NAMED: Final = 8  # lost parts that are named
 _MOST_ASKED: Final = 100  # members of a union that are asked for their ends
+_POSITIVE: Final = (
+    ("tolerance", "a length", "0.01"),
+    ("feature", "a length", "0.01"),
+    ("angle", "an angle in radians", "0.1"),
+)
 STEEP: Final = 1e6  # a slope above it says nothing
 
 
@@ -63,6 +77,8 @@ class MeshRequest:
         colors: Whether the mesh has the colors of the shape's materials; a number for at most so
             many different ones.
         simplify: Whether points that the tolerance can spare are removed.
+        angle: How much the surface may turn within a triangle, in radians; None for 5 degrees
+            without a tolerance, and for any angle with one or with ``simplify``, which keeps none.
     """
 
     tolerance: float | None = None
@@ -74,6 +90,7 @@ class MeshRequest:
     check: bool = False
     colors: bool | int = True
     simplify: bool = False
+    angle: float | None = None
 
     def __post_init__(self) -> None:
         """Check the numbers.
@@ -81,13 +98,13 @@ class MeshRequest:
         Raises:
             SceneValueError: One is not a positive number.
         """
-        for name in ("tolerance", "feature"):
+        for name, what, example in _POSITIVE:
             value = getattr(self, name)
             if value is None:
                 continue
             valid = isinstance(value, int | float) and not isinstance(value, bool)
             if not valid or not 0.0 < value < math.inf:
-                refuse(f"{name} is a length above 0, not {value!r:.40}", f"{name}=0.01")
+                refuse(f"{name} is {what} above 0, not {value!r:.40}", f"{name}={example}")
         wrong = not isinstance(self.colors, int) or not 0 <= self.colors <= MOST_COLORS
         if wrong:
             words = f"colors is True, False, or a number from 1 to {MOST_COLORS}"
@@ -128,7 +145,9 @@ def mesh_of_node(node: Node, request: MeshRequest) -> Mesh:
     """
     begin = clock.process_time()
     found, wanted, kernels = found_mesh(node, request)
+    found, leaves = _with_all_leaves(node, kernels, found, wanted, request)
     report = _report(node, found, wanted, request)
+    _record_leaves(report, leaves, wanted)
     points, triangles, normals = found.made.points, found.made.triangles, found.normals
     paint = _paint(node, points, triangles, request)
     if paint is not None and paint.varies:
@@ -137,6 +156,17 @@ def mesh_of_node(node: Node, request: MeshRequest) -> Mesh:
         points, triangles, normals = cut.points, cut.triangles, cut.normals
         report["points"], report["triangles"] = len(points), len(triangles)
         report["border_points"] = cut.added
+    spared = with_fewer_triangles(
+        kernels,
+        points,
+        triangles,
+        paint.labels(points, triangles) if paint is not None and paint.varies else None,
+        tolerance=None if request.simplify else wanted.tolerance,
+        step=found.step,
+        watch=watch_of(replace(request, progress=None)),
+    )
+    spared.record(report)
+    points, normals, triangles = points[spared.points], normals[spared.points], spared.triangles
     at_points, of_triangles, finish = _appearance(paint, points, triangles, report)
     if request.simplify:
         imported(simplify.PACKAGE)
@@ -155,6 +185,8 @@ def mesh_of_node(node: Node, request: MeshRequest) -> Mesh:
             triangles = less.triangles
             points, normals = points[less.points], normals[less.points]
             at_points, of_triangles, finish = _appearance(paint, points, triangles, report)
+    report |= asdict(shells_of(points, triangles))
+    report["size"], report["volume"] = size_and_volume(points, triangles)
     if request.check:
         report["check"] = checked(points, triangles, watch_of(request))
     report["rows"] = kernels.rows
@@ -163,6 +195,45 @@ def mesh_of_node(node: Node, request: MeshRequest) -> Mesh:
         request.progress(1.0)
     made = (points, triangles, normals)
     return Mesh(*made, at_points, of_triangles, report, node.name, finish)
+
+
+def _with_all_leaves(
+    node: Node, kernels: FieldKernels, found: Extracted, wanted: Wanted, request: MeshRequest
+) -> tuple[Extracted, LeafCheck]:
+    """Return a mesh that shows all leaves of its tree, and what was compared.
+
+    Args:
+        node: The tree.
+        kernels: Its kernels.
+        found: The mesh.
+        wanted: The tolerance.
+        request: What was asked.
+
+    Raises:
+        SceneValueError: A leaf is missing, and cells cannot be small enough for it.
+    """
+    share = FIRST_SHARE if request.simplify else 1.0
+    watch = watch_of(replace(request, progress=None))
+    extent = extent_of(node, request)
+    found, leaves = with_all_leaves(kernels, extent, found, share * wanted.tolerance, watch)
+    if leaves.missing:
+        refuse_missing(leaves.missing, "mesh", "feature={width}, or a smaller tolerance=")
+    return found, leaves
+
+
+def _record_leaves(report: dict[str, Any], leaves: LeafCheck, wanted: Wanted) -> None:
+    """Add to the report what the comparison of leaves with the mesh found."""
+    report["leaves"] = leaves.report()
+    error = report["error"]
+    known = max(wanted.tolerance, error["largest"], error["cut_corner"])
+    if leaves.error_at is not None and leaves.error > known:
+        error["surface_to_mesh"] = error["largest"] = leaves.error
+        error["place"] = list(leaves.error_at)
+        report["warnings"].append(
+            f"the tolerance {wanted.tolerance:g} is exceeded: {leaves.error:.3g} at "
+            f"{shown_place(leaves.error_at)}"
+        )
+    report["warnings"] += leaves.warnings()
 
 
 def _paint(node: Node, points: Floats, triangles: Integers, request: MeshRequest) -> Painted | None:
@@ -193,7 +264,6 @@ def _record_simplified(report: dict[str, Any], less: Simplified | None) -> None:
         )
         return
     error = report["error"]
-    report["triangles_before"] = report["triangles"]
     report["points"], report["triangles"] = len(less.points), len(less.triangles)
     # What manifold3d removes moves the surface by less than it is allowed to.
     error["surface_to_mesh"] += less.moved
@@ -213,9 +283,9 @@ def found_mesh(node: Node, request: MeshRequest) -> tuple[Extracted, Wanted, Fie
         Cancelled: ``request.cancel`` stopped the work.
         SceneValueError: The shape cannot be meshed; the message names it and says what to change.
     """
-    extent = extent_of(node, request)
     kernels = FieldKernels(node, request.params, request.time)
-    wanted = Wanted(request.tolerance or DEFAULT_TOLERANCE * extent.size, request.feature)
+    extent = with_size(kernels, extent_of(node, request))
+    wanted = _wanted(extent, request)
     share = FIRST_SHARE if request.simplify else 1.0
     first = replace(wanted, tolerance=share * wanted.tolerance)
     try:
@@ -229,6 +299,16 @@ def found_mesh(node: Node, request: MeshRequest) -> tuple[Extracted, Wanted, Fie
     if isinstance(found, Nothing):
         refuse_nothing(node, found, request)
     return found, wanted, kernels
+
+
+def _wanted(extent: Extent, request: MeshRequest) -> Wanted:
+    """Return what is wanted of a mesh."""
+    tolerance = request.tolerance or DEFAULT_TOLERANCE * extent.size
+    if request.angle is not None:
+        return Wanted(tolerance, request.feature, request.angle)
+    if request.tolerance is not None or request.simplify:
+        return Wanted(tolerance, request.feature)
+    return Wanted(tolerance, request.feature, DEFAULT_ANGLE, _MOST_BY_ANGLE)
 
 
 def extent_of(node: Node, request: MeshRequest) -> Extent:
@@ -381,6 +461,14 @@ def _report(node: Node, found: Extracted, wanted: Wanted, request: MeshRequest) 
             f"the tolerance {wanted.tolerance:g} is exceeded: {error:.3g} at "
             f"{shown_place(accuracy.place)}"
         )
+    needed = found.looked_at.needed
+    assert needed is not None
+    if needed.narrower and not lost:
+        near = ", ".join(sorted({named(leaf) for leaf in needed.narrower})[:_MOST_NAMED])
+        warnings.append(
+            f"parts, walls or gaps of {near} are thinner than the smallest possible cells, "
+            f"{needed.sure_to:.2g}: some may be missing"
+        )
     corner = found.corner
     if corner.distance > wanted.tolerance and not lost:
         part = part_at(node, np.array(corner.place), request.params, request.time)
@@ -396,7 +484,10 @@ def _report(node: Node, found: Extracted, wanted: Wanted, request: MeshRequest) 
         )
     return {
         "tolerance": wanted.tolerance,
+        "angle": wanted.angle if math.isfinite(wanted.angle) else None,
         "feature": found.step * BALL_CELLS,
+        "sure_to": needed.sure_to * BALL_CELLS,
+        "unknown_widths": sorted({named(leaf) for leaf in needed.unknown})[:_MOST_NAMED],
         "spacing": found.step,
         "levels": found.levels,
         "joined": found.joined,

@@ -12,10 +12,21 @@ from dataclasses import dataclass
 from typing import Final
 
 from distal.fields.combine.joins import COMPLEMENT, DIFFERENCE
+from distal.fields.deform.offsets import (
+    DILATE,
+    ERODE,
+    OFFSET,
+    ROUND,
+    SHELL_CENTRE,
+    SHELL_INNER,
+    SHELL_OUTER,
+)
 from distal.fields.guarantees import Primitive
 from distal.scene.lowering.safe_parts import SIGNS_ONLY
 from distal.scene.tree.node import Node
 
+# Operators that move a surface outwards: what is cut out, they make smaller.
+_OFFSETS: Final = frozenset((ROUND, OFFSET, DILATE, ERODE, SHELL_INNER, SHELL_CENTRE, SHELL_OUTER))
 # The name under which a tree keeps its leaves.
 LEAVES: Final = "placed leaves"
 
@@ -26,8 +37,8 @@ class PlacedLeaf:
 
     Attributes:
         tree: The operators above the leaf, each with one child, and the leaf. It is negative where
-            the leaf adds to the solid: what is subtracted is complemented, below the operators that
-            follow.
+            the leaf adds to the solid: what is subtracted is complemented, below the offsets and
+            shells that follow, but above all other operators, which are of the shape itself.
         leaf: The primitive, or the combination that is no boolean, as it is in the author's tree.
     """
 
@@ -57,8 +68,8 @@ def _below(root: Node) -> Iterator[PlacedLeaf]:
         if rule in SIGNS_ONLY:
             children = [(child, above) for child in node.children]
             if rule is DIFFERENCE:
-                turned = Node(COMPLEMENT, node.flat, node.children[1:2], place=node.place)
-                children[1:] = [(child, (*above, turned)) for child in node.children[1:]]
+                turned = _turned(above, node)
+                children[1:] = [(child, turned) for child in node.children[1:]]
             stack.extend(reversed(children))
         elif isinstance(rule, Primitive) or len(node.children) != 1:
             tree = node
@@ -67,6 +78,17 @@ def _below(root: Node) -> Iterator[PlacedLeaf]:
             yield PlacedLeaf(tree, node)
         else:
             stack.append((node.children[0], (*above, node)))
+
+
+def _turned(above: tuple[Node, ...], node: Node) -> tuple[Node, ...]:
+    """Return the operators above what a node subtracts, the innermost last."""
+    at = len(above)
+    while at and above[at - 1].rule not in _OFFSETS:
+        at -= 1
+    if at < len(above) and above[at].rule is COMPLEMENT:
+        return (*above[:at], *above[at + 1 :])
+    flat = above[at].flat if at < len(above) else node.flat
+    return (*above[:at], Node(COMPLEMENT, flat, (node,), place=node.place), *above[at:])
 
 
 def _with_child(operator: Node, child: Node) -> Node:

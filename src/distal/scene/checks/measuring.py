@@ -76,11 +76,17 @@ class Measured:
         return max(self.steepest, self.largest_change)
 
 
+def own_values(shape: BaseShape, params: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values of the parameters that a part of the whole has; others are refused."""
+    names = {parameter.name for parameter in shape.parameters()}
+    return {name: value for name, value in params.items() if name in names}
+
+
 class _EvaluatedShape:
     """A shape at one time with one set of parameter values, evaluated in 64 bits."""
 
     def __init__(self, shape: BaseShape, params: Mapping[str, Any], time: float) -> None:
-        self._shape, self._params, self._time = shape, params, time
+        self._shape, self._params, self._time = shape, own_values(shape, params), time
         self.dimensions = 2 if shape.flat else 3
 
     def value(self, p: Points) -> Points:

@@ -32,6 +32,7 @@ class Meshable(Placed):
         check: bool = False,
         colors: bool | int = True,
         simplify: bool = False,
+        angle: float | None = None,
     ) -> Mesh:
         """Return triangles of the surface: closed, without self-intersections, with sharp edges.
 
@@ -53,6 +54,11 @@ class Meshable(Placed):
                 to at most so many.
             simplify: Remove points that the tolerance can spare; needs the extra ``mesh``. The
                 error is measured again.
+            angle: How much the surface may turn within a triangle, in radians: holes and shafts
+                have their size. It may be 2.75 times as much where the radius of the surface is
+                below 16 tolerances, and any below 1.5. None: 5 degrees without a tolerance (more if
+                that needs more than 150,000 triangles), any angle with one or with ``simplify``,
+                which keeps the tolerance alone.
 
         Raises:
             CompileError: The shape's scene code has mistakes.
@@ -69,6 +75,7 @@ class Meshable(Placed):
             check=check,
             colors=colors,
             simplify=simplify,
+            angle=angle,
         )
         return meshing.mesh_of(self, request)
 

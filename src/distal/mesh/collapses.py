@@ -1,0 +1,303 @@
+"""Fewer triangles within the tolerance: points of curved faces move onto their neighbors.
+
+Input: a closed mesh, the shape, and how far the surface may be from the mesh. Output: triangles
+between some of its points. A point moves if the new triangles face as the old ones, are not too
+low, are within the tolerance of the surface at 28 places or more, and if all points of the first
+mesh that were nearest to the old ones are within the tolerance of the new ones. Points that are no
+neighbors move at the same time, in an order by chance that is always the same.
+
+Source: Hoppe, DeRose, Duchamp, McDonald, Stuetzle, "Mesh Optimization" (1993), for the condition
+    that the mesh stays a manifold; Klein, Liebich, Strasser, "Mesh Reduction with Error Control"
+    (1996), for points of the first mesh that are followed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from distal.mesh import collapse_arithmetic, triangle_arithmetic
+from distal.mesh.accuracy import runs
+from distal.mesh.kernels import FieldKernels, rows_of
+from distal.mesh.pieces import distances
+from distal.mesh.solid import Bools, Floats, Integers
+from distal.mesh.stars import Around, Stars, is_proper, moved, without_twins
+
+# Triangles are not lower than this share of the tolerance, unless they were.
+LEAST_HEIGHT: Final = 0.2
+# How far a triangle may turn at once: 45 degrees.
+_COSINE: Final = 0.7
+# What of the tolerance is used: between the places that are measured the surface is farther away.
+_SHARE: Final = 0.9
+_MOST_TRIES: Final = 3
+_MOST_NEIGHBORS: Final = 24
+_MOST_ROUNDS: Final = 400
+# A triangle that is as long as so many cells is measured in two pieces along each side.
+_CELLS: Final = 4.0
+_MOST_PIECES: Final = 8
+_SEED: Final = 35
+
+
+@dataclass(slots=True)
+class Collapsing:
+    """A mesh that loses points.
+
+    Attributes:
+        kernels: The shape.
+        points: Of shape (n, 3).
+        triangles: Of shape (m, 3).
+        tolerance: How far mesh and surface may be apart.
+        step: The length of a cell.
+        waiting: The points that may move.
+        nearest: For each point the triangle that it is close to; -1 if it is not followed.
+        away: How far each of them is from it.
+        tries: How many neighbors each point has tried.
+        changed: The triangles that are not those of the first mesh.
+    """
+
+    kernels: FieldKernels
+    points: Floats
+    triangles: Integers
+    tolerance: float
+    step: float
+    waiting: Bools
+    nearest: Integers
+    away: Floats
+    tries: Integers
+    changed: Bools
+
+    @staticmethod
+    def of(
+        kernels: FieldKernels,
+        points: Floats,
+        triangles: Integers,
+        tolerance: float,
+        step: float,
+        movable: Bools,
+    ) -> Collapsing:
+        """Return a mesh whose points are all followed.
+
+        Args:
+            kernels: The shape.
+            points: Of shape (n, 3).
+            triangles: Of shape (m, 3).
+            tolerance: How far mesh and surface may be apart.
+            step: The length of a cell.
+            movable: The points that may move.
+        """
+        count = len(points)
+        nearest = np.full(count, -1, np.int64)
+        nearest[triangles.reshape(-1)] = np.repeat(np.arange(len(triangles)), 3)
+        return Collapsing(
+            kernels,
+            points,
+            triangles.copy(),
+            tolerance,
+            step,
+            waiting=movable & (nearest >= 0),
+            nearest=nearest,
+            away=np.zeros(count),
+            tries=np.zeros(count, np.int64),
+            changed=np.zeros(len(triangles), np.bool_),
+        )
+
+    def corners(self, triangles: Integers) -> list[Floats]:
+        """Return the corners of triangles."""
+        return [self.points[triangles[:, i]] for i in range(3)]
+
+
+def collapsed(mesh: Collapsing, watch: Callable[[float], None] = lambda share: None) -> None:
+    """Move points onto neighbors until none is left that may.
+
+    Args:
+        mesh: The mesh; changed in place.
+        watch: Called now and then.
+    """
+    order = np.random.default_rng(_SEED).random(len(mesh.points))
+    movable = mesh.waiting.copy()
+    for _ in range(_MOST_ROUNDS):
+        some = mesh.waiting[mesh.triangles].any(axis=1)
+        if not some.any():
+            return
+        watch(1.0)
+        _round(mesh, some, order, movable)
+
+
+def _round(mesh: Collapsing, some: Bools, order: Floats, movable: Bools) -> None:
+    """Move points that are no neighbors.
+
+    Args:
+        mesh: The mesh; changed in place.
+        some: The triangles at points that wait.
+        order: The order by chance.
+        movable: The points that may move.
+    """
+    near = np.zeros(len(mesh.points), np.bool_)
+    near[mesh.triangles[some].reshape(-1)] = True
+    rows = np.flatnonzero(near[mesh.triangles].any(axis=1))
+    own = mesh.triangles[rows]
+    around = Around(own, len(mesh.points))
+    rank = np.where(mesh.waiting, order - around.count, -np.inf)
+    points = np.flatnonzero(mesh.waiting & (around.largest(rank) == rank))
+    stars = around.of(points)
+    chosen, possible = _chosen(mesh, around, points, stars)
+    moves = without_twins(stars, chosen, len(mesh.points))
+    late = (chosen >= 0) & ~moves
+    chosen[~moves] = -1
+    _keep_close(mesh, rows, points, stars, chosen)
+    moves = chosen >= 0
+    mesh.triangles[rows] = moved(own, stars, points, chosen)
+    mesh.changed[rows[stars.triangle[moves[stars.owner]]]] = True
+    mesh.tries[points[~moves & ~late]] += 1
+    done = ~moves & ~late & (mesh.tries[points] >= np.minimum(possible, _MOST_TRIES))
+    mesh.waiting[points[done | moves]] = False
+    movable[points[moves]] = False
+    freed = stars.after[moves[stars.owner]]
+    mesh.waiting[freed] = movable[freed]
+    mesh.tries[freed] = 0
+    proper = is_proper(mesh.triangles)
+    number = np.cumsum(proper) - 1
+    followed = mesh.nearest >= 0
+    mesh.nearest[followed] = number[mesh.nearest[followed]]
+    mesh.triangles, mesh.changed = mesh.triangles[proper], mesh.changed[proper]
+
+
+def _chosen(
+    mesh: Collapsing, around: Around, points: Integers, stars: Stars
+) -> tuple[Integers, Integers]:
+    """Return the neighbor that each point may move onto, and how many there are; -1 for none.
+
+    The first one is what the point is closest to afterwards; after a try the next one.
+
+    Args:
+        mesh: The mesh.
+        around: Finds the triangles around points.
+        points: The points.
+        stars: The triangles around them.
+    """
+    target, other = stars.pairs()
+    onto = stars.after[target]
+    stays = (stars.after[other] != onto) & (stars.before[other] != onto)
+    target, other, onto = target[stays], other[stays], onto[stays]
+    least = LEAST_HEIGHT * mesh.tolerance
+    places = [mesh.points[p] for p in (points[stars.owner[other]], onto)]
+    places += [mesh.points[p[other]] for p in (stars.after, stars.before)]
+    found = rows_of(collapse_arithmetic.replaced, *places, np.full(len(other), 0.1 * least))
+    own = [mesh.points[p] for p in (points[stars.owner], stars.after, stars.before)]
+    heights = np.full(len(points), least)
+    np.minimum.at(heights, stars.owner, 0.999 * rows_of(triangle_arithmetic.least_height, *own))
+    count = len(stars.owner)
+    cosine, height, away = (np.full(count, np.inf) for _ in range(3))
+    for column, total in enumerate((cosine, height, away)):
+        np.minimum.at(total, target, found[:, column])
+    fits = (cosine > _COSINE) & (height >= heights[stars.owner]) & (away <= mesh.tolerance)
+    fits &= around.count[stars.after] + around.count[points[stars.owner]] < _MOST_NEIGHBORS
+    rows = np.flatnonzero(fits)
+    rows = rows[around.is_joined_by_two(stars, rows)]
+    rows = rows[np.lexsort((away[rows], stars.owner[rows]))]
+    possible = np.bincount(stars.owner[rows], minlength=len(points))
+    first = np.cumsum(possible) - possible
+    chosen = np.full(len(points), -1, np.int64)
+    tried = mesh.tries[points]
+    left = np.flatnonzero(tried < possible)
+    chosen[left] = stars.after[rows[first[left] + tried[left]]]
+    return chosen, possible
+
+
+def _keep_close(
+    mesh: Collapsing, rows: Integers, points: Integers, stars: Stars, chosen: Integers
+) -> None:
+    """Set the corner of points to -1 that may not move: the mesh would not be close to the surface.
+
+    Args:
+        mesh: The mesh; what is nearest to its points is changed.
+        rows: The triangles whose numbers are in the stars.
+        points: The points.
+        stars: The triangles around them.
+        chosen: The corner that each point moves onto; changed in place.
+    """
+    onto = chosen[stars.owner]
+    new = np.flatnonzero((onto >= 0) & (stars.after != onto) & (stars.before != onto))
+    made = np.stack([onto[new], stars.after[new], stars.before[new]], axis=1)
+    far = _worst(stars.owner[new], _misses(mesh, made), len(points)) > _SHARE * mesh.tolerance
+    chosen[far] = -1
+    keeps = ~far[stars.owner[new]]
+    new, made = new[keeps], made[keeps]
+    if not len(new):
+        return
+    place, point = _followed(mesh, rows, points, stars, chosen)
+    # Each place with each new triangle around its point.
+    count = np.bincount(stars.owner[new], minlength=len(points))
+    first = np.cumsum(count) - count
+    pair, which = runs(np.arange(len(place)), first[point], count[point])
+    away = rows_of(
+        triangle_arithmetic.distance_to_triangle,
+        mesh.points[place[pair]],
+        *mesh.corners(made[which]),
+    )
+    best = np.lexsort((away, pair))
+    best = best[np.flatnonzero(np.diff(pair[best], prepend=-1))]
+    far = _worst(point, away[best], len(points)) > mesh.tolerance
+    chosen[far] = -1
+    keeps = ~far[point]
+    place, best = place[keeps], best[keeps]
+    mesh.nearest[place] = rows[stars.triangle[new[which[best]]]]
+    mesh.away[place] = away[best]
+
+
+def _worst(owner: Integers, values: Floats, count: int) -> Floats:
+    """Return the largest value of each owner, 0 for those without any."""
+    found = np.zeros(count)
+    np.maximum.at(found, owner, values)
+    return found
+
+
+def _misses(mesh: Collapsing, triangles: Integers) -> Floats:
+    """Return how far triangles are from the surface."""
+    if not len(triangles):
+        return np.empty(0)
+    return distances(
+        mesh.kernels, mesh.points, triangles, pieces_of(mesh.points, triangles, mesh.step)
+    ).largest
+
+
+def pieces_of(
+    points: Floats, triangles: Integers, step: float, most: int = _MOST_PIECES
+) -> Integers:
+    """Return in how many pieces along each side triangles are measured.
+
+    Args:
+        points: Of shape (n, 3).
+        triangles: Of shape (m, 3).
+        step: The length of a cell.
+        most: The most pieces.
+    """
+    corners = points[triangles]
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    # Powers of 2: triangles with the same number are measured at once.
+    power = np.ceil(np.log2(np.maximum(2.0 * sides / (_CELLS * step), 2.0)))
+    return np.minimum(2.0**power, most).astype(np.int64)
+
+
+def _followed(
+    mesh: Collapsing, rows: Integers, points: Integers, stars: Stars, chosen: Integers
+) -> tuple[Integers, Integers]:
+    """Return the places whose nearest triangle changes, and the point that moves, by its row.
+
+    Args:
+        mesh: The mesh.
+        rows: The triangles whose numbers are in the stars.
+        points: The points.
+        stars: The triangles around them.
+        chosen: The corner that each point moves onto; -1 for none.
+    """
+    of_triangle = np.full(len(mesh.triangles), -1, np.int64)
+    moving = chosen[stars.owner] >= 0
+    of_triangle[rows[stars.triangle[moving]]] = stars.owner[moving]
+    followed = np.flatnonzero(mesh.nearest >= 0)
+    point = of_triangle[mesh.nearest[followed]]
+    own = point >= 0
+    return followed[own], point[own]
