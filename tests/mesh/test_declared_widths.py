@@ -12,7 +12,7 @@ from distal.fields.guarantees import OPERATORS, PRIMITIVES
 from distal.mesh.bricks import surface_bricks
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import Lattice
-from distal.mesh.leaf_kinds import leaf_kinds
+from distal.mesh.leaf_fields import LeafFields
 from distal.mesh.meshing import MeshRequest, extent_of
 from distal.mesh.topology import topology_of
 from tests.selection import all_cases
@@ -32,7 +32,7 @@ def solid(name: str) -> Any:
 
 
 def width_of(shape: Any) -> float:
-    return float(leaf_kinds(shape.node).numbers({}, 0.0).width.min())
+    return float(LeafFields(FieldKernels(shape.node, {}, 0.0)).numbers.width.min())
 
 
 def counted(shape: Any, step: float) -> tuple[int, int]:

@@ -18,8 +18,10 @@ from distal import (
     union,
 )
 from distal.lang import abs, func, max, slider, vec3
-from distal.mesh.leaf_kinds import leaf_kinds
+from distal.mesh.kernels import FieldKernels
+from distal.mesh.leaf_fields import LeafFields
 from distal.mesh.leaf_spacing import WALL_SHARE
+from distal.scene.lowering.placed_leaves import placed_leaves
 from tests.mesh.narrow_solids import KINDS, narrow_solid, topology_of
 
 ROD = 2.0 / math.sqrt(3.0)
@@ -27,7 +29,15 @@ ROD = 2.0 / math.sqrt(3.0)
 
 def widths(shape, **params):
     """The widths of a shape's leaves."""
-    return leaf_kinds(shape.node).numbers(params, 0.0).width
+    fields = fields_of(shape, **params)
+    order = [leaf.leaf for leaf in placed_leaves(shape.node)]
+    rows = {id(leaf.leaf): i for i, leaf in enumerate(fields.leaves)}
+    return fields.numbers.width[[rows[id(leaf)] for leaf in order]]
+
+
+def fields_of(shape, **params):
+    """The fields of a shape's leaves."""
+    return LeafFields(FieldKernels(shape.node, params, 0.0))
 
 
 def test_a_bore_in_a_plate_is_found():
@@ -52,25 +62,27 @@ def test_random_solids_have_their_topology(kind):
 def test_hundreds_of_leaves_are_one_kind():
     bores = [Cylinder(1.7, 40).translate(6.0 * i, 0, 6.0 * j) for i in range(20) for j in range(20)]
     cut = union(*bores)
-    kinds = leaf_kinds((Box(200, 10, 200) - cut).node)
-    assert len(kinds.leaves) == 401 and len(kinds.kinds) == 2
+    fields = fields_of(Box(200, 10, 200) - cut)
+    assert len(fields.leaves) == 401 and fields.kinds == 2
 
 
 def test_leaves_have_the_values_of_their_trees():
     bores = [Cylinder(1.0 + i, 40).rotate(x=0.1 * i).translate(7.0 * i, 0, 2) for i in range(5)]
     shape = (Box(9, 8, 7) - union(*bores)).rotate(z=0.4).round(0.3).scale(2.0)
-    kinds = leaf_kinds(shape.node)
+    fields = fields_of(shape)
     rng = np.random.default_rng(0)
     places = rng.uniform(-20, 20, (500, 3))
-    leaf = rng.integers(0, len(kinds.leaves), 500)
-    value, slope = kinds.at(leaf, places, {}, 0.0)
-    most = np.full((len(kinds.leaves), len(places)), -np.inf)
-    for number in range(len(kinds.leaves)):
-        most[number], _ = kinds.at(np.full(len(places), number), places, {}, 0.0)
+    leaf = rng.integers(0, len(fields.leaves), 500)
+    value = fields.values(leaf, places)
+    away, normals = fields.distances(leaf, places, 1.0)
+    most = np.full((len(fields.leaves), len(places)), -np.inf)
+    for number in range(len(fields.leaves)):
+        most[number] = fields.values(np.full(len(places), number), places)
     assert (most[leaf, np.arange(500)] == value).all()
     # All operators above the boolean pass it: the largest value is that of the solid.
     assert np.allclose(most.max(axis=0), shape(places), atol=1e-9)
-    assert np.allclose(np.linalg.norm(slope, axis=1), 1.0, atol=1e-6)
+    assert np.allclose(away, value, atol=1e-6)  # none of them is steeper or flatter than 1
+    assert np.allclose(np.linalg.norm(normals, axis=1), 1.0, atol=1e-6)
 
 
 def test_widths_of_operators():
@@ -103,7 +115,7 @@ def test_widths_follow_parameters():
 def test_a_wall_between_leaves_is_found_whatever_their_widths():
     # Neither box is narrow; what is between them is.
     shape = Box(100, 8, 100) - union(
-        Box(20, 40, 30).translate(-10.15), Box(20, 40, 30).translate(10.15)
+        Box(20, 40, 30).translate(-10.15, 0, 0), Box(20, 40, 30).translate(10.15, 0, 0)
     )
     made = shape.mesh(colors=False)
     assert topology_of(made) == (1, 2)

@@ -16,14 +16,14 @@ from typer.testing import CliRunner
 
 from distal import Box, CompileError, Cylinder, Sphere, Torus
 from distal.cli.application import application
-from distal.mesh import meshing
 from distal.mesh.checks import checked
 from distal.mesh.kernels import FieldKernels
-from distal.mesh.meshing import DEFAULT_ANGLE, MeshRequest, extent_of
+from distal.mesh.meshing import MeshRequest, extent_of
 from distal.mesh.surface_box import largest_side
 
 SOUND = {"open_edges": 0, "pinched_points": 0, "intersections": 0}
 HOLE = 2.2
+DEGREES_5 = math.radians(5.0)
 PLACES = ((-61.3, 27.1), (3.7, -44.9), (48.2, 52.6), (71.9, -12.3))
 
 
@@ -76,7 +76,7 @@ def case():
 @pytest.mark.parametrize("turn", [0.0, 0.7])
 def test_holes_of_a_plate_measure_what_was_modelled(turn):
     shape = plate(200.0).rotate(y=turn)
-    mesh = shape.mesh(feature=HOLE, colors=False)
+    mesh = shape.mesh(angle=math.radians(14.0), colors=False)
     segments = section(mesh, 1, 0.123)
     for x, z in PLACES:
         center = np.array((x, z))
@@ -87,7 +87,7 @@ def test_holes_of_a_plate_measure_what_was_modelled(turn):
 
 
 def test_holes_of_a_case_measure_what_was_modelled():
-    mesh = case().mesh(feature=1.9, colors=False)
+    mesh = case().mesh(angle=math.radians(14.0), colors=False)
     segments = section(mesh, 1, -16.1)
     for x, z in ((-35, -22), (35, -22), (35, 22), (-35, 22)):
         assert abs(inscribed(segments, np.array((x, -16.1, z)), 3.0) - HOLE) <= 0.02
@@ -95,17 +95,17 @@ def test_holes_of_a_case_measure_what_was_modelled():
 
 @pytest.mark.parametrize(("turn", "height"), [(0.0, 60.0), (0.0, 12.0), (0.5, 60.0)])
 def test_a_shaft_has_its_size_and_its_volume(turn, height):
-    mesh = Cylinder(15, height).rotate(y=turn).mesh(colors=False)
+    mesh = Cylinder(15, height).rotate(y=turn).mesh(angle=DEGREES_5, colors=False)
     low, high = mesh.bounds
     assert high[0] - low[0] == pytest.approx(30.0, rel=1e-3)
     assert high[2] - low[2] == pytest.approx(30.0, rel=1e-3)
     assert volume_of(mesh) == pytest.approx(math.pi * 15**2 * height, rel=1e-3)
 
 
-def test_the_default_file_of_a_socket_screw_has_its_volume():
+def test_a_socket_screw_has_its_volume():
     head, shank, socket = Cylinder(4.25, 5), Cylinder(2.5, 25), Cylinder(2.0, 5)
     screw = (head.translate(0, 2.5, 0) | shank.translate(0, -12.4, 0)) - socket.translate(0, 4.5, 0)
-    mesh = screw.mesh(colors=False)
+    mesh = screw.mesh(angle=DEGREES_5, colors=False)
     true = math.pi * (4.25**2 * 5 + 2.5**2 * 24.9 - 2.0**2 * 3)
     assert volume_of(mesh) == pytest.approx(true, rel=1e-3)
     assert mesh.report["volume"] == pytest.approx(volume_of(mesh), rel=1e-9)
@@ -130,7 +130,6 @@ def test_no_triangle_turns_by_more_than_the_angle(angle):
 def test_a_tolerance_alone_sets_no_angle_and_flat_faces_need_none():
     ball = Sphere(10.0)
     assert ball.mesh(0.5).report["angle"] is None
-    assert ball.mesh().report["angle"] == DEFAULT_ANGLE
     part = Box(20, 10, 30) - Box(5, 20, 5)
     assert len(part.mesh(0.06).triangles) == len(part.mesh(0.06, angle=0.02).triangles)
 
@@ -140,21 +139,6 @@ def test_radii_below_tolerances_are_left_out():
     plain = len(rounded.mesh(1.4).triangles)
     assert len(rounded.mesh(1.4, angle=0.1).triangles) == plain
     assert len(rounded.mesh(0.3, angle=0.1).triangles) > 4 * plain
-
-
-def test_small_radii_turn_by_more_than_the_angle():
-    counts = [len(Cylinder(2.0, 20).mesh(t, angle=0.1).triangles) for t in (0.6, 0.05)]
-    assert 4 * counts[0] < counts[1]
-
-
-def test_the_usual_angle_grows_where_it_needs_too_many_triangles(monkeypatch):
-    usual = Torus(10.0, 3.0).mesh(colors=False)
-    monkeypatch.setattr(meshing, "_MOST_BY_ANGLE", 1_000)
-    fewer = Torus(10.0, 3.0).mesh(colors=False)
-    assert fewer.report["angle"] > usual.report["angle"] == DEFAULT_ANGLE
-    assert len(fewer.triangles) < 0.6 * len(usual.triangles)
-    # What is asked for is kept.
-    assert Torus(10.0, 3.0).mesh(angle=0.15, colors=False).report["angle"] == 0.15
 
 
 @pytest.mark.parametrize("angle", [0.0, -1.0, math.inf, True, "5"])
@@ -247,5 +231,5 @@ def test_the_json_report_has_the_size_in_the_file(tmp_path, monkeypatch):
 
 
 def test_the_mesh_of_sizes_is_sound():
-    mesh = plate(60.0, 3.0).mesh(feature=0.5, colors=False)
+    mesh = plate(60.0, 3.0).mesh(angle=DEGREES_5, colors=False)
     assert checked(mesh.points, mesh.triangles) == SOUND

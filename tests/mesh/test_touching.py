@@ -162,7 +162,7 @@ def test_walls_go_on_behind_faces_that_touch(seed: int) -> None:
 
 def test_a_skin_without_a_thickness_closes_no_gap() -> None:
     # Two pockets that share a face: together they are one pocket, 1 wide.
-    part = Box(4.0) - Box(0.5, 6.0, 2.0).translate(0.25) - Box(0.5, 6.0, 2.0).translate(-0.25)
+    part = Box(4.0) - Box(0.5, 6.0, 2.0).translate(0.25, 0, 0) - Box(0.5, 6.0, 2.0).translate(-0.25, 0, 0)
     found = part.measure()
     assert found.gap.value == pytest.approx(1.0, rel=1e-6)
     assert found.wall.value == pytest.approx(1.0, rel=1e-6)

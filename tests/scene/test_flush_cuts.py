@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import pytest
 from distal import Box, Circle, Cylinder, InfiniteCylinder, Rectangle, Sphere, union
 from distal.error_codes import ErrorCode
 from distal.lang import slider
-from distal.scene.checks.flush_report import flush_cuts
+from distal.scene.checks.flush_cuts import flush_cuts
 from distal.scene.checks.validation import Severity, check
 
 PLATE = Box(20.0, 4.0, 12.0)
@@ -90,7 +91,10 @@ def test_both_shapes_and_what_to_do_are_named() -> None:
     (found,) = [f for f in check(part).findings if f.diagnostic.code is ErrorCode.FLUSH_FACES]
     assert found.severity is Severity.WARNING
     text = found.diagnostic.message
-    assert text.startswith("'screw hole' (Cylinder) ends exactly on a face of 'plate' (Box) (line ")
+    assert re.match(
+        r"'screw hole \(Cylinder\)' \(line \d+\) ends exactly on a face of 'plate \(Box\)' \(line ",
+        text,
+    )
     assert found.diagnostic.hint == "let it go through by a little"
     assert check(part).shapes[found.shape].node.name == "screw hole"
     line = found.diagnostic.span.line

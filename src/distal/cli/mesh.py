@@ -59,7 +59,7 @@ def mesh(
         typer.Option(
             metavar="DEGREES",
             help="How much the surface may turn within a triangle.",
-            show_default="5, or any angle with --tolerance",
+            show_default="any angle",
         ),
     ] = None,
     unit: UnitOption = "mm",

@@ -132,13 +132,6 @@ def distance_and_normal(field: Field3, p: vec3, step: float) -> tuple[float, vec
 
 
 @func
-def value_and_slope(field: Field3, p: vec3) -> vec4:
-    """Return the value and the gradient at a point."""
-    value, slope = value_and_gradient(field, p)
-    return vec4(value, slope.x, slope.y, slope.z)
-
-
-@func
 def distance_to_field(field: Field3, p: vec3) -> float:
     """Return the distance from a point to the surface, to first order."""
     value, slope = value_and_gradient(field, p)

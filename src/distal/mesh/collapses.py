@@ -22,7 +22,7 @@ import numpy as np
 from distal.mesh import collapse_arithmetic, triangle_arithmetic
 from distal.mesh.accuracy import runs
 from distal.mesh.kernels import FieldKernels, rows_of
-from distal.mesh.pieces import distances
+from distal.mesh.pieces import distances, turns
 from distal.mesh.solid import Bools, Floats, Integers
 from distal.mesh.stars import Around, Stars, is_proper, moved, without_twins
 
@@ -50,6 +50,7 @@ class Collapsing:
         points: Of shape (n, 3).
         triangles: Of shape (m, 3).
         tolerance: How far mesh and surface may be apart.
+        angle: How much the surface may turn within a triangle, in radians; infinite for any angle.
         step: The length of a cell.
         waiting: The points that may move.
         nearest: For each point the triangle that it is close to; -1 if it is not followed.
@@ -62,6 +63,7 @@ class Collapsing:
     points: Floats
     triangles: Integers
     tolerance: float
+    angle: float
     step: float
     waiting: Bools
     nearest: Integers
@@ -74,9 +76,10 @@ class Collapsing:
         kernels: FieldKernels,
         points: Floats,
         triangles: Integers,
-        tolerance: float,
-        step: float,
         movable: Bools,
+        tolerance: float,
+        angle: float,
+        step: float,
     ) -> Collapsing:
         """Return a mesh whose points are all followed.
 
@@ -84,9 +87,10 @@ class Collapsing:
             kernels: The shape.
             points: Of shape (n, 3).
             triangles: Of shape (m, 3).
-            tolerance: How far mesh and surface may be apart.
-            step: The length of a cell.
             movable: The points that may move.
+            tolerance: How far mesh and surface may be apart.
+            angle: How much the surface may turn within a triangle, in radians.
+            step: The length of a cell.
         """
         count = len(points)
         nearest = np.full(count, -1, np.int64)
@@ -96,6 +100,7 @@ class Collapsing:
             points,
             triangles.copy(),
             tolerance,
+            angle,
             step,
             waiting=movable & (nearest >= 0),
             nearest=nearest,
@@ -103,6 +108,11 @@ class Collapsing:
             tries=np.zeros(count, np.int64),
             changed=np.zeros(len(triangles), np.bool_),
         )
+
+    def again(self, movable: Bools) -> Collapsing:
+        """Return a mesh that has not lost points yet, with these that may move."""
+        limits = self.tolerance, self.angle, self.step
+        return Collapsing.of(self.kernels, self.points, self.triangles, movable, *limits)
 
     def corners(self, triangles: Integers) -> list[Floats]:
         """Return the corners of triangles."""
@@ -119,7 +129,7 @@ def collapsed(mesh: Collapsing, watch: Callable[[float], None] = lambda share: N
     order = np.random.default_rng(_SEED).random(len(mesh.points))
     movable = mesh.waiting.copy()
     for _ in range(_MOST_ROUNDS):
-        some = mesh.waiting[mesh.triangles].any(axis=1)
+        some: Bools = np.any(mesh.waiting[mesh.triangles], axis=1)
         if not some.any():
             return
         watch(1.0)
@@ -256,12 +266,14 @@ def _worst(owner: Integers, values: Floats, count: int) -> Floats:
 
 
 def _misses(mesh: Collapsing, triangles: Integers) -> Floats:
-    """Return how far triangles are from the surface."""
+    """Return how far triangles are from the surface; infinite where it turns too much in them."""
     if not len(triangles):
         return np.empty(0)
-    return distances(
-        mesh.kernels, mesh.points, triangles, pieces_of(mesh.points, triangles, mesh.step)
-    ).largest
+    pieces = pieces_of(mesh.points, triangles, mesh.step)
+    found = distances(mesh.kernels, mesh.points, triangles, pieces).largest
+    limits = mesh.tolerance, mesh.angle
+    turned = turns(mesh.kernels, mesh.points, triangles, pieces, found, *limits)
+    return np.where(turned > 1.0, np.inf, found)
 
 
 def pieces_of(
@@ -279,7 +291,8 @@ def pieces_of(
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     # Powers of 2: triangles with the same number are measured at once.
     power = np.ceil(np.log2(np.maximum(2.0 * sides / (_CELLS * step), 2.0)))
-    return np.minimum(2.0**power, most).astype(np.int64)
+    found: Integers = np.minimum(2.0**power, most).astype(np.int64)
+    return found
 
 
 def _followed(

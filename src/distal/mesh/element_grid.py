@@ -16,12 +16,13 @@ from distal.mesh.kernels import rows_of
 from distal.mesh.lattice import keys_of
 from distal.mesh.outlines.arithmetic import distance_if_alike as distance_to_line
 from distal.mesh.parallel import parallel_map, slices_of
-from distal.mesh.solid import Floats, Integers
+from distal.mesh.solid import Bools, Floats, Integers
 from distal.mesh.triangle_arithmetic import distance_if_alike as distance_to_triangle
 from distal.polygons.whole_numbers import numbers_in
 
 # The least cosine between the normal at a place and that of an element that shows it.
 _ALIKE: Final = 1e-3
+_ANY: Final = -2.0
 _MOST_LEVELS: Final = 18  # keys have 21 bits for each coordinate
 _PLACES_AT_ONCE: Final = 1 << 13
 
@@ -55,25 +56,28 @@ class ElementGrid:
             )
 
     def _cells(self, places: Floats, side: float) -> Integers:
-        return np.floor((places - self._origin) / side).astype(np.int64)
+        found: Integers = np.floor((places - self._origin) / side).astype(np.int64)
+        return found
 
-    def distances(self, places: Floats, normals: Floats) -> Floats:
+    def distances(self, places: Floats, normals: Floats | None = None) -> Floats:
         """Return the distance of each place to the nearest element that faces as it does.
 
         It is infinite where none is within reach; elements that are farther may count.
 
         Args:
             places: The places.
-            normals: The normal at each, of length 1.
+            normals: The normal at each, of length 1; None if elements may face anywhere.
         """
+        least = _ALIKE if normals is not None else _ANY
+        given = np.zeros_like(places) if normals is None else normals
 
         def of_some(rows: slice) -> Floats:
-            return self._distances(places[rows], normals[rows])
+            return self._distances(places[rows], given[rows], least)
 
         found = parallel_map(of_some, slices_of(len(places), _PLACES_AT_ONCE))
         return np.concatenate([np.empty(0), *found])
 
-    def _distances(self, places: Floats, normals: Floats) -> Floats:
+    def _distances(self, places: Floats, normals: Floats, cosine: float) -> Floats:
         nearest = np.full(len(places), np.inf)
         for side, keys, elements in self._levels:
             at = _keys(self._cells(places, side))
@@ -85,16 +89,34 @@ class ElementGrid:
             corners = self._corners[elements[row]]
             ends = [corners[:, i] for i in range(corners.shape[1])]
             function = distance_to_line if len(ends) == 2 else distance_to_triangle
-            least = np.full(len(place), _ALIKE)
+            least = np.full(len(place), cosine)
             away = rows_of(function, places[place], normals[place], *ends, least)
             np.minimum.at(nearest, place, np.where(away < 1e29, away, np.inf))
         return nearest
 
 
+def to_triangles(corners: Floats, places: Floats, known: Floats, enough: float) -> Floats:
+    """Return the distances of places to triangles, where larger ones than are enough are known.
+
+    Args:
+        corners: Of shape (n, 3, 3).
+        places: Of shape (m, 3).
+        known: A distance of each place that is not too small; infinite ones stay.
+        enough: Smaller ones stay, too.
+    """
+    rows = np.flatnonzero((known > enough) & np.isfinite(known))
+    if not len(rows) or not len(corners):
+        return known
+    found = known.copy()
+    grid = ElementGrid(corners, float(known[rows].max()))
+    found[rows] = np.minimum(known[rows], grid.distances(places[rows]))
+    return found
+
+
 def _keys(cells: Integers) -> Integers:
     """Return keys of cells of space or of the plane; those outside of the grid have none."""
     solid = np.concatenate([cells, np.zeros((len(cells), 3 - cells.shape[1]), np.int64)], axis=1)
-    inside = ((solid >= 0) & (solid < 1 << 20)).all(axis=1)
+    inside: Bools = np.all((solid >= 0) & (solid < 1 << 20), axis=1)
     return np.where(inside, keys_of(np.where(inside[:, None], solid, 0)), -1)
 
 

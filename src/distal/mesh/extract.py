@@ -24,6 +24,7 @@ from distal.mesh.accuracy import (
 )
 from distal.mesh.bricks import Slopes, SurfaceBricks, surface_bricks
 from distal.mesh.cell_tree import CornerValues, balanced
+from distal.mesh.element_grid import to_triangles
 from distal.mesh.joining import JOINED_LEVELS
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import BRICK, DIGIT_OF_FILES, Lattice, cells_of_keys, keys_of
@@ -305,6 +306,8 @@ def completed(
     accuracy, normals, misses = measured(kernels, made, roots, topology, lattice.step, *limits)
     suspected, surface = looked_at.suspected, looked_at.surface
     lost, nearest = split_lost(lattice, topology, places, suspected, surface)
+    # Corners between samples are as far away as the mesh is, not as its points are.
+    nearest = to_triangles(made.points[made.triangles], suspected, nearest, tolerance)
     lengths = np.sqrt(np.einsum("ij,ij->i", roots.slopes, roots.slopes))
     steepest = int(np.argmax(lengths))
     return Extracted(

@@ -44,8 +44,6 @@ BEYOND = 1.5
 ACROSS = 4.0
 # Below this cosine between a triangle's normal and that of the surface, this is another face.
 SAME_FACE = 0.5
-# How many times the angle the surface may turn within a triangle where its radius is small.
-MOST_TURNS = 2.75
 
 
 @func
@@ -345,7 +343,6 @@ def turn_in_triangle(
     c: vec3,
     pieces: float,
     angle: float,
-    from_radius: float,
     least_radius: float,
 ) -> float:
     """Return how much the surface turns within a triangle, as a share of what it may, squared.
@@ -361,8 +358,6 @@ def turn_in_triangle(
         c: The third corner.
         pieces: Of how many such triangles a side of the whole triangle is.
         angle: How much the surface may turn within the whole triangle, in radians.
-        from_radius: Where the radius of the surface is smaller, it may turn more, up to
-            ``MOST_TURNS`` times as much.
         least_radius: Where the radius is below this, it may turn by any angle.
     """
     middle = (a + b + c) / 3.0
@@ -380,8 +375,7 @@ def turn_in_triangle(
             between = 2.0 * asin(min(0.5 * length(n - m), 1.0))
             turn = max(turn, between)
             rate = max(rate, between / max(length(points[i] - points[(i + 1) % 3]), 1e-30))
-    allowed = angle * clamp(from_radius * rate, 1.0, MOST_TURNS)
-    share = 2.0 * turn * pieces / allowed
+    share = 2.0 * turn * pieces / angle
     return 0.0 if rate * least_radius > 1.0 else share * share
 
 

@@ -135,8 +135,8 @@ def _beside_plane(
     total = np.stack([np.bincount(which, areas * normals[:, i], len(ids)) for i in range(3)], 1)
     middles = rows_of(triangle_arithmetic.middle, *corners)
     weight = np.bincount(which, areas, len(ids))
-    center = np.stack([np.bincount(which, areas * middles[:, i], len(ids)) for i in range(3)], 1)
-    center /= np.maximum(weight, 1e-300)[:, None]
+    sums = [np.bincount(which, areas * middles[:, i], len(ids)) for i in range(3)]
+    center = np.stack(sums, 1) / np.maximum(weight, 1e-300)[:, None]
     total = rows_of(flat_arithmetic.unit, total)
     off = rows_of(flat_arithmetic.from_plane, *corners, center[which], total[which])
     inside: Bools = off <= close

@@ -84,6 +84,7 @@ def with_fewer_triangles(
     labels: Integers | None,
     *,
     tolerance: float | None,
+    angle: float,
     step: float,
     watch: Callable[[float], None],
 ) -> Spared:
@@ -97,6 +98,7 @@ def with_fewer_triangles(
             their points. None for all the same.
         tolerance: How far mesh and surface may be apart where faces are curved; None to leave
             curved faces as they are.
+        angle: How much the surface may turn within a triangle, in radians; infinite for any angle.
         step: The length of a cell.
         watch: Called now and then.
     """
@@ -106,41 +108,29 @@ def with_fewer_triangles(
         if tolerance is None:
             return _numbered(Spared(np.empty(0, np.int64), rows))
         fixed = _at_borders(triangles, labels, len(points)) | _at_corners(points, rows)
-        return _numbered(_without_points(kernels, points, rows, fixed, tolerance, step, watch))
+        mesh = Collapsing.of(kernels, points, rows, ~fixed, tolerance, angle, step)
+        return _numbered(_without_points(mesh, watch))
 
     return by_one_thread(spared) if len(triangles) <= _FEW else spared()
 
 
-def _without_points(
-    kernels: FieldKernels,
-    points: Floats,
-    rows: Integers,
-    fixed: Bools,
-    tolerance: float,
-    step: float,
-    watch: Callable[[float], None],
-) -> Spared:
+def _without_points(first: Collapsing, watch: Callable[[float], None]) -> Spared:
     """Return triangles without the points of curved faces that the tolerance can spare.
 
     Args:
-        kernels: The shape.
-        points: Of shape (n, 3).
-        rows: The triangles.
-        fixed: The points that stay; changed in place.
-        tolerance: How far mesh and surface may be apart.
-        step: The length of a cell.
+        first: The mesh; it stays as it is.
         watch: Called now and then.
     """
-    mesh = Collapsing.of(kernels, points, rows, tolerance, step, ~fixed)
+    movable = first.waiting.copy()
     for number in range(_MOST_REPEATS):
+        mesh = first.again(movable)
         collapsed(mesh, watch)
         found, bad = _measured(mesh)
-        bad[meeting_triangles(points, mesh.triangles, mesh.changed, watch)] = True
+        bad[meeting_triangles(mesh.points, mesh.triangles, mesh.changed, watch)] = True
         if not bad.any():
             return found
-        fixed |= _around(mesh, bad, number)
-        mesh = Collapsing.of(kernels, points, rows, tolerance, step, ~fixed)
-    return Spared(np.empty(0, np.int64), rows)
+        movable &= ~_around(mesh, bad, number)
+    return Spared(np.empty(0, np.int64), first.triangles)
 
 
 def _around(mesh: Collapsing, bad: Bools, rings: int) -> Bools:
@@ -150,7 +140,7 @@ def _around(mesh: Collapsing, bad: Bools, rings: int) -> Bools:
     for _ in range(rings + 1):
         found[mesh.triangles[bad].reshape(-1)] = True
         found[followed[bad[mesh.nearest[followed]]]] = True
-        bad = found[mesh.triangles].any(axis=1)
+        bad = np.any(found[mesh.triangles], axis=1)
     return found
 
 

@@ -21,16 +21,15 @@ from distal.mesh.extract import Extent, Extracted, completed
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import keys_of
 from distal.mesh.leaf_places import LeafRows, LeafSearch, joined
-from distal.mesh.parts import PlacedPart
-from distal.mesh.placed_leaves import PlacedLeaf
 from distal.mesh.solid import Floats
 from distal.mesh.tree_topology import Tree, topology_of_tree
 from distal.polygons.whole_numbers import sorted_keys
+from distal.scene.lowering.placed_leaves import PlacedLeaf
 from distal.scene.tree.errors import refuse
 
 # A place that is farther from the mesh than so many times the tolerance, and the largest error that
 # was measured, is missing; a nearer one is an error.
-_MISSING: Final = 2.0
+MISSING: Final = 2.0
 _MOST_ROUNDS: Final = 8
 # The share of a box's side that cells get: a bore as wide as the box has a sample inside.
 _SHARE: Final = 1.0 / math.sqrt(3.0)
@@ -66,7 +65,7 @@ class LeafCheck:
         missing: What is missing.
         error: The largest distance of a place that is not missing.
         error_at: Where it is; None if no place was compared.
-        unchecked: Leaves that are estimates: their surface is not known.
+        unchecked: Leaves that were not looked for (``LeafSearch.unchecked``).
         coarse: Leaves that are thinner than the distance of the places.
     """
 
@@ -80,13 +79,13 @@ class LeafCheck:
 
     def report(self) -> dict[str, Any]:
         """Return what a report says about it."""
-        names = [_text(leaf) for leaf in self.unchecked]
+        names = [leaf.text for leaf in self.unchecked]
         return {"count": self.leaves, "places": self.places, "unchecked": names}
 
     def warnings(self) -> list[str]:
         """Return what is not certain, in words."""
         return [
-            f"{_text(leaf)} is thin in too many places: not all of them were looked up"
+            f"{leaf.text} is thin in too many places: not all of them were looked up"
             for leaf in self.coarse
         ]
 
@@ -107,17 +106,11 @@ def refuse_missing(missing: Sequence[MissingLeaf], result: str, hint: str) -> No
     more = f", and so {'is 1 other' if others == 1 else f'are {others} others'}" if others else ""
     where = ", ".join(f"{number:.4g}" for number in first.place)
     refuse(
-        f"{_text(first.leaf)} is missing in the {result} at ({where}){more}: it is thinner than "
+        f"{first.leaf.text} is missing in the {result} at ({where}){more}: it is thinner than "
         f"{first.width:.2g} there",
         hint.format(width=f"{first.width:.2g}"),
         leaf.place,
     )
-
-
-def _text(leaf: PlacedLeaf) -> str:
-    """Return the author's name of a leaf, its kind and line, for messages."""
-    label = next((node.label for node in reversed(list(leaf.chain())) if node.label), "")
-    return PlacedPart(leaf.leaf, label).text
 
 
 def with_all_leaves(
@@ -161,7 +154,7 @@ def with_all_leaves(
 
 def _limit(found: Extracted, tolerance: float) -> float:
     """Return how far a place may be from a mesh whose errors are reported."""
-    return _MISSING * max(tolerance, found.error, found.corner.distance)
+    return MISSING * max(tolerance, found.error, found.corner.distance)
 
 
 def distances(rows: LeafRows, corners: Floats, reach: float) -> Floats:
@@ -202,7 +195,7 @@ def result_of(search: LeafSearch, rows: LeafRows, away: Floats, limit: float) ->
         missing=missing,
         error=float(near[worst]) if len(near) else 0.0,
         error_at=tuple(rows.place[worst].tolist()) if len(near) else None,
-        unchecked=[leaf for leaf in search.leaves if leaf.leaf.estimate],
+        unchecked=search.unchecked,
         coarse=[search.leaves[number] for number in sorted(search.coarse)],
     )
 

@@ -19,10 +19,10 @@ import numpy as np
 from distal.mesh import arithmetic
 from distal.mesh.bricks import Slopes
 from distal.mesh.kernels import FieldKernels, rows_of
-from distal.mesh.leaf_kernels import FieldProbe, LeafKernels
+from distal.mesh.leaf_fields import FieldProbe, LeafFields
 from distal.mesh.outlines import arithmetic as flat_arithmetic
-from distal.mesh.placed_leaves import PlacedLeaf
 from distal.mesh.solid import Bools, Floats, Integers
+from distal.scene.lowering.placed_leaves import PlacedLeaf
 
 # How many boxes there are at least along the largest side.
 LEAST_BOXES: Final = 24
@@ -34,6 +34,8 @@ ACROSS: Final = 0.02
 # Boxes are not halved below this share of the tolerance.
 _LEAST_SIDE: Final = 0.05
 _STEEP: Final = 1e6  # a slope above it says nothing
+# The values on both sides are at least this share of the distance between.
+_CLEAR: Final = 0.05
 _NEWTON_STEPS: Final = 3
 _TURNS: Final = 2  # how often a place that is beside the shape's surface is moved along the leaf
 _BACK: Final = -0.75  # the cosine between normals below which a leaf turns back
@@ -60,8 +62,8 @@ class LeafRows:
 
     def some(self, rows: Integers | Bools) -> LeafRows:
         """Return some of the rows, in their order."""
-        columns = (self.leaf, self.cell, self.side, self.place, self.outward)
-        return LeafRows(*(column[rows] for column in columns))
+        leaf, cell, side = self.leaf[rows], self.cell[rows], self.side[rows]
+        return LeafRows(leaf, cell, side, self.place[rows], self.outward[rows])
 
     def __len__(self) -> int:
         return len(self.leaf)
@@ -89,6 +91,7 @@ class LeafSearch:
 
     Attributes:
         leaves: The leaves.
+        unchecked: Those that are estimates, or of too many kinds: their surface is not known.
         coarse: The numbers of leaves that are thinner than the boxes that were looked at.
     """
 
@@ -105,10 +108,12 @@ class LeafSearch:
             tolerance: The tolerance of the mesh or the outline.
         """
         node = kernels.node
-        self._kernels = LeafKernels(node, kernels.params, kernels.time)
+        self._fields = LeafFields(kernels)
         self._shape = FieldProbe(kernels)
         self._slopes = slopes
-        self.leaves: tuple[PlacedLeaf, ...] = self._kernels.leaves
+        self.leaves: tuple[PlacedLeaf, ...] = self._fields.leaves
+        estimates = (leaf for leaf in self.leaves if leaf.leaf.estimate)
+        self.unchecked = tuple(dict.fromkeys((*estimates, *self._fields.unseen)))
         self.coarse: set[int] = set()
         self._low, self._high = low, high
         size = float((high - low).max())
@@ -179,16 +184,15 @@ class LeafSearch:
 
     def _near(self, level: _Level) -> _Level:
         """Return the boxes in which leaf and shape can both be 0."""
+        numbers = self._fields.numbers
         low = self._origin + level.cell * level.side
-        keep = (low <= np.minimum(self._kernels.high[level.leaf], self._high)).all(axis=1)
-        keep &= (low + level.side >= np.maximum(self._kernels.low[level.leaf], self._low)).all(
-            axis=1
-        )
+        keep = (low <= np.minimum(numbers.high[level.leaf], self._high)).all(axis=1)
+        keep &= (low + level.side >= np.maximum(numbers.low[level.leaf], self._low)).all(axis=1)
         leaf, cell, parent = level.leaf[keep], level.cell[keep], level.parent[keep]
         radius = self._radius * level.side
         middle = self._origin + (cell + 0.5) * level.side
-        values = self._kernels.values(leaf, middle)
-        slope, divisor = self._kernels.slope[leaf], self._kernels.divisor[leaf]
+        values = self._fields.values(leaf, middle)
+        slope, divisor = numbers.slope[leaf], numbers.divisor[leaf]
         keep = _reached(values, slope, divisor, radius)
         leaf, cell, parent, middle = leaf[keep], cell[keep], parent[keep], middle[keep]
         values = self._shape.values(middle)
@@ -219,11 +223,13 @@ class LeafSearch:
         way = self._across * normal[real]
         ahead = self._shape.values(place[real] + way)
         behind = self._shape.values(place[real] - way)
-        crossed = ahead * behind < 0.0
+        # At the rim of a face inside of a solid both are 0 but for rounding.
+        clear = np.minimum(np.abs(ahead), np.abs(behind)) > _CLEAR * self._across
+        crossed = clear & (ahead * behind < 0.0)
         real = real[crossed]
-        for way in (0.5, -0.5):
-            beyond = place[real] + way * side * normal[real]
-            _, there = self._kernels.distances(leaf[real], beyond, side)
+        for share in (0.5, -0.5):
+            beyond = place[real] + share * side * normal[real]
+            _, there = self._fields.distances(leaf[real], beyond, side)
             thin[real] |= np.einsum("ij,ij->i", there, normal[real]) < _BACK
         outward = normal[real] * np.sign(ahead[crossed])[:, None]
         sides = np.full(len(real), side)
@@ -235,10 +241,10 @@ class LeafSearch:
         """Return places on leaves near others, how far they are from them, and normals there."""
         place = start
         for _ in range(_NEWTON_STEPS):
-            away, normal = self._kernels.distances(leaf, place, side)
+            away, normal = self._fields.distances(leaf, place, side)
             step = np.clip(away, -2.0 * side, 2.0 * side)[:, None] * normal
             place = np.clip(place - step, middle - 2.0 * side, middle + 2.0 * side)
-        return place, *self._kernels.distances(leaf, place, side)
+        return place, *self._fields.distances(leaf, place, side)
 
 
 def joined(parts: list[LeafRows], dimensions: int) -> LeafRows:

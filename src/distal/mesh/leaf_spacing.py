@@ -19,13 +19,11 @@ from typing import Final
 
 import numpy as np
 
-from distal.ir.types import VEC3
-from distal.mesh.arithmetic import distance_value
 from distal.mesh.bricks import Slopes
 from distal.mesh.cell_tree import HALVES, widened
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import BRICK, Lattice, cells_of_keys, keys_of, position
-from distal.mesh.leaf_kinds import LeafKinds, LeafNumbers, leaf_kinds
+from distal.mesh.leaf_fields import FieldProbe, LeafFields, LeafNumbers
 from distal.mesh.solid import Bools, Floats, Integers
 from distal.polygons.whole_numbers import sorted_keys
 from distal.scene.tree.node import Node
@@ -41,6 +39,8 @@ _ROUNDING: Final = 0.99999
 _OPPOSITE: Final = -0.5  # the cosine below which two faces face each other
 _COINCIDE: Final = 1e-6  # of a cell: two faces at one place are no wall
 _REAL: Final = 0.25  # of a wall's thickness: how large the value may be on both of its faces
+# How large it is at least between them, half of the thickness for a distance.
+_BETWEEN: Final = 0.1
 # Both faces of a wall are in the cell: this share of its side from the middle.
 _WITHIN: Final = 0.55
 # No more cells are divided because of leaves: the report says what is not found then.
@@ -50,7 +50,6 @@ _COST_OF_TREE: Final = 2.2
 _COST_OF_SAMPLES: Final = 1.3
 # No first spacing has more cells on the sides of the box.
 _MOST_SAMPLED: Final = 400_000.0
-_TYPES: Final = [("p", VEC3)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,21 +129,22 @@ class LeafSpacing:
     least: float
 
     @cached_property
-    def kinds(self) -> LeafKinds:
-        """The leaves."""
-        return leaf_kinds(self.kernels.node)
+    def fields(self) -> LeafFields:
+        """The fields of the leaves."""
+        return LeafFields(self.kernels)
 
-    @cached_property
+    @property
     def numbers(self) -> LeafNumbers:
         """Their numbers."""
-        return self.kinds.numbers(self.kernels.params, self.kernels.time)
+        return self.fields.numbers
 
     @cached_property
     def areas(self) -> Floats:
         """About how large their surfaces are: the sides of their boxes."""
         high, low = np.minimum(self.numbers.high, self.high), np.maximum(self.numbers.low, self.low)
         x, y, z = np.maximum(high - low, 0.0).T
-        return 2.0 * (x * y + y * z + z * x)
+        found: Floats = 2.0 * (x * y + y * z + z * x)
+        return found
 
     def aligned(self, step: float) -> float:
         """Return a first spacing, at most ``step``, for which dividing costs the least."""
@@ -183,7 +183,7 @@ class LeafSpacing:
                 break
             # Again, without the leaf that needs most: some of its cells would find nothing of it.
             width[np.argmax(np.bincount(narrow))], finest = np.inf, max(finest, side)
-        leaves = self.kinds.leaves
+        leaves = self.fields.leaves
         lost = np.flatnonzero((width > self.numbers.width) & (self.areas > 0.0))
         narrower = np.unique(np.concatenate([rest.leaf, lost]))
         unknown = np.flatnonzero(~self.numbers.known)
@@ -234,7 +234,7 @@ class LeafSpacing:
             above.append(cells_of_keys(sorted_keys(keys_of(above[-1] >> 1))))
         first = above.pop()
         # A leaf alone is looked at where it is narrower than a brick.
-        count = len(self.kinds.leaves)
+        count = len(self.fields.leaves)
         if count == 1 and self.numbers.width[0] >= BRICK * lattice.step:
             count = 0
         blocks = Blocks(
@@ -256,18 +256,18 @@ class LeafSpacing:
         low = lattice.places(blocks.cells * blocks.size)[blocks.block]
         high = low + blocks.size * lattice.step
         met = (self.numbers.low[blocks.leaf] <= high) & (self.numbers.high[blocks.leaf] >= low)
-        return blocks.pairs(met.all(axis=1))
+        return blocks.pairs(np.all(met, axis=1))
 
     def _near(self, lattice: Lattice, blocks: Blocks) -> Blocks:
         """Return the blocks that the surface can pass through, with leaves that can, too."""
         blocks = self._meeting(lattice, blocks)
         radius = blocks.size * lattice.step * _HALF_DIAGONAL
         middles = lattice.places((blocks.cells + 0.5) * blocks.size)
-        value, _ = self._at(blocks.leaf, middles[blocks.block])
+        value = self.fields.values(blocks.leaf, middles[blocks.block])
         blocks = blocks.pairs(np.abs(value) <= self.numbers.slope[blocks.leaf] * radius)
         some = blocks.leaves_of > 0
         reach = max(self.slopes.slope, self.slopes.divisor) * radius
-        some[some] = np.abs(self._values(middles[some])) <= reach
+        some[some] = np.abs(self._value(middles[some])) <= reach
         return blocks.some(some)
 
     def _beside_walls(self, lattice: Lattice, blocks: Blocks, several: Bools) -> Bools:
@@ -276,9 +276,7 @@ class LeafSpacing:
         found = np.zeros(len(blocks.cells), np.bool_)
         some = blocks.pairs(several[blocks.block])
         middles = lattice.places((blocks.cells + 0.5) * blocks.size)
-        value, slope = self._at(some.leaf, middles[some.block])
-        length = np.maximum(np.linalg.norm(slope, axis=1), 1e-12)
-        distance, normal = value / length, slope / length[:, None]
+        distance, normal = self.fields.distances(some.leaf, middles[some.block], side)
         for i, j in _facing(some, normal):
             gap = np.abs(distance[i] + distance[j])
             thin = (gap > _COINCIDE * side) & (WALL_SHARE * gap < side)
@@ -286,25 +284,21 @@ class LeafSpacing:
             i, j, gap = i[thin], j[thin], gap[thin]
             block = some.block[i]
             real = np.ones(len(block), np.bool_)
-            for k in (i, j):
-                foot = middles[block] - distance[k, None] * normal[k]
+            feet = [middles[block] - distance[k, None] * normal[k] for k in (i, j)]
+            for foot in feet:
                 real &= np.abs(foot - middles[block]).max(axis=1) <= _WITHIN * side
-                real[real] = np.abs(self._values(foot[real])) <= _REAL * gap[real]
+                real[real] = np.abs(self._value(foot[real])) <= _REAL * gap[real]
+            # Beside an edge where two faces meet there is none.
+            between = 0.5 * (feet[0] + feet[1])[real]
+            real[real] = np.abs(self._value(between)) >= _BETWEEN * gap[real]
             found[block[real]] = True
         if found.any():
             keys = keys_of(blocks.cells)
             found = position(keys, widened(np.sort(keys[found]))) >= 0
         return found
 
-    def _at(self, leaf: Integers, places: Floats) -> tuple[Floats, Floats]:
-        self.kernels.rows += len(leaf)
-        return self.kinds.at(leaf, places, self.kernels.params, self.kernels.time)
-
-    def _values(self, places: Floats) -> Floats:
-        if not len(places):
-            return np.empty(0)
-        found: Floats = self.kernels.call(distance_value, places, types=_TYPES)
-        return found
+    def _value(self, places: Floats) -> Floats:
+        return FieldProbe(self.kernels).values(places) if len(places) else np.empty(0)
 
 
 def _facing(blocks: Blocks, normal: Floats) -> Iterator[tuple[Integers, Integers]]:

@@ -21,14 +21,12 @@ from distal.mesh.solid import Floats, Integers
 
 _CORNERS: Final[list[tuple[str, Type]]] = [(name, VEC3) for name in "abc"]
 _LIMITS: Final[list[tuple[str, Type]]] = [
-    (name, FLOAT) for name in ("pieces", "angle", "from_radius", "least_radius")
+    (name, FLOAT) for name in ("pieces", "angle", "least_radius")
 ]
 # The surface may turn by any angle where its radius is below so many tolerances. A plate of 200 has
 # a tolerance of .4 by default, turned by 45 degrees of .57: the radius of a hole of 2.2 is 1.9 of
 # these.
 LEAST_RADIUS: Final = 1.5
-# It may turn by the angle alone where its radius is at least so many tolerances.
-FROM_RADIUS: Final = 45.0
 # What is measured is right within a few percent: cells are not divided for as little.
 _SLACK: Final = 1.15  # of the square
 # A triangle that is closer to the surface than this share of the tolerance, for each unit of the
@@ -113,7 +111,7 @@ def turns(
         count, some = group
         rows = bent[some]
         a, b, c = _corners(points, triangles[rows], count)
-        limits = (count, angle, FROM_RADIUS * tolerance, LEAST_RADIUS * tolerance)
+        limits = (count, angle, LEAST_RADIUS * tolerance)
         columns = (np.full(len(a), limit) for limit in limits)
         function = face_arithmetic.turn_in_triangle
         shares = kernels.call(function, a, b, c, *columns, types=[*_CORNERS, *_LIMITS])

@@ -9,10 +9,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
-
-import numpy as np
 
 from distal.mesh.dividing import bad_share, divided, typical_error
 from distal.mesh.extract import Extent, Extracted, Nothing, extracted
@@ -45,13 +43,11 @@ class Wanted:
         tolerance: How far it may be from the surface, in scene units.
         feature: The smallest diameter of parts and gaps that must be found; None if not given.
         angle: How much the surface may turn within a triangle, in radians; infinite for any angle.
-        most: How many triangles the angle may need, about; with more, the angle is larger.
     """
 
     tolerance: float
     feature: float | None
     angle: float = math.inf
-    most: float = math.inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,9 +109,6 @@ def meshed(
         )
         if isinstance(found, Extracted) and _joined_too_large(found, tolerance, finest):
             found = divided(kernels, extent, found, tolerance, inner, angle, joined_only=True)
-        if isinstance(found, Extracted):
-            found, wanted = _with_fewer(found, wanted)
-            angle = wanted.angle
         done += share
         following = _next_step(found, wanted, finest)
         if following is None:
@@ -133,17 +126,6 @@ def meshed(
             return _too_fine(found, wanted, following, bricks, by_feature=following == finest)
         step = following
     return found
-
-
-def _with_fewer(found: Extracted, wanted: Wanted) -> tuple[Extracted, Wanted]:
-    """Return a mesh and what is wanted, with a larger angle if it needs too many triangles."""
-    needed = np.maximum(found.misses.turns, 1.0)
-    factor = float(needed.sum()) / wanted.most
-    if factor <= 1.0 or not (needed > 1.0).any():
-        return found, wanted
-    misses = replace(found.misses, turns=found.misses.turns / factor)
-    angle = wanted.angle * math.sqrt(factor)
-    return replace(found, misses=misses), replace(wanted, angle=angle)
 
 
 def _joined_too_large(found: Extracted, tolerance: float, finest: float) -> bool:

@@ -55,8 +55,8 @@ def largest_side(kernels: FieldKernels, extent: Extent) -> float:
         extent: The box that it declares, and its slope.
     """
     side = extent.size / _FIRST
-    counts = np.maximum(np.ceil((extent.high - extent.low) / side).astype(np.int64), 1)
-    middles = extent.low + side * (np.stack(np.indices(counts), axis=-1).reshape(-1, 3) + 0.5)
+    x, y, z = np.maximum(np.ceil((extent.high - extent.low) / side).astype(np.int64), 1).tolist()
+    middles = extent.low + side * (np.indices((x, y, z)).reshape(3, -1).T + 0.5)
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     while len(middles) <= _MOST_BLOCKS:
         middles, points = _looked_at(kernels, extent, middles, side)

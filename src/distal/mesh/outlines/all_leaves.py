@@ -13,7 +13,7 @@ import numpy as np
 
 from distal.mesh.bricks import Slopes
 from distal.mesh.kernels import FieldKernels
-from distal.mesh.leaf_check import LeafCheck, distances, result_of
+from distal.mesh.leaf_check import MISSING, LeafCheck, distances, result_of
 from distal.mesh.leaf_places import LeafSearch, joined
 from distal.mesh.outlines.tiles import FlatExtent, Floats, Watch
 from distal.mesh.outlines.tracing import (
@@ -25,8 +25,6 @@ from distal.mesh.outlines.tracing import (
     traced,
 )
 
-# A place that is farther than so many times the tolerance, or the largest error, is missing.
-_MISSING: Final = 2.0
 _MOST_ROUNDS: Final = 8
 # The share of a box's side that cells get: what is as wide as the box has samples inside.
 _SHARE: Final = 0.7
@@ -55,7 +53,7 @@ def traced_with_leaves(
         MeshProblem: The shape has no outline.
     """
     found = traced(kernels, extent, tolerance, watch)
-    if isinstance(found, TooManyTiles) or not found.sampled:
+    if isinstance(found, TooManyTiles) or (isinstance(found, NoOutline) and not found.sampled):
         return found
     slopes = Slopes(extent.slope, extent.divisor)
     search = LeafSearch(kernels, extent.low, extent.high, slopes, tolerance)
@@ -82,6 +80,6 @@ def traced_with_leaves(
 def _compared(found: TracedOutline | NoOutline, tolerance: float) -> tuple[float, Floats]:
     """Return how far a place may be from an outline, and the ends of its lines."""
     if isinstance(found, NoOutline):
-        return _MISSING * tolerance, np.empty((0, 2, 2))
-    limit = _MISSING * max(tolerance, found.error.largest)
+        return MISSING * tolerance, np.empty((0, 2, 2))
+    limit = MISSING * max(tolerance, found.error.largest)
     return limit, np.stack(lines_of(found.loops), axis=1)

@@ -108,7 +108,7 @@ def layers_at(
     _, low, high = box_of(node, {**request.params, _PLACE: 0.0}, request.time)
     # In the plane of faces that touch, the value is 0 inside of the solid: just above, it is not.
     size = float((high - low).max())
-    above = 2.0 * NARROWEST * size if math.isfinite(size) else 0.0
+    above = 0.25 * NARROWEST * size if math.isfinite(size) else 0.0
     for index, place in enumerate(places):
         params = {**request.params, _PLACE: place + above}
         kernels = FieldKernels(node, params, request.time)

@@ -14,8 +14,11 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.lang.runtime_access import executor
 from distal.scene.checks.bounds_report import NodeBounds
+from distal.scene.lowering.derived import DistanceOf
 from distal.scene.objects.field import BaseShape
+from distal.scene.tree.node import Node
 
 Points: TypeAlias = NDArray[np.float64]
 
@@ -80,6 +83,23 @@ def own_values(shape: BaseShape, params: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values of the parameters that a part of the whole has; others are refused."""
     names = {parameter.name for parameter in shape.parameters()}
     return {name: value for name, value in params.items() if name in names}
+
+
+def interpreted(
+    node: Node, p: Points, params: Mapping[str, Any], time: float, what: Any = DistanceOf
+) -> Points:
+    """Return values of a part of the whole at a few places, without compiling anything.
+
+    Args:
+        node: The part.
+        p: The places.
+        params: Values of parameters by name, also of those that the part has not.
+        time: Time in seconds.
+        what: What is evaluated, made of the node.
+    """
+    own = own_values(BaseShape._of(node), params)
+    found = executor().call(what(node), (p,), {}, params=own, time=time, device="reference")
+    return np.asarray(found, np.float64)
 
 
 class _EvaluatedShape:

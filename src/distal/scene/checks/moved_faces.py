@@ -22,6 +22,7 @@ from distal.fields.guarantees import Operator
 from distal.lang.expressions import Expression
 from distal.lang.runtime_access import executor
 from distal.scene.checks.bounds_report import NodeBounds
+from distal.scene.checks.measuring import interpreted
 from distal.scene.lowering.derived import DistanceOf, GradientOf
 from distal.scene.tree.node import Node
 
@@ -180,11 +181,7 @@ class _FlushPlaces:
         self._params, self._time = params, time
 
     def _value(self, node: Node, p: Floats, what: Any = DistanceOf) -> Floats:
-        # Interpreted: few places, and compiling takes longer.
-        found = executor().call(
-            what(node), (p,), {}, params=self._params, time=self._time, device="reference"
-        )
-        return np.asarray(found, np.float64)
+        return interpreted(node, p, self._params, self._time, what)
 
     def _blend(self, p: Floats) -> Floats:
         """Return the value of the blend, negative where it moved a face to or beyond a place."""

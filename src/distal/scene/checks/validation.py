@@ -17,7 +17,7 @@ from distal.error_codes import ErrorCode
 from distal.fields.boxes import given_slope
 from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive, ended
 from distal.scene.checks.bounds_report import NodeBounds, bounds_of_nodes
-from distal.scene.checks.flush_report import FlushCut, flush_cuts
+from distal.scene.checks.flush_cuts import FlushCut, flush_cuts
 from distal.scene.checks.measuring import Measured, Region, measure
 from distal.scene.checks.moved_faces import moved_face
 from distal.scene.checks.proof_report import proof_note

@@ -114,7 +114,7 @@ def passes_axes(node: Node) -> bool:
     rule = node.rule
     if not isinstance(rule, Operator) or rule is SELECT or rule is IN_CELLS:
         return False
-    if node.has_rows or len(node.children) > AT_ONCE:
+    if node.flat or node.has_rows or len(node.children) > AT_ONCE:
         return False
     return is_move(rule) or names_no_axis(rule)
 

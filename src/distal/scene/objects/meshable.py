@@ -55,10 +55,8 @@ class Meshable(Placed):
             simplify: Remove points that the tolerance can spare; needs the extra ``mesh``. The
                 error is measured again.
             angle: How much the surface may turn within a triangle, in radians: holes and shafts
-                have their size. It may be 2.75 times as much where the radius of the surface is
-                below 16 tolerances, and any below 1.5. None: 5 degrees without a tolerance (more if
-                that needs more than 150,000 triangles), any angle with one or with ``simplify``,
-                which keeps the tolerance alone.
+                have their size. Where the radius of the surface is below 1.5 tolerances it may be
+                any, as without this option. ``simplify`` keeps the tolerance alone.
 
         Raises:
             CompileError: The shape's scene code has mistakes.

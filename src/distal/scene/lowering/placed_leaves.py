@@ -24,6 +24,7 @@ from distal.fields.deform.offsets import (
 from distal.fields.guarantees import Primitive
 from distal.scene.lowering.safe_parts import SIGNS_ONLY
 from distal.scene.tree.node import Node
+from distal.scene.tree.part_names import PlacedPart
 
 # Operators that move a surface outwards: what is cut out, they make smaller.
 _OFFSETS: Final = frozenset((ROUND, OFFSET, DILATE, ERODE, SHELL_INNER, SHELL_CENTRE, SHELL_OUTER))
@@ -44,6 +45,17 @@ class PlacedLeaf:
 
     tree: Node
     leaf: Node
+
+    @property
+    def text(self) -> str:
+        """The author's name of the leaf, its kind and line, for messages."""
+        label = next((node.label for node in reversed(list(self.chain())) if node.label), "")
+        return PlacedPart(self.leaf, label).text
+
+    @property
+    def cuts(self) -> bool:
+        """Whether it is cut out of the solid."""
+        return sum(node.rule is COMPLEMENT for node in self.chain()) % 2 == 1
 
     def chain(self) -> Iterator[Node]:
         """Yield the nodes of ``tree``, from the outermost operator to the leaf."""
