@@ -98,7 +98,7 @@ def test_the_command_simplifies_and_counts_colors(run: Any) -> None:
     done = run("mesh", "part.py", "-o", "p.3mf", *options)
     assert done.exit_code == 0, done.stderr
     first = done.stderr.splitlines()[0]
-    assert first == "p.3mf: 12 triangles, 2 x 1 x 1 mm"
+    assert first == "p.3mf: 12 triangles, 2 x 1 x 1 mm, 2 cubic mm"
     done = run("mesh", "part.py", "-o", "p.3mf", "--colors", "0")
     assert (done.exit_code, done.stderr) == (
         2,

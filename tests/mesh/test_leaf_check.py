@@ -174,7 +174,7 @@ def test_estimates_are_not_checked_and_said():
 
 def random_plate(rng):
     """A plate with bores, slots and pockets of a twentieth of a cell to two; how many holes."""
-    cell, thickness = 200.0 / COARSE, float(rng.uniform(3, 14))
+    cell, thickness = 200.0 / COARSE, float(rng.uniform(9, 14))
     shape, holes, places = Box(200, thickness, 200), 0, []
     for _ in range(int(rng.integers(1, 5))):
         width = cell * math.exp(rng.uniform(math.log(1 / 20), math.log(2)))

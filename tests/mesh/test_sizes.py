@@ -76,7 +76,7 @@ def case():
 @pytest.mark.parametrize("turn", [0.0, 0.7])
 def test_holes_of_a_plate_measure_what_was_modelled(turn):
     shape = plate(200.0).rotate(y=turn)
-    mesh = shape.mesh(angle=math.radians(14.0), colors=False)
+    mesh = shape.mesh(angle=math.radians(10.0), colors=False)
     segments = section(mesh, 1, 0.123)
     for x, z in PLACES:
         center = np.array((x, z))
@@ -87,7 +87,7 @@ def test_holes_of_a_plate_measure_what_was_modelled(turn):
 
 
 def test_holes_of_a_case_measure_what_was_modelled():
-    mesh = case().mesh(angle=math.radians(14.0), colors=False)
+    mesh = case().mesh(angle=math.radians(10.0), colors=False)
     segments = section(mesh, 1, -16.1)
     for x, z in ((-35, -22), (35, -22), (35, 22), (-35, 22)):
         assert abs(inscribed(segments, np.array((x, -16.1, z)), 3.0) - HOLE) <= 0.02
@@ -137,8 +137,8 @@ def test_a_tolerance_alone_sets_no_angle_and_flat_faces_need_none():
 def test_radii_below_tolerances_are_left_out():
     rounded = Box(18, 18, 18).round(1.0)
     plain = len(rounded.mesh(1.4).triangles)
-    assert len(rounded.mesh(1.4, angle=0.1).triangles) == plain
-    assert len(rounded.mesh(0.3, angle=0.1).triangles) > 4 * plain
+    coarse, fine = (len(rounded.mesh(t, angle=0.1).triangles) for t in (1.4, 0.3))
+    assert plain <= coarse < 0.2 * fine
 
 
 @pytest.mark.parametrize("angle", [0.0, -1.0, math.inf, True, "5"])

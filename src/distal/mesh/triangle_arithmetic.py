@@ -217,6 +217,8 @@ def has_corner_gap(
         b: The corners of the other.
         axis: The plane's normal.
     """
+    if min(min(length(a[1]), length(a[2])), min(length(b[1]), length(b[2]))) <= 0.0:
+        return False
     room = 1e-13 * length(axis)
     first = vec2(dot(a[1], axis) / length(a[1]), dot(a[2], axis) / length(a[2]))
     second = vec2(dot(b[1], axis) / length(b[1]), dot(b[2], axis) / length(b[2]))
