@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,9 @@ import pytest
 from distal import Box
 from distal.fields.guarantees import OPERATORS, PRIMITIVES
 from distal.mesh.bricks import surface_bricks
+from distal.mesh.extract import Extent
 from distal.mesh.kernels import FieldKernels
-from distal.mesh.lattice import Lattice
+from distal.mesh.lattice import Lattice, keys_of
 from distal.mesh.leaf_fields import LeafFields
 from distal.mesh.meshing import MeshRequest, extent_of
 from distal.mesh.topology import topology_of
@@ -82,6 +84,14 @@ def test_a_declared_width_finds_its_shape(name: str) -> None:
         assert counted(placed, width) == counted(placed, width / FINER), (name, width)
 
 
+def surface_cells(kernels: FieldKernels, extent: Extent, step: float) -> tuple[Lattice, Any]:
+    """Return a lattice, and which of its cells have corners on both sides of the surface."""
+    lattice = Lattice.over(extent.low, extent.high, step)
+    found = surface_bricks(kernels, lattice, extent.slopes, 100_000, lambda share: None)
+    brick, *local = np.nonzero((found.masks != 0) & (found.masks != 255))
+    return lattice, found.bricks[brick] * 8 + np.stack(local, axis=1)
+
+
 @pytest.mark.parametrize("name", ["Slab", "Gyroid", "CubicLattice", "Honeycomb", "VoronoiWalls"])
 def test_endless_shapes_are_nowhere_lost(name: str) -> None:
     """Wherever the surface passes through cells of half the width, those of the width see it."""
@@ -90,18 +100,16 @@ def test_endless_shapes_are_nowhere_lost(name: str) -> None:
     kernels = FieldKernels(shape.node, {}, 0.0)
     extent = extent_of(shape.node, MeshRequest())
     width = width_of(shape)
-    places = []
-    for step in (width, width / FINER):
-        lattice = Lattice.over(extent.low, extent.high, step)
-        found = surface_bricks(kernels, lattice, extent.slopes, 100_000, lambda share: None)
-        brick, *local = np.nonzero((found.masks != 0) & (found.masks != 255))
-        places.append(lattice.places(found.bricks[brick] * 8 + np.stack(local, axis=1) + 0.5))
-    coarse, fine = places
+    coarse, cells = surface_cells(kernels, extent, width)
+    fine, others = surface_cells(kernels, extent, width / FINER)
+    places = fine.places(others + 0.5)
     # The edges of the box cut slivers off.
-    inner = fine[np.abs(fine).max(axis=1) < 0.8 - 1.5 * width]
-    for some in np.array_split(inner, max(len(inner) // 500, 1)):
-        apart = np.abs(some[:, None] - coarse[None]).max(axis=2).min(axis=1)
-        assert (apart <= 1.5 * width).all()
+    inner = places[np.abs(places).max(axis=1) < 0.8 - 1.5 * width]
+    home = np.floor((inner - coarse.origin) / coarse.step).astype(np.int64)
+    seen = np.zeros(len(inner), np.bool_)
+    for offset in product((-1, 0, 1), repeat=3):
+        seen |= np.isin(keys_of(home + np.array(offset)), keys_of(cells))
+    assert len(inner) and seen.all()
 
 
 def test_widths_are_declared() -> None:

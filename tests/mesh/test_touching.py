@@ -16,6 +16,7 @@ from distal.mesh import face_arithmetic
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.outlines.layers import layer_places, layers_at
 from distal.mesh.outlines.outlining import OutlineRequest
+from distal.scene.tree.errors import SceneValueError
 from tests.mesh.sample_solids import volume
 
 SOUND = {"open_edges": 0, "pinched_points": 0, "intersections": 0}
@@ -97,9 +98,10 @@ def test_parts_that_touch_are_one_solid(name: str, seed: int) -> None:
     made, other = touching.mesh(check=True), whole.mesh()
     report = made.report
     assert not report["warnings"] and not report["lost"] and report["check"] == SOUND
-    # Faces inside cost no finer cells.
+    # Faces inside cost no finer cells; near their rims fewer points can be spared.
     assert report["spacing"] == pytest.approx(other.report["spacing"], rel=0.2)
-    assert len(made.triangles) < 1.8 * len(other.triangles)
+    assert report["triangles_before"] < 1.8 * other.report["triangles_before"]
+    assert len(made.triangles) < 3.0 * len(other.triangles)
     # The error is measured to the surface of the whole, not to the faces inside.
     error = float(np.abs(whole(samples_of(made))).max())
     assert error <= 1.05 * max(report["error"]["largest"], 1e-6)
@@ -133,11 +135,17 @@ def pieces(made: Any) -> int:
             return len(np.unique(label))
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("seed", [0, 4])
 @pytest.mark.parametrize("gap", [0.03, 0.01, 1e-3, 1e-5])
 def test_a_gap_stays_a_gap(gap: float, seed: int) -> None:
-    made = turned(Box(1.0) | Box(1.0).translate(1.0 + gap, 0.0, 0.0), seed).mesh()
+    boxes = turned(Box(1.0) | Box(1.0).translate(1.0 + gap, 0.0, 0.0), seed)
     # It is open, or said.
+    try:
+        made = boxes.mesh()
+    except SceneValueError as error:
+        assert gap < 0.01 and f"are {gap:.2g} apart" in str(error)
+        return
     assert pieces(made) == 2 or "is thinner than" in made.report["warnings"][0]
     assert pieces(made) == 2 or gap < 0.01
 
@@ -162,7 +170,11 @@ def test_walls_go_on_behind_faces_that_touch(seed: int) -> None:
 
 def test_a_skin_without_a_thickness_closes_no_gap() -> None:
     # Two pockets that share a face: together they are one pocket, 1 wide.
-    part = Box(4.0) - Box(0.5, 6.0, 2.0).translate(0.25, 0, 0) - Box(0.5, 6.0, 2.0).translate(-0.25, 0, 0)
+    part = (
+        Box(4.0)
+        - Box(0.5, 6.0, 2.0).translate(0.25, 0, 0)
+        - Box(0.5, 6.0, 2.0).translate(-0.25, 0, 0)
+    )
     found = part.measure()
     assert found.gap.value == pytest.approx(1.0, rel=1e-6)
     assert found.wall.value == pytest.approx(1.0, rel=1e-6)

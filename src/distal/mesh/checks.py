@@ -22,6 +22,8 @@ from distal.polygons.whole_numbers import numbers_in, sorted_keys
 _PAIRS_AT_ONCE: Final = 1 << 18
 # The shortest cubes, as a share of the mesh: their numbers have 21 bits.
 _SHORTEST: Final = 1e-6
+# About as many cubes for each triangle.
+_CUBES: Final = 4.0
 
 
 def checked(
@@ -205,6 +207,7 @@ class _Boxes:
         if not len(own) or not len(finer):
             return
         base = self.low.min(axis=0)
+        side = self._finer_side(own, finer, side, int(level[own[0]]))
         rows, keys = self._cubes(own, side, base)
         order = np.argsort(keys, kind="stable")
         rows, keys = rows[order], keys[order]
@@ -226,6 +229,28 @@ class _Boxes:
             keep &= _keys(np.floor(corner / side).astype(np.int64)) == asked[which]
             if keep.any():
                 yield a[keep], b[keep]
+
+    def _finer_side(self, own: Integers, finer: Integers, side: float, most: int) -> float:
+        """Return a length of cubes that leaves fewer pairs: few large triangles meet all others.
+
+        It is halved until there are more than a few cubes for each triangle.
+
+        Args:
+            own: The triangles of one grid.
+            finer: Those that they are compared with.
+            side: The length of the grid's cubes.
+            most: How often it is halved at most.
+        """
+        both = np.concatenate([own, finer])
+        low, high = self.low[both], self.high[both]
+        low, high = low - self.low.min(axis=0), high - self.low.min(axis=0)
+        for _ in range(most):
+            half = 0.5 * side
+            spans = np.floor(high / half) - np.floor(low / half) + 1.0
+            if spans.prod(axis=1).sum() > _CUBES * len(both):
+                break
+            side = half
+        return side
 
     def _cubes(self, some: Integers, side: float, base: Floats) -> tuple[Integers, Integers]:
         """Return triangles with the key of each cube that their boxes are in."""

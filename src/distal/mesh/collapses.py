@@ -24,7 +24,7 @@ from distal.mesh.accuracy import runs
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.pieces import distances, turns
 from distal.mesh.solid import Bools, Floats, Integers
-from distal.mesh.stars import Around, Stars, is_proper, moved, without_twins
+from distal.mesh.stars import StarFinder, Stars, is_proper, moved, without_twins
 
 # Triangles are not lower than this share of the tolerance, unless they were.
 LEAST_HEIGHT: Final = 0.2
@@ -149,7 +149,7 @@ def _round(mesh: Collapsing, some: Bools, order: Floats, movable: Bools) -> None
     near[mesh.triangles[some].reshape(-1)] = True
     rows = np.flatnonzero(near[mesh.triangles].any(axis=1))
     own = mesh.triangles[rows]
-    around = Around(own, len(mesh.points))
+    around = StarFinder(own, len(mesh.points))
     rank = np.where(mesh.waiting, order - around.count, -np.inf)
     points = np.flatnonzero(mesh.waiting & (around.largest(rank) == rank))
     stars = around.of(points)
@@ -176,7 +176,7 @@ def _round(mesh: Collapsing, some: Bools, order: Floats, movable: Bools) -> None
 
 
 def _chosen(
-    mesh: Collapsing, around: Around, points: Integers, stars: Stars
+    mesh: Collapsing, around: StarFinder, points: Integers, stars: Stars
 ) -> tuple[Integers, Integers]:
     """Return the neighbor that each point may move onto, and how many there are; -1 for none.
 
@@ -232,7 +232,7 @@ def _keep_close(
     onto = chosen[stars.owner]
     new = np.flatnonzero((onto >= 0) & (stars.after != onto) & (stars.before != onto))
     made = np.stack([onto[new], stars.after[new], stars.before[new]], axis=1)
-    far = _worst(stars.owner[new], _misses(mesh, made), len(points)) > _SHARE * mesh.tolerance
+    far = _are_far(mesh, rows, stars, stars.owner[new], made, len(points))
     chosen[far] = -1
     keeps = ~far[stars.owner[new]]
     new, made = new[keeps], made[keeps]
@@ -256,6 +256,32 @@ def _keep_close(
     place, best = place[keeps], best[keeps]
     mesh.nearest[place] = rows[stars.triangle[new[which[best]]]]
     mesh.away[place] = away[best]
+
+
+def _are_far(
+    mesh: Collapsing, rows: Integers, stars: Stars, owner: Integers, made: Integers, count: int
+) -> Bools:
+    """Return which points have new triangles that are too far from the surface.
+
+    Those around it may already be farther than the share of the tolerance: between the places that
+    were measured. Then the new ones need not be closer than these.
+
+    Args:
+        mesh: The mesh.
+        rows: The triangles whose numbers are in the stars.
+        stars: The triangles around the points.
+        owner: Which of the points each new triangle is of.
+        made: The new triangles.
+        count: How many points there are.
+    """
+    misses = _worst(owner, _misses(mesh, made), count)
+    far = misses > _SHARE * mesh.tolerance
+    unsure = far & (misses <= mesh.tolerance)
+    if unsure.any():
+        own = np.flatnonzero(unsure[stars.owner])
+        before = _misses(mesh, mesh.triangles[rows[stars.triangle[own]]])
+        far &= ~unsure | (misses > _worst(stars.owner[own], before, count))
+    return far
 
 
 def _worst(owner: Integers, values: Floats, count: int) -> Floats:

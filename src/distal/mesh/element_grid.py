@@ -25,6 +25,7 @@ _ALIKE: Final = 1e-3
 _ANY: Final = -2.0
 _MOST_LEVELS: Final = 18  # keys have 21 bits for each coordinate
 _PLACES_AT_ONCE: Final = 1 << 13
+_PAIRS_AT_ONCE: Final = 1 << 20
 
 
 class ElementGrid:
@@ -83,15 +84,14 @@ class ElementGrid:
             at = _keys(self._cells(places, side))
             first = np.searchsorted(keys, at)
             count = np.searchsorted(keys, at, side="right") - first
-            place, row = runs(np.arange(len(places)), first, count)
-            if not len(place):
-                continue
-            corners = self._corners[elements[row]]
-            ends = [corners[:, i] for i in range(corners.shape[1])]
-            function = distance_to_line if len(ends) == 2 else distance_to_triangle
-            least = np.full(len(place), cosine)
-            away = rows_of(function, places[place], normals[place], *ends, least)
-            np.minimum.at(nearest, place, np.where(away < 1e29, away, np.inf))
+            for some in _parts(count, _PAIRS_AT_ONCE):
+                place, row = runs(some, first[some], count[some])
+                corners = self._corners[elements[row]]
+                ends = [corners[:, i] for i in range(corners.shape[1])]
+                function = distance_to_line if len(ends) == 2 else distance_to_triangle
+                least = np.full(len(place), cosine)
+                away = rows_of(function, places[place], normals[place], *ends, least)
+                np.minimum.at(nearest, place, np.where(away < 1e29, away, np.inf))
         return nearest
 
 
@@ -111,6 +111,13 @@ def to_triangles(corners: Floats, places: Floats, known: Floats, enough: float) 
     grid = ElementGrid(corners, float(known[rows].max()))
     found[rows] = np.minimum(known[rows], grid.distances(places[rows]))
     return found
+
+
+def _parts(count: Integers, most: int) -> list[Integers]:
+    """Return the rows whose counts are not 0, in parts with about so many together."""
+    rows = np.flatnonzero(count)
+    ends = np.flatnonzero(np.diff(np.cumsum(count[rows]) // most)) + 1
+    return [part for part in np.split(rows, ends) if len(part)]
 
 
 def _keys(cells: Integers) -> Integers:

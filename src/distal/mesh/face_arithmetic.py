@@ -317,14 +317,14 @@ def largest_miss(field: Field3, a: vec3, b: vec3, c: vec3, off: float = OFF_SURF
 def depth_along(
     field: Field3, p: vec3, way: vec3, inside: bool, least: float, most: float
 ) -> float:
-    """Return about how far the surface is along a direction: the first distance behind it.
+    """Return how far the surface is along a direction, at most, to a thirtieth.
 
     Args:
         field: The field.
         p: The point.
         way: The direction, of length 1.
         inside: Whether the point is inside.
-        least: A distance that is not behind it; each that is looked at is twice as far.
+        least: A distance that is not behind it.
         most: How far it may be.
     """
     distance = least
@@ -332,6 +332,12 @@ def depth_along(
         distance = distance * 2.0
         if (field(p + way * distance) < 0.0) != inside or distance > most:
             break
+    low = 0.5 * distance
+    for _step in range(4):
+        half = 0.5 * (low + distance)
+        behind = (field(p + way * half) < 0.0) != inside
+        distance = half if behind else distance
+        low = low if behind else half
     return distance
 
 

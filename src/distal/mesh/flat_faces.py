@@ -22,7 +22,7 @@ from distal.mesh import flat_arithmetic
 from distal.mesh.face_groups import FaceGroups
 from distal.mesh.kernels import rows_of
 from distal.mesh.solid import Bools, Floats, Integers
-from distal.mesh.stars import Around, Stars, is_proper, moved, without_twins
+from distal.mesh.stars import StarFinder, Stars, is_proper, moved, without_twins
 
 # Triangles are at least this many roundings of 32 bits high, where they were not lower before.
 _ROUNDINGS: Final = 64.0
@@ -120,7 +120,7 @@ def _take_out(faces: _Faces) -> None:
         near[faces.triangles[some].reshape(-1)] = True
         rows = np.flatnonzero(near[faces.triangles].any(axis=1))
         own = faces.triangles[rows]
-        around = Around(own, len(faces.points))
+        around = StarFinder(own, len(faces.points))
         # Points with few neighbors first: then no point gets many, and more go at the same time.
         rank = np.where(waiting, order - around.count, -np.inf)
         points = np.flatnonzero(waiting & (around.largest(rank) == rank))
@@ -144,7 +144,7 @@ def _take_out(faces: _Faces) -> None:
 
 
 def _chosen(
-    faces: _Faces, around: Around, points: Integers, stars: Stars, of: Integers
+    faces: _Faces, around: StarFinder, points: Integers, stars: Stars, of: Integers
 ) -> Integers:
     """Return the neighbor that each point can move onto, that leaves the highest triangles; or -1.
 

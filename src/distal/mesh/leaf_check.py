@@ -33,7 +33,7 @@ MISSING: Final = 2.0
 _MOST_ROUNDS: Final = 8
 # The share of a box's side that cells get: a bore as wide as the box has a sample inside.
 _SHARE: Final = 1.0 / math.sqrt(3.0)
-_MOST_CELLS: Final = 400_000  # that are divided at once
+_MOST_CELLS: Final = 40_000  # that are divided for leaves
 # The corners and the middle of a box, from its middle.
 _AROUND: Final = np.concatenate([HALVES - 0.5, np.zeros((1, 3))])
 
@@ -136,20 +136,24 @@ def with_all_leaves(
     search = LeafSearch(kernels, extent.low, extent.high, extent.slopes, tolerance)
     rows = search.places()
     watch(1.0)
-    reach = _limit(found, tolerance)
-    away = distances(rows, found.made.points[found.made.triangles], reach)
+    away = distances(rows, found.made.points[found.made.triangles], MISSING * tolerance)
+    most = _MOST_CELLS + _halved(found.tree)
     for _ in range(_MOST_ROUNDS):
         far = away > tolerance
         if not far.any():
             break
         watch(1.0)
-        finer = _divided_at(kernels, extent, found, rows.some(far), tolerance)
+        finer = _divided_at(kernels, extent, found, rows.some(far), tolerance, most)
         if finer is None:
             break
         found = divided(kernels, extent, finer, tolerance, lambda share: watch(1.0))
         rows = joined([rows, search.finer(rows.some(far))], rows.place.shape[1])
-        away = distances(rows, found.made.points[found.made.triangles], reach)
-    return found, result_of(search, rows, away, _limit(found, tolerance))
+        away = distances(rows, found.made.points[found.made.triangles], MISSING * tolerance)
+    limit = _limit(found, tolerance)
+    far = away > limit
+    if far.any() and limit > MISSING * tolerance:
+        away[far] = distances(rows.some(far), found.made.points[found.made.triangles], limit)
+    return found, result_of(search, rows, away, limit)
 
 
 def _limit(found: Extracted, tolerance: float) -> float:
@@ -201,7 +205,12 @@ def result_of(search: LeafSearch, rows: LeafRows, away: Floats, limit: float) ->
 
 
 def _divided_at(
-    kernels: FieldKernels, extent: Extent, found: Extracted, rows: LeafRows, tolerance: float
+    kernels: FieldKernels,
+    extent: Extent,
+    found: Extracted,
+    rows: LeafRows,
+    tolerance: float,
+    most: int,
 ) -> Extracted | None:
     """Return a mesh with cells as small as boxes at their places; None if none can be smaller.
 
@@ -211,20 +220,25 @@ def _divided_at(
         found: The mesh.
         rows: The places.
         tolerance: How far lines between points may be from the surface, in scene units.
+        most: How many cells may be divided, those that are divided already included.
     """
     tree = found.tree
     if tree is None:
         tree = Tree.of_equal_cells(kernels, found.lattice, keys_of(found.looked_at.surface))
     more = _cells_at(tree, rows)
     finer = tree.with_divided(more)
-    halved = sum(len(keys) for keys in finer.divided[tree.base :])
-    same = halved == sum(len(keys) for keys in tree.divided[tree.base :])
-    if same or halved > _MOST_CELLS:
+    halved = _halved(finer)
+    if halved == _halved(tree) or halved > most:
         return None
     topology, finer = topology_of_tree(finer)
     lattice, seen = finer.values.lattice, found.looked_at
     made = completed(kernels, extent, lattice, topology, seen, tolerance, lambda share: None)
     return replace(made, tree=finer)
+
+
+def _halved(tree: Tree | None) -> int:
+    """Return how many cells of a tree are divided that are not joined."""
+    return 0 if tree is None else sum(len(keys) for keys in tree.divided[tree.base :])
 
 
 def _cells_at(tree: Tree, rows: LeafRows) -> Divided:

@@ -230,13 +230,13 @@ class _LeafKind:
         self.numbers = _NumbersOf(kind)
         self.known = has_width(kind.node)
         self._kind = kind
-        self._functions: dict[Func, _OfKind] = {}
+        self._functions: dict[Func, _FunctionOfKind] = {}
 
-    def need(self, function: Func, types: _Types) -> _OfKind:
+    def need(self, function: Func, types: _Types) -> _FunctionOfKind:
         """Return a function of the leaves of the kind; arguments as for ``FieldFunctions``."""
         made = self._functions.get(function)
         if made is None:
-            made = self._functions[function] = _OfKind(self._kind, function, types)
+            made = self._functions[function] = _FunctionOfKind(self._kind, function, types)
         return made
 
 
@@ -254,7 +254,7 @@ def _plain(node: Node) -> Node:
     return replace(node, children=children, material=None, cut_material=None, label="")
 
 
-class _OfKind(Composed):
+class _FunctionOfKind(Composed):
     """A function whose parameter ``field`` is the field of a leaf, from the numbers of its row."""
 
     def __init__(self, kind: PartKind, function: Func, types: _Types) -> None:

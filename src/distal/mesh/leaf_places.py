@@ -20,6 +20,7 @@ from distal.mesh import arithmetic
 from distal.mesh.bricks import Slopes
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.leaf_fields import FieldProbe, LeafFields
+from distal.mesh.leaf_spacing import LEAST_WALL
 from distal.mesh.outlines import arithmetic as flat_arithmetic
 from distal.mesh.solid import Bools, Floats, Integers
 from distal.scene.lowering.placed_leaves import PlacedLeaf
@@ -29,8 +30,8 @@ LEAST_BOXES: Final = 24
 # The most rows of a leaf and a box that are looked at below this size.
 _MOST_ROWS: Final = 300_000
 # The surface must change its sign within this share of the tolerance: walls and gaps that are
-# thinner count as none.
-ACROSS: Final = 0.02
+# thinner count as none, as for the spacing.
+ACROSS: Final = LEAST_WALL
 # Boxes are not halved below this share of the tolerance.
 _LEAST_SIDE: Final = 0.05
 _STEEP: Final = 1e6  # a slope above it says nothing

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from distal.mesh.cell_tree import HALVES, widened
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import BRICK, Lattice, cells_of_keys, keys_of, position
 from distal.mesh.leaf_fields import FieldProbe, LeafFields, LeafNumbers
+from distal.mesh.problems import ThinWall
 from distal.mesh.solid import Bools, Floats, Integers
 from distal.polygons.whole_numbers import sorted_keys
 from distal.scene.tree.node import Node
@@ -34,6 +35,16 @@ WALL_SHARE: Final = 0.95
 LEAST_WALL: Final = 0.05
 # How often a cell of the first spacing is halved at most.
 MOST_HALVINGS: Final = 7
+# The low ends of the edges of a cell along each axis, from its middle, in halves of its side.
+_ENDS_OF_EDGES: Final = [
+    np.insert(np.array([(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)]), axis, -1.0, axis=1)
+    for axis in range(3)
+]
+# Faces whose normals add up to less do not meet close by; where others meet within so many cells,
+# there is an edge.
+_PARALLEL: Final = 1e-3
+_CELLS_TO_EDGE: Final = 3.0
+_ALONG_AXIS: Final = 1.0 - 1e-9  # the largest component of a normal along an axis
 _HALF_DIAGONAL: Final = 0.5 * float(np.sqrt(3.0)) * 1.000001
 _ROUNDING: Final = 0.99999
 _OPPOSITE: Final = -0.5  # the cosine below which two faces face each other
@@ -43,8 +54,10 @@ _REAL: Final = 0.25  # of a wall's thickness: how large the value may be on both
 _BETWEEN: Final = 0.1
 # Both faces of a wall are in the cell: this share of its side from the middle.
 _WITHIN: Final = 0.55
-# No more cells are divided because of leaves: the report says what is not found then.
+# No more cells are divided because of leaves: the report says what is not found then. Walls that
+# need more are refused: part of a wall is worse than none.
 _MOST_DIVIDED: Final = 300_000
+_MOST_AT_WALLS: Final = 200_000
 # What a cell costs that is a leaf of a tree, and one that is sampled and may be joined.
 _COST_OF_TREE: Final = 2.2
 _COST_OF_SAMPLES: Final = 1.3
@@ -91,6 +104,23 @@ class Blocks:
     def leaves_of(self) -> Integers:
         """How many leaves each block has."""
         return np.bincount(self.block, minlength=len(self.cells))
+
+
+class _Walls(NamedTuple):
+    """Walls and gaps in cells.
+
+    Attributes:
+        row: The row of a cell and a leaf whose face is one side of the wall.
+        other: The row of the same cell and the leaf of the other side.
+        gap: How thick the wall is.
+        lost: Whether cells of this size may miss it: it is along no plane of the lattice, or an
+            edge of the cell crosses it between corners of one sign.
+    """
+
+    row: Integers
+    other: Integers
+    gap: Floats
+    lost: Bools
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,6 +235,9 @@ class LeafSpacing:
             blocks: Its bricks near the surface, with their leaves.
             width: The width of each leaf.
             levels: How often a cell can be halved.
+
+        Raises:
+            MeshProblem: A wall needs too many cells.
         """
         found: list[Integers] = []
         while len(blocks.cells):
@@ -271,11 +304,40 @@ class LeafSpacing:
         return blocks.some(some)
 
     def _beside_walls(self, lattice: Lattice, blocks: Blocks, several: Bools) -> Bools:
-        """Return which cells have a wall or a gap narrower than their side in them or beside."""
-        side = blocks.size * lattice.step
-        found = np.zeros(len(blocks.cells), np.bool_)
-        some = blocks.pairs(several[blocks.block])
+        """Return which cells have a wall or a gap narrower than their side in them or beside.
+
+        Raises:
+            MeshProblem: They are too many.
+        """
         middles = lattice.places((blocks.cells + 0.5) * blocks.size)
+        some = blocks.pairs(several[blocks.block])
+        walls = list(self._walls(some, middles, blocks.size * lattice.step))
+        found, lost = (np.zeros(len(blocks.cells), np.bool_) for _ in range(2))
+        for wall in walls:
+            block = some.block[wall.row]
+            found[block] = True
+            lost[block[wall.lost]] = True
+        # Walls along planes of the lattice are seen as they are.
+        if not lost.any():
+            return lost
+        keys = keys_of(blocks.cells)
+        found = position(keys, widened(np.sort(keys[found]))) >= 0
+        if found.sum() > _MOST_AT_WALLS:
+            wall = min(walls, key=lambda wall: float(wall.gap.min(initial=np.inf)))
+            thin = int(np.argmin(wall.gap))
+            one, other = (self.fields.leaves[some.leaf[k[thin]]] for k in (wall.row, wall.other))
+            place = tuple(middles[some.block[wall.row[thin]]].tolist())
+            raise ThinWall(place, float(wall.gap[thin]), (one, other))
+        return found
+
+    def _walls(self, some: Blocks, middles: Floats, side: float) -> Iterator[_Walls]:
+        """Yield walls and gaps between two leaves in one cell that are narrower than its side.
+
+        Args:
+            some: Cells with their leaves.
+            middles: Their middles, in scene units.
+            side: Their side.
+        """
         distance, normal = self.fields.distances(some.leaf, middles[some.block], side)
         for i, j in _facing(some, normal):
             gap = np.abs(distance[i] + distance[j])
@@ -291,11 +353,62 @@ class LeafSpacing:
             # Beside an edge where two faces meet there is none.
             between = 0.5 * (feet[0] + feet[1])[real]
             real[real] = np.abs(self._value(between)) >= _BETWEEN * gap[real]
-            found[block[real]] = True
-        if found.any():
-            keys = keys_of(blocks.cells)
-            found = position(keys, widened(np.sort(keys[found]))) >= 0
+            i, j, gap, block = i[real], j[real], gap[real], block[real]
+            middle, feet = 0.5 * (feet[0] + feet[1])[real], [foot[real] for foot in feet]
+            wide = ~self._at_edges(feet[0], middle, normal[i], normal[j], side, gap)
+            i, j, gap = i[wide], j[wide], gap[wide]
+            block, between = block[wide], middle[wide]
+            tilted = np.abs(normal[i]).max(axis=1) < _ALONG_AXIS
+            lost = tilted | self._between_corners(middles[block], side, between, normal[i])
+            yield _Walls(i, j, gap, lost)
+
+    def _at_edges(
+        self, foot: Floats, middle: Floats, one: Floats, other: Floats, side: float, gap: Floats
+    ) -> Bools:
+        """Return where two faces are those of a sharp edge close by: it is thin, but ends there.
+
+        Args:
+            foot: A place on the first face.
+            middle: A place between the faces.
+            one: The normal of the first face.
+            other: The normal of the second.
+            side: The side of the cell.
+            gap: How far the faces are apart.
+        """
+        way = one + other
+        length = np.linalg.norm(way, axis=1)
+        meet = length > _PARALLEL
+        way = np.divide(way, length[:, None], out=np.zeros_like(way), where=meet[:, None])
+        rise = np.einsum("ij,ij->i", one, way)
+        far = np.einsum("ij,ij->i", one, foot - middle)
+        share = np.divide(far, rise, out=np.full(len(gap), np.inf), where=meet)
+        found: Bools = np.abs(share) <= _CELLS_TO_EDGE * side
+        edge = middle[found] + share[found, None] * way[found]
+        found[found] = np.abs(self._value(edge)) <= _REAL * gap[found]
         return found
+
+    def _between_corners(self, middle: Floats, side: float, place: Floats, normal: Floats) -> Bools:
+        """Return which cells have an edge that a wall crosses between corners of one sign.
+
+        Args:
+            middle: The middles of the cells.
+            side: Their side.
+            place: A place in the middle of each wall.
+            normal: The normal of its faces.
+        """
+        lost = np.zeros(len(middle), np.bool_)
+        for axis in range(3):
+            for ends in _ENDS_OF_EDGES[axis]:
+                start = middle + ends * (0.5 * side)
+                along = np.where(normal[:, axis] == 0.0, np.inf, normal[:, axis] * side)
+                share = np.einsum("ij,ij->i", place - start, normal) / along
+                rows = np.flatnonzero((share > 0.0) & (share < 1.0) & ~lost)
+                a, b, at = start[rows], start[rows].copy(), start[rows].copy()
+                b[:, axis] += side
+                at[:, axis] += share[rows] * side
+                inside = [self._value(places) < 0.0 for places in (a, at, b)]
+                lost[rows] = (inside[0] != inside[1]) & (inside[2] != inside[1])
+        return lost
 
     def _value(self, places: Floats) -> Floats:
         return FieldProbe(self.kernels).values(places) if len(places) else np.empty(0)

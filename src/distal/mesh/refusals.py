@@ -9,8 +9,9 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final, NoReturn
 
+from distal.mesh.leaf_spacing import LEAST_WALL
 from distal.mesh.parts import part_at
-from distal.mesh.problems import MeshProblem
+from distal.mesh.problems import MeshProblem, ThinWall
 from distal.mesh.requests import box_of
 from distal.mesh.solid import Floats
 from distal.mesh.spacing import BALL_CELLS, TooFine, Wanted
@@ -78,6 +79,16 @@ def refuse_problem(node: Node, extent: Extent, problem: MeshProblem) -> NoReturn
         SceneValueError: Always.
     """
     where = "" if problem.place is None else f" at {shown_place(problem.place)}"
+    if isinstance(problem, ThinWall):
+        one, other = problem.leaves
+        # Walls below a share of the tolerance are not looked for.
+        without = problem.thickness * BALL_CELLS / LEAST_WALL
+        refuse(
+            f"{one.text} and {other.text} are {problem.thickness:.2g} apart{where}: a wall or a "
+            "gap that is so thin and so large needs too many triangles",
+            f"make it thicker; tolerance={above(without):.2g} leaves it out",
+            one.leaf.place,
+        )
     match problem.kind:
         case "no number":
             refuse(

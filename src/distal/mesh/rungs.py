@@ -8,7 +8,7 @@ of the smallest error: to ask for more never makes an error larger.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -35,28 +35,29 @@ _BRICKS_OF_TOLERANCE: Final = 40_000
 # At 128 cells along a side, lines may be this far from the surface, as a share of that side.
 _LINES: Final = 2e-3
 _MOST_CELLS: Final = 1 << 20  # along a side: a key has 21 bits
-_SHOWN: Final = 3  # meshes that show an order
+_SHOWN: Final = 3  # meshes that show an order, and one before them that confirms it
 # How errors follow from differences and from the volume between mesh and surface; measured on
 # random solids with closed volumes (tests/mesh/closed_volumes.py).
-_LAST: Final = 2.0
+_LAST: Final = 3.0
 _BEFORE: Final = 1.0
-_ROUGH: Final = 8.0
+_ROUGH: Final = 12.0
 _COLUMNS: Final = 2e-4
 _THICK: Final = 0.02
 # Of an area: its error is of the second order on smooth faces.
 _ORDER: Final = _FINER**2
-_LAST_AREA: Final = 3.0
+_LAST_AREA: Final = 5.0
 _SMOOTH: Final = 1e-3
+_MOST_OFF: Final = 0.3  # of an order, as a share
 _SAME: Final = 1.0 + 1e-9  # of powers of the ratio
 _ROUNDING: Final = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """The integrals that three meshes give.
+    """The integrals that three or four meshes give.
 
     Attributes:
-        integrals: Those of the finest; its area is extrapolated if the three show its order.
+        integrals: Those of the finest; its area is extrapolated if they show its order twice.
         volume: The error of the volume.
         area: That of the area.
         center: That of the center of mass.
@@ -157,17 +158,26 @@ def climbed(
 
 
 def _take(found: Climbed, rungs: Sequence[Integrals], extent: Extent) -> None:
-    """Take the estimate of the last three meshes if its error is the smallest."""
+    """Take what the last three meshes say of the volume, and of the area, if it is more exact."""
     if len(rungs) < _SHOWN:
         return
-    estimate = estimated(rungs[-_SHOWN:], extent)
+    estimate = estimated(rungs[-_SHOWN - 1 :], extent)
     best = found.estimate
-    # An earlier one that excludes what the finer meshes say was wrong.
     if best is not None:
-        off = abs(best.integrals.volume - estimate.integrals.volume)
-        if off <= best.volume + estimate.volume and best.volume < estimate.volume:
-            return
+        volumes = best.integrals.volume, estimate.integrals.volume
+        areas = best.area_value, estimate.area_value
+        area = best if _stays(*areas, best.area, estimate.area) else estimate
+        whole = best if _stays(*volumes, best.volume, estimate.volume) else estimate
+        estimate = replace(whole, area_value=area.area_value, area=area.area)
     found.estimate = estimate
+
+
+def _stays(value: float, finer: float, error: float, finer_error: float) -> bool:
+    """Return whether a value stays: it has the smaller error, and a finer one is well within it.
+
+    Differences that are small by chance make small errors, which finer meshes do not confirm.
+    """
+    return error < finer_error and 2.0 * abs(value - finer) <= error
 
 
 def _enough(found: Climbed, volume_tolerance: float | None) -> bool:
@@ -181,8 +191,8 @@ def _enough(found: Climbed, volume_tolerance: float | None) -> bool:
 
 
 def estimated(rungs: Sequence[Integrals], extent: Extent) -> Estimate:
-    """Return the integrals of three meshes, from coarse to fine, with errors."""
-    coarse, middle, fine = rungs
+    """Return the integrals of the last of three or four meshes, coarse to fine, with errors."""
+    coarse, middle, fine = rungs[-_SHOWN:]
     far = max(float(np.abs(extent.low).max()), float(np.abs(extent.high).max()))
     size = abs(fine.volume)
     # Thick columns say that the mesh does not see the shape.
@@ -231,17 +241,24 @@ def _spread(coarse: float | Floats, middle: float | Floats, fine: float | Floats
 
 
 def _area(rungs: Sequence[Integrals]) -> tuple[float, float]:
-    """Return an area and its error: extrapolated where three meshes show the second order."""
-    coarse, middle, fine = (rung.area for rung in rungs)
+    """Return an area and its error: extrapolated where four meshes show the second order twice."""
+    coarse, middle, fine = (rung.area for rung in rungs[-_SHOWN:])
     last, before = fine - middle, middle - coarse
     least = _ROUNDING * abs(fine)
-    order = before / last if last else 0.0
+    areas = [rung.area for rung in rungs]
+    orders = [_order(*areas[i : i + _SHOWN]) for i in range(len(areas) - _SHOWN + 1)]
     # At creases, areas can show an order by chance.
-    smooth = rungs[-1].rough <= _SMOOTH * rungs[-1].columns
-    if not smooth or not 0.75 * _ORDER < order < 1.33 * _ORDER:
+    smooth = rungs[-1].rough <= _SMOOTH * rungs[-1].columns and len(orders) > 1
+    off = max(abs(order / _ORDER - 1.0) for order in orders)
+    if not smooth or off > _MOST_OFF:
         spread = max(abs(last) * _LAST_AREA, 2.0 * abs(before), 2.0 * abs(last + before))
         return fine, max(spread, least)
     step = last / (_ORDER - 1.0)
     # The more the order differs, the less it is trusted.
-    doubt = min(1.0, 0.05 + 6.0 * abs(order / _ORDER - 1.0))
+    doubt = min(1.0, 0.05 + 6.0 * off)
     return fine + step, max(doubt * abs(step), least)
+
+
+def _order(coarse: float, middle: float, fine: float) -> float:
+    """Return the ratio of the differences of three values; 0 if the last two are the same."""
+    return (middle - coarse) / (fine - middle) if fine != middle else 0.0

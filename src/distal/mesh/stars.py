@@ -51,7 +51,7 @@ class Stars:
         return found
 
 
-class Around:
+class StarFinder:
     """Finds the triangles around points.
 
     Args:

@@ -39,7 +39,7 @@ _MEASURED: Final = 2
 _NEEDED: Final = 3
 # How often cells are divided one by one before those in rows with them are divided too, ever
 # longer rows up to so many cells to each side.
-_ONE_BY_ONE: Final = 6
+_ONE_BY_ONE: Final = 40
 _LONGEST_ROW: Final = 256
 
 
