@@ -138,12 +138,15 @@ def with_all_leaves(
     watch(1.0)
     away = distances(rows, found.made.points[found.made.triangles], MISSING * tolerance)
     most = _MOST_CELLS + _halved(found.tree)
-    for _ in range(_MOST_ROUNDS):
+    for number in range(_MOST_ROUNDS):
         far = away > tolerance
         if not far.any():
             break
         watch(1.0)
-        finer = _divided_at(kernels, extent, found, rows.some(far), tolerance, most)
+        some = rows.some(far)
+        # What is still far has its cells halved once more in each round.
+        some = replace(some, side=some.side * 0.5**number)
+        finer = _divided_at(kernels, extent, found, some, tolerance, most)
         if finer is None:
             break
         found = divided(kernels, extent, finer, tolerance, lambda share: watch(1.0))

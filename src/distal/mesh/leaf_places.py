@@ -32,6 +32,8 @@ _MOST_ROWS: Final = 300_000
 # The surface must change its sign within this share of the tolerance: walls and gaps that are
 # thinner count as none, as for the spacing.
 ACROSS: Final = LEAST_WALL
+# A place is this close to the surface, as a share of the tolerance.
+_CLOSE: Final = 0.02
 # Boxes are not halved below this share of the tolerance.
 _LEAST_SIDE: Final = 0.05
 _STEEP: Final = 1e6  # a slope above it says nothing
@@ -119,6 +121,7 @@ class LeafSearch:
         self._low, self._high = low, high
         size = float((high - low).max())
         self._across = ACROSS * tolerance
+        self._close = _CLOSE * tolerance
         self._least = _LEAST_SIDE * tolerance
         self._root = 1.1 * size
         self._origin = (low + high - self._root) / 2.0 - size * np.array(_SHIFT[: len(low)])
@@ -207,20 +210,20 @@ class LeafSearch:
         place, away, normal = self._on_leaf(leaf, middle, middle, side)
         distance, across = self._shape.distances(place, side)
         for _ in range(_TURNS):
-            off = (np.abs(distance) > self._across) & (np.abs(distance) < 4.0 * side)
+            off = (np.abs(distance) > self._close) & (np.abs(distance) < 4.0 * side)
             rows = np.flatnonzero(off)
             if not len(rows):
                 break
             given = (distance[rows], across[rows], normal[rows])
-            step = rows_of(self._step_along, *given, np.full(len(rows), 2.0 * self._across))
+            step = rows_of(self._step_along, *given, np.full(len(rows), 2.0 * self._close))
             start = place[rows] + np.clip(step, -2.0 * side, 2.0 * side)
             moved = self._on_leaf(leaf[rows], start, middle[rows], side)
             place[rows], away[rows], normal[rows] = moved
             distance[rows], across[rows] = self._shape.distances(place[rows], side)
         near = (np.abs(place - middle) <= side).all(axis=1)
-        on_leaf = np.abs(away) < 0.1 * self._across
+        on_leaf = np.abs(away) < 0.1 * self._close
         thin = near & ~on_leaf
-        real = np.flatnonzero(near & on_leaf & (np.abs(distance) < self._across))
+        real = np.flatnonzero(near & on_leaf & (np.abs(distance) < self._close))
         way = self._across * normal[real]
         ahead = self._shape.values(place[real] + way)
         behind = self._shape.values(place[real] - way)

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from distal.fields.combine.joins import COMPLEMENT
 from distal.fields.guarantees import Primitive
 from distal.scene.checks.bounds_report import bounds_of_nodes
-from distal.scene.checks.measuring import interpreted, own_values
+from distal.scene.checks.measuring import InterpretedParts, own_values
 from distal.scene.lowering.derived import GradientOf
 from distal.scene.lowering.placed_leaves import PlacedLeaf, placed_leaves
 from distal.scene.objects.field import BaseShape
@@ -112,6 +112,7 @@ class _Cuts:
         self._root, self._leaves, self._params, self._time = root, leaves, params, time
         self._low, self._high = self._box(root)
         self._boxes = {leaf: self._box(_without_complement(leaf)) for leaf in leaves}
+        self._parts = InterpretedParts(params, time)
         self._random = np.random.default_rng(seed)
 
     def _box(self, node: Node) -> tuple[Floats, Floats]:
@@ -121,10 +122,10 @@ class _Cuts:
         return np.array(bounds.low[:size]), np.array(bounds.high[:size])
 
     def _value(self, node: Node, p: Floats) -> Floats:
-        return interpreted(node, p, self._params, self._time)
+        return self._parts.values(node, p)
 
     def _slope(self, node: Node, p: Floats) -> Floats:
-        return interpreted(node, p, self._params, self._time, GradientOf)
+        return self._parts.values(node, p, GradientOf)
 
     def found(self) -> Iterator[FlushCut]:
         """Yield the cutters that end on a face."""

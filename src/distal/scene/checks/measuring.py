@@ -85,21 +85,37 @@ def own_values(shape: BaseShape, params: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in params.items() if name in names}
 
 
-def interpreted(
-    node: Node, p: Points, params: Mapping[str, Any], time: float, what: Any = DistanceOf
-) -> Points:
-    """Return values of a part of the whole at a few places, without compiling anything.
+class InterpretedParts:
+    """Parts of a whole at one time, evaluated at a few places without compiling anything.
 
-    Args:
-        node: The part.
-        p: The places.
-        params: Values of parameters by name, also of those that the part has not.
-        time: Time in seconds.
-        what: What is evaluated, made of the node.
+    Each part is lowered once: at few places that takes longer than the evaluation.
     """
-    own = own_values(BaseShape._of(node), params)
-    found = executor().call(what(node), (p,), {}, params=own, time=time, device="reference")
-    return np.asarray(found, np.float64)
+
+    def __init__(self, params: Mapping[str, Any], time: float) -> None:
+        """Keep what all parts have in common.
+
+        Args:
+            params: Values of parameters by name, also of those that some parts have not.
+            time: Time in seconds.
+        """
+        self._params, self._time = params, time
+        # The functions keep their nodes: ids stay those of these.
+        self._known: dict[tuple[int, Any], tuple[Any, dict[str, Any]]] = {}
+
+    def values(self, node: Node, p: Points, what: Any = DistanceOf) -> Points:
+        """Return values of a part.
+
+        Args:
+            node: The part.
+            p: The places.
+            what: What is evaluated, made of the node.
+        """
+        key = id(node), what
+        if key not in self._known:
+            self._known[key] = what(node), own_values(BaseShape._of(node), self._params)
+        function, own = self._known[key]
+        found = executor().call(function, (p,), {}, params=own, time=self._time, device="reference")
+        return np.asarray(found, np.float64)
 
 
 class _EvaluatedShape:

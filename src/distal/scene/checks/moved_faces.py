@@ -178,10 +178,10 @@ class _FlushPlaces:
         self, node: Node, kind: BlendKind, size: float, params: Mapping[str, Any], time: float
     ) -> None:
         self._node, self._kind, self._size = node, kind, size
-        self._params, self._time = params, time
+        self._parts = InterpretedParts(params, time)
 
     def _value(self, node: Node, p: Floats, what: Any = DistanceOf) -> Floats:
-        return interpreted(node, p, self._params, self._time, what)
+        return self._parts.values(node, p, what)
 
     def _blend(self, p: Floats) -> Floats:
         """Return the value of the blend, negative where it moved a face to or beyond a place."""
