@@ -75,6 +75,7 @@ def case():
     return made
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("turn", [0.0, 0.7])
 def test_holes_of_a_plate_measure_what_was_modelled(turn):
     shape = plate(200.0).rotate(y=turn)
@@ -97,6 +98,7 @@ def test_holes_of_a_case_measure_what_was_modelled():
         assert abs(inscribed(segments, np.array((x, -5.1, z)), 3.0) - HOLE) <= 0.02
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(("turn", "height"), [(0.0, 60.0), (0.0, 12.0), (0.5, 60.0)])
 def test_a_shaft_has_its_size_and_its_volume(turn, height):
     mesh = Cylinder(15, height).rotate(y=turn).mesh(angle=DEGREES_5, colors=False)

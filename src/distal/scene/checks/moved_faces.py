@@ -22,7 +22,7 @@ from distal.fields.guarantees import Operator
 from distal.lang.expressions import Expression
 from distal.lang.runtime_access import executor
 from distal.scene.checks.bounds_report import NodeBounds
-from distal.scene.checks.measuring import interpreted
+from distal.scene.checks.measuring import InterpretedParts
 from distal.scene.lowering.derived import DistanceOf, GradientOf
 from distal.scene.tree.node import Node
 
