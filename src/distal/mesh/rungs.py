@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -47,7 +48,7 @@ _THICK: Final = 0.02
 _ORDER: Final = _FINER**2
 _LAST_AREA: Final = 5.0
 _SMOOTH: Final = 1e-3
-_MOST_OFF: Final = 0.3  # of an order, as a share
+_MOST_DEVIATION: Final = 0.3  # of an order, as a share
 _SAME: Final = 1.0 + 1e-9  # of powers of the ratio
 _ROUNDING: Final = 1e-12
 
@@ -242,23 +243,18 @@ def _spread(coarse: float | Floats, middle: float | Floats, fine: float | Floats
 
 def _area(rungs: Sequence[Integrals]) -> tuple[float, float]:
     """Return an area and its error: extrapolated where four meshes show the second order twice."""
-    coarse, middle, fine = (rung.area for rung in rungs[-_SHOWN:])
-    last, before = fine - middle, middle - coarse
+    fine = rungs[-1].area
+    steps = [finer.area - rung.area for rung, finer in pairwise(rungs)]
+    *_, before, last = steps
     least = _ROUNDING * abs(fine)
-    areas = [rung.area for rung in rungs]
-    orders = [_order(*areas[i : i + _SHOWN]) for i in range(len(areas) - _SHOWN + 1)]
+    orders = [step / finer if finer else 0.0 for step, finer in pairwise(steps)]
     # At creases, areas can show an order by chance.
     smooth = rungs[-1].rough <= _SMOOTH * rungs[-1].columns and len(orders) > 1
-    off = max(abs(order / _ORDER - 1.0) for order in orders)
-    if not smooth or off > _MOST_OFF:
+    deviation = max(abs(order / _ORDER - 1.0) for order in orders)
+    if not smooth or deviation > _MOST_DEVIATION:
         spread = max(abs(last) * _LAST_AREA, 2.0 * abs(before), 2.0 * abs(last + before))
         return fine, max(spread, least)
-    step = last / (_ORDER - 1.0)
-    # The more the order differs, the less it is trusted.
-    doubt = min(1.0, 0.05 + 6.0 * off)
-    return fine + step, max(doubt * abs(step), least)
-
-
-def _order(coarse: float, middle: float, fine: float) -> float:
-    """Return the ratio of the differences of three values; 0 if the last two are the same."""
-    return (middle - coarse) / (fine - middle) if fine != middle else 0.0
+    rest = last / (_ORDER - 1.0)
+    # The more the orders differ from the second, the less the rest is trusted.
+    share = min(1.0, 0.05 + 6.0 * deviation)
+    return fine + rest, max(share * abs(rest), least)
