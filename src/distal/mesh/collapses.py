@@ -38,6 +38,9 @@ _MOST_ROUNDS: Final = 400
 # A triangle that is as long as so many cells is measured in two pieces along each side.
 _CELLS: Final = 4.0
 _MOST_PIECES: Final = 8
+# Up to so many points are all tried in a round, so that there are fewer of them; of more only those
+# that can move at the same time.
+_FEW: Final = 4_000
 _SEED: Final = 35
 
 
@@ -150,14 +153,19 @@ def _round(mesh: Collapsing, some: Bools, order: Floats, movable: Bools) -> None
     rows = np.flatnonzero(near[mesh.triangles].any(axis=1))
     own = mesh.triangles[rows]
     around = StarFinder(own, len(mesh.points))
-    rank = np.where(mesh.waiting, order - around.count, -np.inf)
-    points = np.flatnonzero(mesh.waiting & (around.largest(rank) == rank))
+    rank = order - around.count
+    points = np.flatnonzero(mesh.waiting)
+    if len(points) > _FEW:
+        points = points[_are_first(around, points, rank)]
     stars = around.of(points)
     chosen, possible = _chosen(mesh, around, points, stars)
-    moves = without_twins(stars, chosen, len(mesh.points))
-    late = (chosen >= 0) & ~moves
-    chosen[~moves] = -1
-    _keep_close(mesh, rows, points, stars, chosen)
+    chosen[_are_far(mesh, rows, stars, chosen)] = -1
+    fits = chosen >= 0
+    some = np.flatnonzero(fits)
+    chosen[some[~_are_first(around, points[some], rank)]] = -1
+    chosen[~without_twins(stars, chosen, len(mesh.points))] = -1
+    late = fits & (chosen < 0)
+    _follow(mesh, rows, points, stars, chosen)
     moves = chosen >= 0
     mesh.triangles[rows] = moved(own, stars, points, chosen)
     mesh.changed[rows[stars.triangle[moves[stars.owner]]]] = True
@@ -217,25 +225,34 @@ def _chosen(
     return chosen, possible
 
 
-def _keep_close(
+def _are_first(around: StarFinder, points: Integers, rank: Floats) -> Bools:
+    """Return which of some points have no neighbor of a higher rank among them."""
+    own = np.full(len(rank), -np.inf)
+    own[points] = rank[points]
+    found: Bools = around.largest(own)[points] == own[points]
+    return found
+
+
+def _made(stars: Stars, chosen: Integers) -> tuple[Integers, Integers]:
+    """Return the rows of the triangles that stay around points that move, and their corners."""
+    onto = chosen[stars.owner]
+    new = np.flatnonzero((onto >= 0) & (stars.after != onto) & (stars.before != onto))
+    return new, np.stack([onto[new], stars.after[new], stars.before[new]], axis=1)
+
+
+def _follow(
     mesh: Collapsing, rows: Integers, points: Integers, stars: Stars, chosen: Integers
 ) -> None:
-    """Set the corner of points to -1 that may not move: the mesh would not be close to the surface.
+    """Set the corner of points to -1 if places that are followed would be too far from the mesh.
 
     Args:
         mesh: The mesh; what is nearest to its points is changed.
         rows: The triangles whose numbers are in the stars.
-        points: The points.
+        points: The points; no two of those that move are neighbors.
         stars: The triangles around them.
         chosen: The corner that each point moves onto; changed in place.
     """
-    onto = chosen[stars.owner]
-    new = np.flatnonzero((onto >= 0) & (stars.after != onto) & (stars.before != onto))
-    made = np.stack([onto[new], stars.after[new], stars.before[new]], axis=1)
-    far = _are_far(mesh, rows, stars, stars.owner[new], made, len(points))
-    chosen[far] = -1
-    keeps = ~far[stars.owner[new]]
-    new, made = new[keeps], made[keeps]
+    new, made = _made(stars, chosen)
     if not len(new):
         return
     place, point = _followed(mesh, rows, points, stars, chosen)
@@ -258,10 +275,8 @@ def _keep_close(
     mesh.away[place] = away[best]
 
 
-def _are_far(
-    mesh: Collapsing, rows: Integers, stars: Stars, owner: Integers, made: Integers, count: int
-) -> Bools:
-    """Return which points have new triangles that are too far from the surface.
+def _are_far(mesh: Collapsing, rows: Integers, stars: Stars, chosen: Integers) -> Bools:
+    """Return which points would have new triangles that are too far from the surface.
 
     Those around it may already be farther than the share of the tolerance: between the places that
     were measured. Then the new ones need not be closer than these.
@@ -270,17 +285,16 @@ def _are_far(
         mesh: The mesh.
         rows: The triangles whose numbers are in the stars.
         stars: The triangles around the points.
-        owner: Which of the points each new triangle is of.
-        made: The new triangles.
-        count: How many points there are.
+        chosen: The corner that each point moves onto.
     """
-    misses = _worst(owner, _misses(mesh, made), count)
+    new, made = _made(stars, chosen)
+    misses = _worst(stars.owner[new], _misses(mesh, made), len(chosen))
     far = misses > _SHARE * mesh.tolerance
     unsure = far & (misses <= mesh.tolerance)
     if unsure.any():
         own = np.flatnonzero(unsure[stars.owner])
         before = _misses(mesh, mesh.triangles[rows[stars.triangle[own]]])
-        far &= ~unsure | (misses > _worst(stars.owner[own], before, count))
+        far &= ~unsure | (misses > _worst(stars.owner[own], before, len(chosen)))
     return far
 
 

@@ -26,7 +26,9 @@ from distal.mesh.solid import Bools, Floats, Integers
 # Corners of a flat face are this close to its plane, as a share of the mesh's size: sixteen
 # roundings of 32 bits.
 _FLAT: Final = 1e-6
-_MOST_REPEATS: Final = 6
+_MOST_REPEATS: Final = 8
+# Where points that stay do not help, those of so many rings around them do, too.
+_MOST_RINGS: Final = 4
 # In the end triangles are measured in up to so many pieces along each side.
 _MOST_PIECES: Final = 16
 # The least share of the normals around a corner in each direction; that of a cube has a third.
@@ -121,15 +123,19 @@ def _without_points(first: Collapsing, watch: Callable[[float], None]) -> Spared
         first: The mesh; it stays as it is.
         watch: Called now and then.
     """
-    movable = first.waiting.copy()
-    for number in range(_MOST_REPEATS):
+    movable, rings = first.waiting.copy(), 0
+    for _ in range(_MOST_REPEATS):
         mesh = first.again(movable)
         collapsed(mesh, watch)
         found, bad = _measured(mesh)
         bad[meeting_triangles(mesh.points, mesh.triangles, mesh.changed, watch)] = True
         if not bad.any():
             return found
-        movable &= ~_around(mesh, bad, number)
+        stay = _around(mesh, bad, rings)
+        while rings < _MOST_RINGS and not (movable & stay).any():
+            rings += 1
+            stay = _around(mesh, bad, rings)
+        movable &= ~stay
     return Spared(np.empty(0, np.int64), first.triangles)
 
 

@@ -6,7 +6,8 @@ solid. Works for solids and for flat shapes.
 
 Boxes are halved where leaf and shape can both be 0 by their slopes. Where a leaf turns back within
 a box, as a bore or a sheet does that is thinner than it, the box is halved again: each copy and
-each side has boxes of its own.
+each side has boxes of its own. A leaf of known width turns back in smaller boxes at knife edges
+only, and these are no walls.
 """
 
 from __future__ import annotations
@@ -42,6 +43,8 @@ _CLEAR: Final = 0.05
 _NEWTON_STEPS: Final = 3
 _TURNS: Final = 2  # how often a place that is beside the shape's surface is moved along the leaf
 _BACK: Final = -0.75  # the cosine between normals below which a leaf turns back
+# Boxes are halved to this share of a leaf's width, where it is known; each side has its own then.
+_OF_WIDTH: Final = 0.5
 _SHIFT: Final = (0.0131, 0.0173, 0.0157)  # keeps middles of boxes off axes of symmetry
 
 
@@ -126,6 +129,8 @@ class LeafSearch:
         self._root = 1.1 * size
         self._origin = (low + high - self._root) / 2.0 - size * np.array(_SHIFT[: len(low)])
         self._first = size / LEAST_BOXES
+        numbers = self._fields.numbers
+        self._enough = np.where(numbers.known, _OF_WIDTH * numbers.width, 0.0)
         self._rows = 0
         self._halves = np.indices((2,) * len(low)).reshape(len(low), -1).T
         self._radius = 0.5 * np.sqrt(len(low)) * 1.000001
@@ -235,6 +240,7 @@ class LeafSearch:
             beyond = place[real] + share * side * normal[real]
             _, there = self._fields.distances(leaf[real], beyond, side)
             thin[real] |= np.einsum("ij,ij->i", there, normal[real]) < _BACK
+        thin &= side > self._enough[leaf]
         outward = normal[real] * np.sign(ahead[crossed])[:, None]
         sides = np.full(len(real), side)
         return LeafRows(leaf[real], level.cell[real], sides, place[real], outward), real, thin
