@@ -92,7 +92,7 @@ def prepare(
     quick = _PLAIN if not is_long and _is_tiered() else best
     llvm_level, objects = best, files.load(best)
     if not objects and quick != best:
-        llvm_level, objects = quick, files.load(quick)
+        llvm_level, objects = quick, files.load(quick, with_texts=True)
     hit = bool(objects)
     if not hit:
         passes = passes or importlib.import_module("distal.compiler.driver").run_passes

@@ -32,13 +32,20 @@ class ObjectFiles:
         self.texts: Sequence[str] = ()
         self.interface: dict[str, Any] = {}
 
-    def load(self, llvm_level: int) -> Sequence[bytes]:
-        """Return the object files of a stored kernel, and set the attributes; empty: not stored."""
+    def load(self, llvm_level: int, *, with_texts: bool = False) -> Sequence[bytes]:
+        """Return the object files of a stored kernel, and set the attributes; empty: not stored.
+
+        Args:
+            llvm_level: LLVM's level that made them.
+            with_texts: Whether the modules must be stored too, to compile them at another level.
+        """
         data = self._cache.load(self._key(llvm_level))
         if data is None:
             return ()
         interface = json.loads(zlib.decompress(data))
         self.texts, keys = interface.pop("texts"), interface.pop("objects")
+        if with_texts and not self.texts:
+            return ()
         self.interface = interface
         return self._stored(keys)
 

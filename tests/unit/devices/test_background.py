@@ -207,6 +207,16 @@ def test_a_level_that_is_named_is_the_only_one(level, monkeypatch):
     assert kernel._optimizing is None
 
 
+def test_code_of_a_named_level_can_be_optimized_later(tmp_path, monkeypatch):
+    cache = Cache(tmp_path)
+    monkeypatch.setenv(LEVEL_VARIABLE, "0")
+    plain = drawn(prepared(cache))
+    monkeypatch.delenv(LEVEL_VARIABLE)
+    kernel = ended(prepared(cache))  # the stored code has no modules: they are made again
+    assert np.array_equal(drawn(kernel), plain)
+    assert kernel.stats["optimization"] == 2
+
+
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork")
 def test_a_forked_child_optimizes_for_itself(held):
     kernel = prepared()
