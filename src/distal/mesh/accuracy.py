@@ -30,6 +30,11 @@ NARROWEST: Final = 1e-6
 SAMPLES: Final = 7  # points of each triangle, besides its corners
 _AT_ONCE: Final = 1 << 16
 _CUT: Final = 1e-3  # cells
+# How far from points their sides are looked at, in tolerances, and how much farther each time.
+_FIRST_OFF: Final = 0.25
+_LAST_OFF: Final = 8.0
+_NEXT_OFF: Final = 1.25
+_ALIKE: Final = 0.9  # the least share of one value in another that counts as equal
 # The most lattice points that are followed to a surface that the mesh does not have.
 _MOST_FOLLOWED: Final = 1 << 14
 # The most roots that are compared with more triangles than those around their own edge.
@@ -127,6 +132,7 @@ def measured(
         np.full(len(made.points), step),
         types=[("p", VEC3), ("step", FLOAT)],
     )
+    at_points = np.maximum(at_points, _inside(kernels, made.points, normals, tolerance))
     # Those of joined cells are measured in pieces as long as undivided cells.
     counts = np.maximum(topology.edges.size[made.edge] // topology.unit, 1)
     found = distances(kernels, made.points, made.triangles, counts)
@@ -151,6 +157,41 @@ def measured(
     turned = turns(kernels, made.points, made.triangles, counts, misses, tolerance, angle)
     accuracy = Accuracy(largest, found.mean, place, from_surface, worst_point, cut)
     return accuracy, normals, Misses(misses, at_points, own, turned)
+
+
+def _inside(kernels: FieldKernels, points: Floats, normals: Floats, tolerance: float) -> Floats:
+    """Return how far points on faces inside of a solid are from its surface, about; 0 for others.
+
+    Values there are 0 in the face, and grow or fall alike to both sides.
+
+    Args:
+        kernels: The shape.
+        points: The points of a mesh.
+        normals: The normals there.
+        tolerance: How far the mesh may be from the surface.
+    """
+
+    def value(places: Floats) -> Floats:
+        found: Floats = kernels.call(arithmetic.distance_value, places, types=[("p", VEC3)])
+        return found
+
+    def alike(rows: Integers, off: float) -> Integers:
+        way = off * normals[rows]
+        ahead, behind = value(points[rows] + way), value(points[rows] - way)
+        less, more = np.sort(np.abs([ahead, behind]), axis=0)
+        return rows[(ahead * behind > 0.0) & (less > _ALIKE * more) & (less > 0.5 * off)]
+
+    away, off = np.zeros(len(points)), _FIRST_OFF * tolerance
+    rows = alike(np.arange(len(points)), off)
+    # At a knife edge, too, both sides are alike; but there the face ends.
+    first = np.cross(normals, np.eye(3)[np.abs(normals).argmin(axis=1)])
+    for way in (first, np.cross(normals, first), -first, np.cross(first, normals)):
+        rows = rows[np.abs(value(points[rows] + off * way[rows])) < (1.0 - _ALIKE) * off]
+    while len(rows) and off < _LAST_OFF * tolerance:
+        off *= _NEXT_OFF
+        away[rows] = off
+        rows = alike(rows, off)
+    return away
 
 
 def _from_surface(
