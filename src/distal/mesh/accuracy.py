@@ -82,15 +82,16 @@ class Misses:
     roots: Floats
     turns: Floats
 
-    def excess(self, tolerance: float) -> Floats:
+    def excess(self, tolerance: float, turn: float = 1.0) -> Floats:
         """Return the distances of triangles; where a turn exceeds what it may be by more, that.
 
         As a distance does, the square of a turn falls with the square of the length of a cell.
 
         Args:
             tolerance: The distance that counts as much as a turn that is just small enough.
+            turn: The square of a turn that is, as a share of what it may be.
         """
-        return np.maximum(self.triangles, tolerance * self.turns)
+        return np.maximum(self.triangles, tolerance / turn * self.turns)
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,9 +27,8 @@ _LIMITS: Final[list[tuple[str, Type]]] = [
 # a tolerance of .4 by default, turned by 45 degrees of .57: the radius of a hole of 2.2 is 1.9 of
 # these.
 LEAST_RADIUS: Final = 1.5
-# Cells are not divided for a few percent: triangles where large cells meet small ones turn by as
-# much more, and each division would move them to the next cells.
-_SLACK: Final = 1.3  # of the square
+# What is measured is right within a few percent: cells are not divided for as little.
+_SLACK: Final = 1.15  # of the square
 # A triangle that is closer to the surface than this share of the tolerance, for each unit of the
 # angle squared, turns by less: a third of the height of a chord at the least radius.
 _FLAT: Final = 0.5
