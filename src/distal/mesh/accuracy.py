@@ -34,6 +34,7 @@ _CUT: Final = 1e-3  # cells
 _FIRST_OFF: Final = 0.25
 _LAST_OFF: Final = 8.0
 _NEXT_OFF: Final = 1.25
+_CLOSE: Final = 1e-3
 _ALIKE: Final = 0.9  # the least share of one value in another that counts as equal
 # The most lattice points that are followed to a surface that the mesh does not have.
 _MOST_FOLLOWED: Final = 1 << 14
@@ -180,10 +181,11 @@ def _inside(kernels: FieldKernels, points: Floats, normals: Floats, tolerance: f
         way = off * normals[rows]
         ahead, behind = value(points[rows] + way), value(points[rows] - way)
         less, more = np.sort(np.abs([ahead, behind]), axis=0)
-        return rows[(ahead * behind > 0.0) & (less > _ALIKE * more) & (less > 0.5 * off)]
+        found: Integers = rows[(ahead * behind > 0.0) & (less > _ALIKE * more) & (less > 0.5 * off)]
+        return found
 
     away, off = np.zeros(len(points)), _FIRST_OFF * tolerance
-    rows = alike(np.arange(len(points)), off)
+    rows = alike(alike(np.arange(len(points)), off), _CLOSE * tolerance)  # no slit
     # At a knife edge, too, both sides are alike; but there the face ends.
     first = np.cross(normals, np.eye(3)[np.abs(normals).argmin(axis=1)])
     for way in (first, np.cross(normals, first), -first, np.cross(first, normals)):

@@ -22,6 +22,7 @@ import numpy as np
 from distal.mesh import collapse_arithmetic, triangle_arithmetic
 from distal.mesh.accuracy import runs
 from distal.mesh.kernels import FieldKernels, rows_of
+from distal.mesh.moves import Followed, Moves
 from distal.mesh.pieces import distances, turns
 from distal.mesh.solid import Bools, Floats, Integers
 from distal.mesh.stars import StarFinder, Stars, is_proper, moved, without_twins
@@ -51,7 +52,7 @@ class Collapsing:
     Attributes:
         kernels: The shape.
         points: Of shape (n, 3).
-        triangles: Of shape (m, 3).
+        triangles: Of shape (m, 3); those that are gone have two equal corners.
         tolerance: How far mesh and surface may be apart.
         angle: How much the surface may turn within a triangle, in radians; infinite for any angle.
         step: The length of a cell.
@@ -59,7 +60,8 @@ class Collapsing:
         nearest: For each point the triangle that it is close to; -1 if it is not followed.
         away: How far each of them is from it.
         tries: How many neighbors each point has tried.
-        changed: The triangles that are not those of the first mesh.
+        is_left: Which triangles are left.
+        log: The moves of each round.
     """
 
     kernels: FieldKernels
@@ -72,7 +74,8 @@ class Collapsing:
     nearest: Integers
     away: Floats
     tries: Integers
-    changed: Bools
+    is_left: Bools
+    log: list[Moves]
 
     @staticmethod
     def of(
@@ -109,13 +112,9 @@ class Collapsing:
             nearest=nearest,
             away=np.zeros(count),
             tries=np.zeros(count, np.int64),
-            changed=np.zeros(len(triangles), np.bool_),
+            is_left=np.ones(len(triangles), np.bool_),
+            log=[],
         )
-
-    def again(self, movable: Bools) -> Collapsing:
-        """Return a mesh that has not lost points yet, with these that may move."""
-        limits = self.tolerance, self.angle, self.step
-        return Collapsing.of(self.kernels, self.points, self.triangles, movable, *limits)
 
     def corners(self, triangles: Integers) -> list[Floats]:
         """Return the corners of triangles."""
@@ -132,7 +131,7 @@ def collapsed(mesh: Collapsing, watch: Callable[[float], None] = lambda share: N
     order = np.random.default_rng(_SEED).random(len(mesh.points))
     movable = mesh.waiting.copy()
     for _ in range(_MOST_ROUNDS):
-        some: Bools = np.any(mesh.waiting[mesh.triangles], axis=1)
+        some: Bools = np.any(mesh.waiting[mesh.triangles], axis=1) & mesh.is_left
         if not some.any():
             return
         watch(1.0)
@@ -150,7 +149,7 @@ def _round(mesh: Collapsing, some: Bools, order: Floats, movable: Bools) -> None
     """
     near = np.zeros(len(mesh.points), np.bool_)
     near[mesh.triangles[some].reshape(-1)] = True
-    rows = np.flatnonzero(near[mesh.triangles].any(axis=1))
+    rows = np.flatnonzero(near[mesh.triangles].any(axis=1) & mesh.is_left)
     own = mesh.triangles[rows]
     around = StarFinder(own, len(mesh.points))
     rank = order - around.count
@@ -161,14 +160,17 @@ def _round(mesh: Collapsing, some: Bools, order: Floats, movable: Bools) -> None
     chosen, possible = _chosen(mesh, around, points, stars)
     chosen[_are_far(mesh, rows, stars, chosen)] = -1
     fits = chosen >= 0
-    some = np.flatnonzero(fits)
-    chosen[some[~_are_first(around, points[some], rank)]] = -1
+    fitting = np.flatnonzero(fits)
+    chosen[fitting[~_are_first(around, points[fitting], rank)]] = -1
     chosen[~without_twins(stars, chosen, len(mesh.points))] = -1
     late = fits & (chosen < 0)
-    _follow(mesh, rows, points, stars, chosen)
+    followed = _follow(mesh, rows, points, stars, chosen)
     moves = chosen >= 0
+    mesh.log.append(
+        Moves.of(moves, stars.owner, rows[stars.triangle], own[stars.triangle], followed)
+    )
     mesh.triangles[rows] = moved(own, stars, points, chosen)
-    mesh.changed[rows[stars.triangle[moves[stars.owner]]]] = True
+    mesh.is_left[rows] = is_proper(mesh.triangles[rows])
     mesh.tries[points[~moves & ~late]] += 1
     done = ~moves & ~late & (mesh.tries[points] >= np.minimum(possible, _MOST_TRIES))
     mesh.waiting[points[done | moves]] = False
@@ -176,11 +178,6 @@ def _round(mesh: Collapsing, some: Bools, order: Floats, movable: Bools) -> None
     freed = stars.after[moves[stars.owner]]
     mesh.waiting[freed] = movable[freed]
     mesh.tries[freed] = 0
-    proper = is_proper(mesh.triangles)
-    number = np.cumsum(proper) - 1
-    followed = mesh.nearest >= 0
-    mesh.nearest[followed] = number[mesh.nearest[followed]]
-    mesh.triangles, mesh.changed = mesh.triangles[proper], mesh.changed[proper]
 
 
 def _chosen(
@@ -242,8 +239,10 @@ def _made(stars: Stars, chosen: Integers) -> tuple[Integers, Integers]:
 
 def _follow(
     mesh: Collapsing, rows: Integers, points: Integers, stars: Stars, chosen: Integers
-) -> None:
+) -> Followed:
     """Set the corner of points to -1 if places that are followed would be too far from the mesh.
+
+    What was nearest to the other places before is returned.
 
     Args:
         mesh: The mesh; what is nearest to its points is changed.
@@ -254,7 +253,7 @@ def _follow(
     """
     new, made = _made(stars, chosen)
     if not len(new):
-        return
+        return Followed.none()
     place, point = _followed(mesh, rows, points, stars, chosen)
     # Each place with each new triangle around its point.
     count = np.bincount(stars.owner[new], minlength=len(points))
@@ -270,9 +269,11 @@ def _follow(
     far = _worst(point, away[best], len(points)) > mesh.tolerance
     chosen[far] = -1
     keeps = ~far[point]
-    place, best = place[keeps], best[keeps]
+    place, point, best = place[keeps], point[keeps], best[keeps]
+    before = Followed(place, point, mesh.nearest[place], mesh.away[place])
     mesh.nearest[place] = rows[stars.triangle[new[which[best]]]]
     mesh.away[place] = away[best]
+    return before
 
 
 def _are_far(mesh: Collapsing, rows: Integers, stars: Stars, chosen: Integers) -> Bools:

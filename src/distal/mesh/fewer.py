@@ -19,16 +19,15 @@ from distal.mesh.collapses import Collapsing, collapsed, pieces_of
 from distal.mesh.face_groups import face_groups
 from distal.mesh.flat_faces import without_spare_points
 from distal.mesh.kernels import FieldKernels, rows_of
+from distal.mesh.moves import take_back
 from distal.mesh.parallel import by_one_thread
-from distal.mesh.pieces import distances
+from distal.mesh.pieces import PieceDistances, distances
 from distal.mesh.solid import Bools, Floats, Integers
 
 # Corners of a flat face are this close to its plane, as a share of the mesh's size: sixteen
 # roundings of 32 bits.
 _FLAT: Final = 1e-6
-_MOST_REPEATS: Final = 8
-# Where points that stay do not help, those of so many rings around them do, too.
-_MOST_RINGS: Final = 4
+_MOST_REPEATS: Final = 16
 # In the end triangles are measured in up to so many pieces along each side.
 _MOST_PIECES: Final = 16
 # The least share of the normals around a corner in each direction; that of a cube has a third.
@@ -116,38 +115,49 @@ def with_fewer_triangles(
     return by_one_thread(spared) if len(triangles) <= _FEW else spared()
 
 
-def _without_points(first: Collapsing, watch: Callable[[float], None]) -> Spared:
+def _without_points(mesh: Collapsing, watch: Callable[[float], None]) -> Spared:
     """Return triangles without the points of curved faces that the tolerance can spare.
 
+    Where triangles are too far away, or intersect, the last moves around them are taken back.
+
     Args:
-        first: The mesh; it stays as it is.
+        mesh: The mesh; changed in place.
         watch: Called now and then.
     """
-    movable, rings = first.waiting.copy(), 0
-    for _ in range(_MOST_REPEATS):
-        mesh = first.again(movable)
-        collapsed(mesh, watch)
-        found, bad = _measured(mesh)
-        bad[meeting_triangles(mesh.points, mesh.triangles, mesh.changed, watch)] = True
-        if not bad.any():
-            return found
-        stay = _around(mesh, bad, rings)
-        while rings < _MOST_RINGS and not (movable & stay).any():
-            rings += 1
-            stay = _around(mesh, bad, rings)
-        movable &= ~stay
-    return Spared(np.empty(0, np.int64), first.triangles)
+    first = mesh.triangles.copy()
+    collapsed(mesh, watch)
+    looked_at = np.ones(len(first), np.bool_)
+    for number in range(_MOST_REPEATS):
+        bad = _bad(mesh, first, looked_at, watch)
+        if not len(bad):
+            return _measured(mesh, first)
+        looked_at = take_back(mesh, bad, number + 1)
+    return Spared(np.empty(0, np.int64), first)
 
 
-def _around(mesh: Collapsing, bad: Bools, rings: int) -> Bools:
-    """Return the points that are closest to some triangles, and those of rings around them."""
-    followed = np.flatnonzero(mesh.nearest >= 0)
-    found = np.zeros(len(mesh.points), np.bool_)
-    for _ in range(rings + 1):
-        found[mesh.triangles[bad].reshape(-1)] = True
-        found[followed[bad[mesh.nearest[followed]]]] = True
-        bad = np.any(found[mesh.triangles], axis=1)
-    return found
+def _bad(
+    mesh: Collapsing, first: Integers, looked_at: Bools, watch: Callable[[float], None]
+) -> Integers:
+    """Return the triangles that are too far from the surface, or intersect others.
+
+    Args:
+        mesh: The mesh.
+        first: The triangles of the first mesh: these are close enough.
+        looked_at: The triangles that are looked at.
+        watch: Called now and then.
+    """
+    left = np.flatnonzero(mesh.is_left)
+    meeting = meeting_triangles(mesh.points, mesh.triangles[left], looked_at[left], watch)
+    moved = left[looked_at[left] & (mesh.triangles[left] != first[left]).any(axis=1)]
+    far = moved[_distances(mesh, moved).largest > mesh.tolerance] if len(moved) else moved
+    return np.union1d(left[meeting], far)
+
+
+def _distances(mesh: Collapsing, rows: Integers) -> PieceDistances:
+    """Return how far some triangles are from the surface, more exactly than while points move."""
+    triangles = mesh.triangles[rows]
+    counts = pieces_of(mesh.points, triangles, 0.5 * mesh.step, _MOST_PIECES)
+    return distances(mesh.kernels, mesh.points, triangles, counts)
 
 
 def _with_flat_faces(
@@ -207,24 +217,16 @@ def _at_corners(points: Floats, triangles: Integers) -> Bools:
     return found
 
 
-def _measured(mesh: Collapsing) -> tuple[Spared, Bools]:
-    """Return the mesh with its measured distances, and which triangles are too far away."""
-    changed = np.flatnonzero(mesh.changed)
-    bad = np.zeros(len(mesh.triangles), np.bool_)
-    found = Spared(np.empty(0, np.int64), mesh.triangles, away=float(mesh.away.max(initial=0.0)))
-    if not len(changed):
-        return found, bad
-    rows = mesh.triangles[changed]
-    counts = pieces_of(mesh.points, rows, 0.5 * mesh.step, _MOST_PIECES)
-    measured = distances(mesh.kernels, mesh.points, rows, counts)
-    bad[changed] = measured.largest > mesh.tolerance
-    largest = float(measured.largest.max())
-    return (
-        replace(
-            found, largest=largest, mean=measured.mean, place=measured.place, moved=len(changed)
-        ),
-        bad,
-    )
+def _measured(mesh: Collapsing, first: Integers) -> Spared:
+    """Return the triangles that are left, and the distances of those that moved."""
+    left = mesh.triangles[mesh.is_left]
+    found = Spared(np.empty(0, np.int64), left, away=float(mesh.away.max(initial=0.0)))
+    moved = np.flatnonzero(mesh.is_left & (mesh.triangles != first).any(axis=1))
+    if not len(moved):
+        return found
+    given = _distances(mesh, moved)
+    largest = float(given.largest.max())
+    return replace(found, largest=largest, mean=given.mean, place=given.place, moved=len(moved))
 
 
 def _numbered(found: Spared) -> Spared:
