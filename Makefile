@@ -12,6 +12,8 @@
 # make sweep-segments  follows 1e7 segments of rays and counts those on the wrong side of a surface
 # make sweep-meshes  meshes every solid, the printable examples and 100 random fields, and names faults;
 #                    saves the enclosure from its page at 128 cells
+# make sweep-narrow  meshes 330 random solids with narrow parts at three tolerances, and names those whose
+#                    topology is wrong (SOLIDS=100 SEED=7 of each kind)
 # make sweep-measures measures 400 random solids with closed volumes (SOLIDS=2000 SEED=7)
 # make sweep-keeping  random saves, conflicts, reloads and kills of the studio: nothing is lost
 #                    (SEQUENCES=3000 for more)
@@ -57,7 +59,7 @@ SYSTEM_PACKAGES := libegl1 libgles2 libgl1 libgl1-mesa-dri mesa-vulkan-drivers g
 # A worker begins with a part of the files, and so compiles few programs that another compiles too.
 UNITS = $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -rfEs
 
-.PHONY: picture test test-all test-for record lint style units system bench site sweep sweep-fields sweep-threads sweep-segments sweep-meshes sweep-measures sweep-keeping sweep-interrupts sweep-readers parity mutate versions clean
+.PHONY: picture test test-all test-for record lint style units system bench site sweep sweep-fields sweep-threads sweep-segments sweep-meshes sweep-narrow sweep-measures sweep-keeping sweep-interrupts sweep-readers parity mutate versions clean
 .NOTPARALLEL:
 
 picture: $(VENV)/.setup-run
@@ -122,6 +124,9 @@ sweep-segments: $(VENV)/.setup-test
 sweep-meshes: $(VENV)/.setup-test
 	nice $(BIN)/python tools/sweep_meshes.py $(GROUPS) --tolerance $(TOLERANCE)
 	nice $(BIN)/python tools/sweep_page.py
+
+sweep-narrow: $(VENV)/.setup-test
+	nice $(BIN)/python tools/sweep_narrow.py --count $(or $(SOLIDS),30) --seed $(or $(SEED),0)
 
 sweep-measures: $(VENV)/.setup-test
 	$(BIN)/python -m tests.mesh.closed_volumes $(or $(SOLIDS),400) $(or $(SEED),0)

@@ -152,7 +152,8 @@ def test_gradients_are_not_cut() -> None:
     made = Sphere(1.0).paint(ramp).mesh(0.01)
     assert made.report["border_points"] == 0 and made.triangle_colors is None
     plain = Sphere(1.0).mesh(0.01)
-    np.testing.assert_array_equal(made.triangles, plain.triangles)
+    # No triangle is cut, and none is spared: the color varies in each.
+    assert len(made.triangles) == plain.report["triangles_before"] > len(plain.triangles)
     wide = BALLS[0].union(BALLS[1], smooth=0.15).mesh(0.002)
     assert wide.report["border_points"] == 0
 
@@ -167,7 +168,7 @@ def test_patterns_on_flat_faces_keep_volume_and_bounds() -> None:
     a, b, c = np.moveaxis(made.points[made.triangles], 1, 0)
     assert np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0 == pytest.approx(1.0, rel=1e-3)
     plain = Box(1.0).rotate(x=0.3, y=0.4).mesh(0.02)
-    assert made.bounds == plain.bounds
+    np.testing.assert_allclose(made.bounds, plain.bounds, rtol=0.0, atol=1e-12)
     # Colors beside borders too: points that are not middles, away from the border by a little.
     # Places are spread evenly over the surface.
     rng = np.random.default_rng(5)

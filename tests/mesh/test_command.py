@@ -40,7 +40,7 @@ def test_a_mesh_is_saved_and_described(run: Any) -> None:
     done = run("mesh", "parts.py:part", "-o", "part.stl", "--unit", "cm", "--check")
     assert done.exit_code == 0
     first, second, third = done.stderr.splitlines()
-    assert first.startswith("part.stl: ") and first.endswith(" triangles, 2 x 1 x 1 cm")
+    assert first.startswith("part.stl: ") and first.endswith(" triangles, 2 x 1 x 1 cm, 2 cubic cm")
     assert "cm from the surface" in second
     assert third == "0 open edges, 0 pinched points, 0 intersections"
     data = Path("part.stl").read_bytes()[84:]
@@ -61,7 +61,7 @@ def test_named_parts_are_saved_apart(run: Any) -> None:
     done = run("mesh", "parts.py:pair", "-o", "p.3mf", "--parts", "--tolerance", "0.02")
     assert done.exit_code == 0
     lines = done.stderr.splitlines()
-    assert lines[0].startswith("p.3mf, body: ") and lines[0].endswith("2 x 1 x 1 mm")
+    assert lines[0].startswith("p.3mf, body: ") and lines[0].endswith("2 x 1 x 1 mm, 2 cubic mm")
     assert lines[2].startswith("p.3mf, knob: ")
     assert lines[4] == "'Plane' (line 6) has no end and is left out"
     done = run("mesh", "parts.py:pair", "-o", "p.glb", "--parts", "--tolerance", "0.02", "--json")

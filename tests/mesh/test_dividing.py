@@ -5,7 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from distal import Box, Cone, Cylinder, SimplexNoiseSolid
+from distal import (
+    Bolt,
+    Box,
+    Cone,
+    Cylinder,
+    MetricHole,
+    MetricThread,
+    Nut,
+    SimplexNoiseSolid,
+)
 from distal.mesh import dividing, leaves
 from distal.mesh.checks import checked
 from distal.mesh.extract import Extracted, completed, extracted
@@ -13,6 +22,7 @@ from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import keys_of
 from distal.mesh.meshing import MeshRequest, extent_of
 from distal.mesh.tree_topology import Tree, topology_of_tree
+from distal.scene.objects.metric_sizes import METRIC
 from tests.mesh.noise_fields import noise
 
 SOUND = {"open_edges": 0, "pinched_points": 0, "intersections": 0}
@@ -176,3 +186,31 @@ def test_division_ends_where_errors_do_not_fall(monkeypatch):
     assert found.cells < made.cells < 8 * found.cells
     assert made.tree is not None and any(len(keys) for keys in made.tree.divided)
     sound(made.made)
+
+
+def test_a_part_of_a_mesh_may_have_no_certain_edge():
+    """Cells that only a suspicion divides had edges at the rim without segments: it crashed."""
+    made = Bolt("M5", 25.0).mesh(tolerance=0.02)
+    assert made.report["error"]["largest"] <= 0.02 and made.report["warnings"] == []
+
+
+THREADS = {
+    "bolt": lambda size, row: Bolt(size, 4.0 * row.diameter),
+    "bolt with a shank": lambda size, row: Bolt(size, 3.0 * row.diameter, thread=row.diameter),
+    "nut": lambda size, row: Nut(size),
+    "rod": lambda size, row: MetricThread(size, 2.0 * row.diameter),
+    "left rod": lambda size, row: MetricThread(size, 2.0 * row.diameter, left=True),
+    "hole": lambda size, row: MetricHole(size, row.diameter),
+}
+
+
+@pytest.mark.sample(24)
+@pytest.mark.parametrize("share", [0.04, 0.02, 0.01, 0.004])
+@pytest.mark.parametrize("size", METRIC)
+@pytest.mark.parametrize("kind", THREADS)
+def test_every_thread_has_a_mesh(kind, size, share):
+    row = METRIC[size]
+    tolerance = share * row.diameter
+    report = THREADS[kind](size, row).mesh(tolerance, check=True).report
+    assert report["check"] == SOUND
+    assert report["error"]["largest"] <= tolerance or report["warnings"]

@@ -29,8 +29,9 @@ def test_a_simpler_mesh_is_within_the_tolerance_and_keeps_borders_of_colors() ->
     plain = PART.mesh(0.01)  # where it starts: half of the tolerance
     made = PART.mesh(0.02, simplify=True, check=True)
     report = made.report
-    assert report["triangles_before"] == len(plain.triangles)
-    assert report["triangles"] == len(made.triangles) < 0.5 * len(plain.triangles)
+    before = report["triangles_before"]
+    assert before == plain.report["triangles_before"]
+    assert report["triangles"] == len(made.triangles) < 0.5 * before
     assert report["check"] == {"open_edges": 0, "pinched_points": 0, "intersections": 0}
     assert report["error"]["largest"] <= 0.02
     # Other points than those that were measured: at least |value| / slope from the surface.
@@ -39,8 +40,6 @@ def test_a_simpler_mesh_is_within_the_tolerance_and_keeps_borders_of_colors() ->
     points = np.einsum("ij,ijk->ik", rng.dirichlet((1.0, 1.0, 1.0), 4000), made.points[rows])
     assert np.abs(PART(points)).max() <= 1.1 * 0.02
     assert len(np.unique(made.points, axis=0)) == len(made.points)
-    own = {tuple(point) for point in plain.points.tolist()}
-    assert all(tuple(point) in own for point in made.points.tolist())
     assert made.triangle_colors is not None and plain.triangle_colors is not None
     blue = [
         float(areas(mesh.points, mesh.triangles)[mesh.triangle_colors[:, 2] > 0.5].sum())
@@ -57,7 +56,6 @@ def areas(points: Any, triangles: Any) -> Any:
 def test_a_worse_mesh_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(simplify, "_SHARES", (40.0,))  # more than is left
     made = PART.mesh(0.02, simplify=True)
-    assert "triangles_before" not in made.report
     assert made.report["warnings"][-1] == (
         "the mesh was not simplified: no mesh with fewer triangles is within the tolerance"
     )
@@ -100,7 +98,7 @@ def test_the_command_simplifies_and_counts_colors(run: Any) -> None:
     done = run("mesh", "part.py", "-o", "p.3mf", *options)
     assert done.exit_code == 0, done.stderr
     first = done.stderr.splitlines()[0]
-    assert first == "p.3mf: 12 triangles, 2 x 1 x 1 mm"
+    assert first == "p.3mf: 12 triangles, 2 x 1 x 1 mm, 2 cubic mm"
     done = run("mesh", "part.py", "-o", "p.3mf", "--colors", "0")
     assert (done.exit_code, done.stderr) == (
         2,

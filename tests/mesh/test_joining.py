@@ -142,7 +142,7 @@ def test_a_pin_on_a_plate_is_found_and_without_its_samples_it_is_lost(monkeypatc
 
 
 def test_lost_parts_are_those_of_equal_cells():
-    thin = Sphere(1.0) | Box(3.0, 0.001, 0.001)
+    thin = Sphere(1.0) | Box(3.0, 0.0001, 0.0001)
     (warning,) = thin.mesh(tolerance=0.05, feature=0.2).report["warnings"]
     assert "parts of it are missing" in warning
 

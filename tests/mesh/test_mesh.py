@@ -168,7 +168,7 @@ def test_thin_parts_make_it_finer() -> None:
 
 
 def test_lost_parts_are_named() -> None:
-    thin = Sphere(1.0) | Box(3.0, 0.001, 0.001).named("wire")
+    thin = Sphere(1.0) | Box(3.0, 0.0001, 0.0001).named("wire")
     made = thin.mesh(tolerance=0.05, feature=0.2)
     (warning,) = made.report["warnings"]
     assert warning.startswith("'wire (Box)' (line ") and "is thinner than 0.2 at (" in warning

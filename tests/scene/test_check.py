@@ -346,7 +346,7 @@ def test_the_bounds_of_each_of_many_parts_are_its_own():
 
 def moved_faces(shape):
     found = check(shape)
-    return [f for f in found.findings if f.diagnostic.code == "face-moved"]
+    return [f for f in found.findings if f.diagnostic.code == "flush-faces"]
 
 
 def test_a_blend_that_moves_no_face_is_not_named():
@@ -377,7 +377,7 @@ def test_a_face_that_a_blend_moves_is_named_with_the_amount():
     assert found.severity is Severity.NOTE
     assert "outwards by up to 1.5, at (" in found.diagnostic.message
     assert "fillet(radius)" in found.diagnostic.hint
-    hollow = Box(60, 30, 30) - Box(60, 1, 1)
+    hollow = Box(60, 30, 30) - Box(70, 1, 1)
     (found,) = moved_faces((hollow & Box(40, 30, 50)).fillet(4))
     assert f"inwards by up to {4.0 * (1.0 - math.sqrt(0.5)):.3g}, at (" in found.diagnostic.message
     assert found.diagnostic.hint == "let one of the two reach beyond the face, by 4 or more"

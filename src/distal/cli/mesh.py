@@ -6,7 +6,8 @@ Input: parsed arguments. Output: a mesh file, and how exact it is in words or as
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -38,7 +39,6 @@ from distal.diagnostics import LoadError
 
 if TYPE_CHECKING:
     from distal.mesh.scene_parts import SceneParts
-    from distal.mesh.solid import Mesh
     from distal.scene.objects.shape import Shape
 
 
@@ -54,6 +54,14 @@ def mesh(
     ],
     tolerance: ToleranceOption = None,
     feature: FeatureOption = None,
+    angle: Annotated[
+        float | None,
+        typer.Option(
+            metavar="DEGREES",
+            help="How much the surface may turn within a triangle.",
+            show_default="any angle",
+        ),
+    ] = None,
     unit: UnitOption = "mm",
     bed: Annotated[
         bool, typer.Option("--bed", help="Stand the part on 0, centered, as printers want it.")
@@ -88,6 +96,8 @@ def mesh(
 
     check_is_not_scene(output, scene)
     check_lengths(tolerance=tolerance, feature=feature)
+    if angle is not None and not 0.0 < angle < float("inf"):
+        raise UsageError(f"--angle is an angle above 0, in degrees, not {angle:g}")
     if colors is not None and not 1 <= colors <= palette.MOST:
         raise UsageError(f"--colors is a number from 1 to {palette.MOST}, not {colors}")
     if simplify:
@@ -104,11 +114,16 @@ def mesh(
             check=check,
             colors=True if colors is None else colors,
             simplify=simplify,
+            angle=None if angle is None else math.radians(angle),
         )
         found = scene_parts.meshes_of(shape.node, request, parts=parts)
     found.save(output, unit=unit, bed=bed)
     if as_json:
-        rows = [{**made.report, "name": made.name, "unit": unit} for made in found.meshes]
+        rows = [
+            {**report, "size": formats.size_in_file(output, report["size"]), "name": name}
+            for report, name in ((made.report, made.name) for made in found.meshes)
+        ]
+        rows = [{**row, "unit": unit} for row in rows]
         answer(json.dumps({"parts": rows, "endless": list(found.endless)} if parts else rows[0]))
     else:
         for line in report_lines(output, found, unit):
@@ -142,23 +157,36 @@ def load_solid(
 
 def report_lines(output: Path, found: SceneParts, unit: str) -> Iterator[str]:
     """Yield what was saved, how exact it is, and what to watch for."""
+    from distal.mesh.files.formats import size_in_file
+
     several = len(found.meshes) > 1
     for made in found.meshes:
-        yield from _part_lines(f"{output}, {made.name}" if several else str(output), made, unit)
+        title = f"{output}, {made.name}" if several else str(output)
+        yield from _part_lines(title, made.report, size_in_file(output, made.report["size"]), unit)
     for name in found.endless:
         yield f"{name} has no end and is left out"
 
 
-def _part_lines(title: str, made: Mesh, unit: str) -> Iterator[str]:
-    report = made.report
-    low, high = made.bounds
-    sides = " x ".join(f"{b - a:.4g}" for a, b in zip(low, high, strict=True))
-    yield f"{title}: {report['triangles']:,} triangles, {sides} {unit}"
+def _part_lines(
+    title: str, report: Mapping[str, Any], size: Sequence[float], unit: str
+) -> Iterator[str]:
+    sides = " x ".join(f"{side:.4g}" for side in size)
+    volume = f"{report['volume']:.4g} cubic {unit}"
+    yield f"{title}: {report['triangles']:,} triangles, {sides} {unit}, {volume}"
     error = report["error"]
     yield (
         f"at most {error['largest']:.2g} {unit} from the surface, {error['mean']:.2g} on average; "
-        f"parts and gaps of {report['feature']:.2g} {unit} are found"
+        f"parts and gaps of {report['sure_to']:.2g} {unit} are found"
     )
+    if report["unknown_widths"]:
+        unknown = ", ".join(report["unknown_widths"])
+        yield f"without {unknown}, whose widths are not known, smaller ones would be"
+    yield ", ".join(
+        f"{report[name]:,} {name[:-1] if report[name] == 1 else name}"
+        for name in ("pieces", "holes", "voids")
+    )
+    for name in report["leaves"]["unchecked"]:
+        yield f"whether all of {name} is there is not known: its distance is an estimate"
     if "check" in report:
         found = report["check"]
         yield (

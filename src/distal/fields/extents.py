@@ -9,7 +9,21 @@ from __future__ import annotations
 from typing import TypeVar
 
 from distal.fields.guarantees import ENDLESS, UNBOUNDED, Bounds, Bounds2
-from distal.lang import Vectors, abs, func, length, mat2, mat3, max, min, select, step, vec2, vec3
+from distal.lang import (
+    Vectors,
+    abs,
+    dot,
+    func,
+    length,
+    mat2,
+    mat3,
+    max,
+    min,
+    select,
+    step,
+    vec2,
+    vec3,
+)
 
 # The least that remains of infinity after a rotation with rounding; no shape is that large.
 LEAK = 1e9
@@ -152,6 +166,35 @@ def turned(bounds: Bounds, m: mat3) -> Bounds:
     high += least_product(-m[2], a.z, b.z)
     far = vec3(UNBOUNDED)
     return Bounds(select(low < vec3(-LEAK), -far, low), select(high < vec3(-LEAK), far, -high))
+
+
+@func
+def along_axes(bounds: Bounds, x: vec3, y: vec3, z: vec3, at: vec3) -> Bounds:
+    """Return the box along three axes around a box: a point is at dot(x, p) + at.x along the first.
+
+    Args:
+        bounds: The box.
+        x: The first axis, times a scale.
+        y: The second axis.
+        z: The third axis.
+        at: Where the origin is along the axes.
+    """
+    made = turned(bounds, mat3(vec3(x.x, y.x, z.x), vec3(x.y, y.y, z.y), vec3(x.z, y.z, z.z)))
+    return Bounds(made.low + at, made.high + at)
+
+
+@func
+def moved_along(at: vec3, origin: vec3, x: vec3, y: vec3, z: vec3) -> vec3:
+    """Return where the origin of a moved shape is along axes.
+
+    Args:
+        at: Where the origin is before the move.
+        origin: What the move makes of the origin: the point at which the shape is evaluated.
+        x: The first axis, seen from the shape.
+        y: The second axis.
+        z: The third axis.
+    """
+    return at - vec3(dot(x, origin), dot(y, origin), dot(z, origin))
 
 
 @func

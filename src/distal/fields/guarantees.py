@@ -9,7 +9,7 @@ that of a line, ``d`` a distance, ``a`` and ``b`` two distances, ``field`` a fun
 ``cell`` the index of the repetition that contains the point, ``slope``/``slope_a``/``slope_b``
 Lipschitz bounds (bounds on |gradient|), ``bounds``/``bounds_a``/``bounds_b`` boxes, ``growth`` and
 ``side_growth`` (with ``_a``, ``_b``; without a suffix on two children: the larger) how fast the box
-grows with the level.
+grows with the level, ``child_width`` the width of the child, or the least of the children's.
 Every other parameter is a number of the shape, or a choice (int, bool): a plain one is fixed when
 the scene is compiled, a parameter of the scene may change it later (but not ``FIXED_CHOICES``).
 
@@ -214,6 +214,10 @@ class Primitive:
             line through p in a unit direction enters and leaves it (``fields.chords``), in closed
             form; x > y if the line misses it. None if it is not known.
         endless: The names of sizes whose components may be infinite: they are ``UNBOUNDED`` then.
+        width: The side of the largest cubic cells that find it, wherever and however it lies: their
+            corners tell its topology (``fields.widths``). A number, or a function of the shape's
+            numbers; ``UNBOUNDED`` for a surface without a second one near it. None if no closed
+            form is known: a mesh then says to what width it is sure.
         along: The axes along which it is a prism, "y" or "xyz": every section across the axis is
             the same, from side to side of the box.
     """
@@ -237,6 +241,7 @@ class Primitive:
     proved: Proven | None = None
     chord: Func | None = None
     endless: tuple[str, ...] = ()
+    width: Rule | None = None
     along: str = ""
 
     @property
@@ -298,6 +303,8 @@ class Operator:
         changes: How much the value changes at most for each unit of a number, by the number's name;
             of others it is found by intervals where a number differs from place to place.
         approximates: What the operator replaces by simpler pieces, or None.
+        width: The width of the result, as of a primitive: a function of ``child_width``, ``slope``,
+            ``bounds`` and numbers. None: the least of the children's.
         along: The axes along which the result is a prism whatever the child is, as for a primitive.
     """
 
@@ -327,6 +334,7 @@ class Operator:
     within: Func | None = None
     changes: Mapping[str, float] = field(default_factory=dict)
     approximates: Approximation | None = None
+    width: Func | None = None
     along: str = ""
 
     @property
@@ -415,6 +423,7 @@ def primitive(
     approximates: Approximation | None = None,
     chord: Func | None = None,
     endless: tuple[str, ...] = (),
+    width: Rule | None = None,
     along: str = "",
 ) -> Callable[[F], F]:
     """Declare the ``@func`` below as a shape of the library; see ``Primitive`` for the attributes.
@@ -436,6 +445,7 @@ def primitive(
         approximates: What the shape replaces by simpler pieces.
         chord: The function of the part of a line inside of a convex solid.
         endless: The names of sizes that may be infinite.
+        width: The side of the largest cells that find it.
         along: The axes along which it is a prism.
     """
 
@@ -459,6 +469,7 @@ def primitive(
             approximates,
             chord=chord,
             endless=endless,
+            width=width,
             along=along,
         )
         return distance

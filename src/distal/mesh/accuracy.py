@@ -12,21 +12,30 @@ from typing import Final
 
 import numpy as np
 
-from distal.ir.types import FLOAT, VEC3
+from distal.ir.types import FLOAT, VEC3, Type
 from distal.mesh import arithmetic, face_arithmetic, triangle_arithmetic
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.lattice import Lattice, keys_of
 from distal.mesh.parallel import parallel_map, slices_of
-from distal.mesh.pieces import distances
+from distal.mesh.pieces import distances, turns
 from distal.mesh.places import Roots
 from distal.mesh.solid import Floats, Integers
 from distal.mesh.topology import Topology
 from distal.mesh.triangulate import Triangles
 from distal.polygons.whole_numbers import sorted_keys
 
+# Gaps and walls that are narrower, as a share of the shape's size, are not looked for: files hold 7
+# digits, and measured extents, by which parts are put on each other, are not more exact.
+NARROWEST: Final = 1e-6
 SAMPLES: Final = 7  # points of each triangle, besides its corners
 _AT_ONCE: Final = 1 << 16
 _CUT: Final = 1e-3  # cells
+# How far from points their sides are looked at, in tolerances, and how much farther each time.
+_FIRST_OFF: Final = 0.25
+_LAST_OFF: Final = 8.0
+_NEXT_OFF: Final = 1.25
+_CLOSE: Final = 1e-3
+_ALIKE: Final = 0.9  # the least share of one value in another that counts as equal
 # The most lattice points that are followed to a surface that the mesh does not have.
 _MOST_FOLLOWED: Final = 1 << 14
 # The most roots that are compared with more triangles than those around their own edge.
@@ -66,11 +75,24 @@ class Misses:
         triangles: The largest distance of each triangle from the surface.
         points: The distance of each point.
         roots: The distance of each root to the triangles around its edge.
+        turns: How much the surface turns within each triangle, as a share of what it may, squared.
     """
 
     triangles: Floats
     points: Floats
     roots: Floats
+    turns: Floats
+
+    def excess(self, tolerance: float, turn: float = 1.0) -> Floats:
+        """Return the distances of triangles; where a turn exceeds what it may be by more, that.
+
+        As a distance does, the square of a turn falls with the square of the length of a cell.
+
+        Args:
+            tolerance: The distance that counts as much as a turn that is just small enough.
+            turn: The square of a turn that is, as a share of what it may be.
+        """
+        return np.maximum(self.triangles, tolerance / turn * self.turns)
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +109,13 @@ class CutCorner:
 
 
 def measured(
-    kernels: FieldKernels, made: Triangles, roots: Roots, topology: Topology, step: float
+    kernels: FieldKernels,
+    made: Triangles,
+    roots: Roots,
+    topology: Topology,
+    step: float,
+    tolerance: float,
+    angle: float,
 ) -> tuple[Accuracy, Floats, Misses]:
     """Return the accuracy of a mesh, the normals at its points, and each distance.
 
@@ -97,6 +125,8 @@ def measured(
         roots: The roots on edges of the lattice.
         topology: What belongs together.
         step: The length of a cell.
+        tolerance: How far the mesh may be from the surface.
+        angle: How much the surface may turn within a triangle, in radians; infinite for any angle.
     """
     at_points, normals = kernels.call(
         arithmetic.distance_and_normal,
@@ -104,6 +134,7 @@ def measured(
         np.full(len(made.points), step),
         types=[("p", VEC3), ("step", FLOAT)],
     )
+    at_points = np.maximum(at_points, _inside(kernels, made.points, normals, tolerance))
     # Those of joined cells are measured in pieces as long as undivided cells.
     counts = np.maximum(topology.edges.size[made.edge] // topology.unit, 1)
     found = distances(kernels, made.points, made.triangles, counts)
@@ -125,8 +156,45 @@ def measured(
         x, y, z = made.points[int(np.argmax(at_points))].tolist()
         largest, place = worst_point, (x, y, z)
     cut = int((at_points > _CUT * step).sum())
+    turned = turns(kernels, made.points, made.triangles, counts, misses, tolerance, angle)
     accuracy = Accuracy(largest, found.mean, place, from_surface, worst_point, cut)
-    return accuracy, normals, Misses(misses, at_points, own)
+    return accuracy, normals, Misses(misses, at_points, own, turned)
+
+
+def _inside(kernels: FieldKernels, points: Floats, normals: Floats, tolerance: float) -> Floats:
+    """Return how far points on faces inside of a solid are from its surface, about; 0 for others.
+
+    Values there are 0 in the face, and grow or fall alike to both sides.
+
+    Args:
+        kernels: The shape.
+        points: The points of a mesh.
+        normals: The normals there.
+        tolerance: How far the mesh may be from the surface.
+    """
+
+    def value(places: Floats) -> Floats:
+        found: Floats = kernels.call(arithmetic.distance_value, places, types=[("p", VEC3)])
+        return found
+
+    def alike(rows: Integers, off: float) -> Integers:
+        way = off * normals[rows]
+        ahead, behind = value(points[rows] + way), value(points[rows] - way)
+        less, more = np.sort(np.abs([ahead, behind]), axis=0)
+        found: Integers = rows[(ahead * behind > 0.0) & (less > _ALIKE * more) & (less > 0.5 * off)]
+        return found
+
+    away, off = np.zeros(len(points)), _FIRST_OFF * tolerance
+    rows = alike(alike(np.arange(len(points)), off), _CLOSE * tolerance)  # no slit
+    # At a knife edge, too, both sides are alike; but there the face ends.
+    first = np.cross(normals, np.eye(3)[np.abs(normals).argmin(axis=1)])
+    for way in (first, np.cross(normals, first), -first, np.cross(first, normals)):
+        rows = rows[np.abs(value(points[rows] + off * way[rows])) < (1.0 - _ALIKE) * off]
+    while len(rows) and off < _LAST_OFF * tolerance:
+        off *= _NEXT_OFF
+        away[rows] = off
+        rows = alike(rows, off)
+    return away
 
 
 def _from_surface(
@@ -202,21 +270,21 @@ def first_of_runs(made: Triangles) -> Integers:
     return np.flatnonzero(np.diff(made.edge, prepend=-1))
 
 
-def lost_places(kernels: FieldKernels, suspicious: Floats, step: float) -> Floats:
+def lost_places(kernels: FieldKernels, suspicious: Floats, step: float, size: float) -> Floats:
     """Return points of the surface where the mesh has none, of shape (n, 3).
 
     Args:
         kernels: The shape.
         suspicious: Lattice points close to the surface whose cells have no change of sign.
         step: The length of a cell.
+        size: The largest side of the shape's box.
     """
     if not len(suspicious):
         return suspicious
     some = suspicious[:: -(-len(suspicious) // _MOST_FOLLOWED)]
-    reach = np.full(len(some), step)
-    found, places = kernels.call(
-        face_arithmetic.lost_surface, some, reach, types=[("p", VEC3), ("reach", FLOAT)]
-    )
+    lengths = [np.full(len(some), length) for length in (step, NARROWEST * size)]
+    types: list[tuple[str, Type]] = [("p", VEC3), ("reach", FLOAT), ("narrow", FLOAT)]
+    found, places = kernels.call(face_arithmetic.lost_surface, some, *lengths, types=types)
     lost: Floats = places[found]
     return lost
 

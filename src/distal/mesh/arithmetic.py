@@ -139,6 +139,21 @@ def distance_to_field(field: Field3, p: vec3) -> float:
 
 
 @func
+def step_along(away: float, normal: vec3, held: vec3, beyond: float) -> vec3:
+    """Return the step to the surface of a shape along a plane.
+
+    Args:
+        away: The signed distance to the shape.
+        normal: The shape's normal.
+        held: The normal of the plane, of length 1.
+        beyond: How far behind the surface the step ends.
+    """
+    way = normal - held * dot(normal, held)
+    goal = away + (beyond if away > 0.0 else -beyond)
+    return way * (-goal / max(dot(way, way), 0.01))
+
+
+@func
 def step_to_surface(value: float, slope: vec3) -> vec3:
     """Return the Newton step from a point to the surface."""
     return slope * (-value / max(dot(slope, slope), 1e-12))

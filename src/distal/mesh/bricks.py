@@ -22,7 +22,7 @@ from distal.ir.types import FLOAT, VEC3
 from distal.mesh.arithmetic import distance_value, samples_along_x
 from distal.mesh.joining import Blocks, corner_masks, separate_blocks
 from distal.mesh.kernels import FieldKernels
-from distal.mesh.lattice import BRICK, Lattice, keys_of, position
+from distal.mesh.lattice import BRICK, Lattice, cells_of_keys, keys_of, position
 from distal.mesh.parallel import parallel_map, slices_of
 from distal.mesh.problems import MeshProblem
 from distal.mesh.solid import Floats, Integers
@@ -33,7 +33,7 @@ BRICKS_AT_ONCE: Final = 128
 # cell with a change of sign.
 SUSPICIOUS: Final = 0.9
 # Half of a cube's diagonal, for each unit of its side.
-_HALF_DIAGONAL: Final = 0.5 * float(np.sqrt(3.0))
+HALF_DIAGONAL: Final = 0.5 * float(np.sqrt(3.0))
 _NO_BLOCKS: Final[Blocks] = (np.empty(0, np.int64),) * 3
 Watch = Callable[[float], None]
 
@@ -67,6 +67,7 @@ class SurfaceBricks:
         lost: Lattice points next to a surface that changes no sign near them, of shape (n, 3).
         separate: The keys of blocks of 8, 4 and 2 cells a side that are more than one cell, if
             cells are joined.
+        near: The places of all bricks that were sampled.
     """
 
     bricks: Integers
@@ -75,6 +76,7 @@ class SurfaceBricks:
     sampled: int
     lost: Floats
     separate: Blocks
+    near: Integers
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +135,7 @@ def _near_blocks(
     values = kernels.call(distance_value, centers, types=[("p", VEC3)])
     check_numbers(values, centers)
     reach = np.where(values > 0.0, min(slopes.divisor, slopes.slope), slopes.slope)
-    near: Integers = blocks[np.abs(values) <= reach * (side * _HALF_DIAGONAL * 1.000001)]
+    near: Integers = blocks[np.abs(values) <= reach * (side * HALF_DIAGONAL * 1.000001)]
     return near
 
 
@@ -185,7 +187,7 @@ def surface_bricks(
         known = np.sort(np.concatenate([known, keys_of(waiting)]))
         if len(known) > most:
             raise MeshProblem("too many")
-    return _joined(parts, len(known))
+    return _joined(parts, cells_of_keys(known))
 
 
 @dataclass(frozen=True, slots=True)
@@ -290,7 +292,7 @@ def _suspicious(
     return lattice.places(bricks[brick] * BRICK + np.stack(local, axis=1) + 1)
 
 
-def _joined(parts: list[_SampledBricks], sampled: int) -> SurfaceBricks:
+def _joined(parts: list[_SampledBricks], near: Integers) -> SurfaceBricks:
     """Return all parts as one, with the bricks in the order of their keys."""
     if not parts:
         parts = [_empty()]
@@ -320,7 +322,8 @@ def _joined(parts: list[_SampledBricks], sampled: int) -> SurfaceBricks:
     large, middle, small = (
         np.concatenate(keys) for keys in zip(*(part.separate for part in parts), strict=True)
     )
-    return SurfaceBricks(bricks[order], masks, (x, y, z), sampled, lost, (large, middle, small))
+    separate = (large, middle, small)
+    return SurfaceBricks(bricks[order], masks, (x, y, z), len(near), lost, separate, near)
 
 
 def _empty() -> _SampledBricks:

@@ -6,18 +6,24 @@ triangles that vector code cannot separate are compared exactly, with integers o
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
 from distal.mesh import triangle_arithmetic
+from distal.mesh.accuracy import runs
 from distal.mesh.exact import intersect
 from distal.mesh.kernels import rows_of
-from distal.mesh.solid import Floats, Integers
-from distal.polygons.whole_numbers import sorted_keys
+from distal.mesh.solid import Bools, Floats, Integers
+from distal.polygons.whole_numbers import numbers_in, sorted_keys
 
 _PAIRS_AT_ONCE: Final = 1 << 18
+# The shortest cubes, as a share of the mesh: their numbers have 21 bits.
+_SHORTEST: Final = 1e-6
+# About as many cubes for each triangle.
+_CUBES: Final = 4.0
 
 
 def checked(
@@ -82,15 +88,39 @@ def intersections(
         triangles: Of shape (m, 3).
         watch: Called now and then.
     """
-    found = 0
-    for first, second in close_pairs(points, triangles):
+    return len(intersecting_pairs(points, triangles, None, watch))
+
+
+def intersecting_pairs(
+    points: Floats,
+    triangles: Integers,
+    some: Bools | None = None,
+    watch: Callable[[float], None] | None = None,
+    faces: Integers | None = None,
+) -> Integers:
+    """Return the pairs of triangles that meet where they have no point or side in common, (k, 2).
+
+    Args:
+        points: Of shape (n, 3).
+        triangles: Of shape (m, 3).
+        some: Pairs without one of these triangles are not looked at; None for all.
+        watch: Called now and then.
+        faces: Triangles with the same number from 0 are known to be apart.
+    """
+    found = []
+    for first, second in close_pairs(points, triangles, some):
         if watch is not None:
             watch(1.0)
+        if faces is not None:
+            unknown = (faces[first] != faces[second]) | (faces[first] < 0)
+            first, second = first[unknown], second[unknown]
         one, other, shared = _aligned(triangles[first], triangles[second])
-        apart = _apart(points, one, other, shared)
-        for a, b, count in zip(one[~apart], other[~apart], shared[~apart], strict=True):
-            found += intersect(points[a].tolist(), points[b].tolist(), int(count))
-    return found
+        unsure = np.flatnonzero(~_apart(points, one, other, shared))
+        for row in unsure.tolist():
+            corners = points[one[row]].tolist(), points[other[row]].tolist()
+            if intersect(*corners, int(shared[row])):
+                found.append((first[row], second[row]))
+    return np.array(found, np.int64).reshape(-1, 2)
 
 
 def _apart(points: Floats, one: Integers, other: Integers, shared: Integers) -> Any:
@@ -119,44 +149,146 @@ def _aligned(one: Integers, other: Integers) -> tuple[Integers, Integers, Intege
     return one, np.take_along_axis(other, rank, axis=1), shared
 
 
-def close_pairs(points: Floats, triangles: Integers) -> Any:
+def close_pairs(
+    points: Floats, triangles: Integers, some: Bools | None = None
+) -> Iterator[tuple[Integers, Integers]]:
     """Yield pairs of triangles whose boxes overlap, each pair once.
 
-    Triangles are put into a grid of cubes, as long as most triangles are.
+    Triangles are put into grids of cubes of 1, 2, 4, ... lengths, each into the one whose cubes are
+    as long as its box or longer, and compared with those of this grid and of finer ones.
+
+    Args:
+        points: Of shape (n, 3).
+        triangles: Of shape (m, 3).
+        some: Pairs without one of these triangles are left out; None for all.
     """
+    if not len(triangles):
+        return
     corners = points[triangles]
-    low, high = corners.min(axis=1), corners.max(axis=1)
-    size = max(float(np.quantile((high - low).max(axis=1), 0.95)), 1e-300)
-    base = low.min(axis=0)
-    first = np.floor((low - base) / size).astype(np.int64)
-    last = np.floor((high - base) / size).astype(np.int64)
-    spans = last - first + 1
-    cubes = spans.prod(axis=1)
-    owner = np.repeat(np.arange(len(triangles)), cubes)
-    within = np.arange(int(cubes.sum())) - np.repeat(np.cumsum(cubes) - cubes, cubes)
-    across = spans[owner]
-    cell = first[owner] + np.stack(
-        [
-            within // (across[:, 1] * across[:, 2]),
-            within // across[:, 2] % across[:, 1],
-            within % across[:, 2],
-        ],
-        axis=1,
-    )
-    keys = (cell[:, 0] << 42) | (cell[:, 1] << 21) | cell[:, 2]
-    order = np.argsort(keys, kind="stable")
-    keys, owner = keys[order], owner[order]
-    for gap in range(1, len(owner)):
-        same = np.flatnonzero(keys[gap:] == keys[:-gap])
-        if not len(same):
+    boxes = _Boxes(corners.min(axis=1), corners.max(axis=1))
+    sizes = (boxes.high - boxes.low).max(axis=1)
+    extent = float((boxes.high.max(axis=0) - boxes.low.min(axis=0)).max())
+    shortest = max(float(np.median(sizes)), _SHORTEST * extent, 1e-300)
+    level = np.ceil(np.log2(np.maximum(sizes / shortest, 1.0))).astype(np.int64)
+    for number in numbers_in(level).tolist():
+        side = shortest * 2.0**number
+        own, finer = np.flatnonzero(level == number), np.flatnonzero(level <= number)
+        if some is None:
+            yield from boxes.pairs(own, finer, side, level)
+            continue
+        yield from boxes.pairs(own, finer[some[finer]], side, level)
+        # Those that have no such pair yet: the other one is not among ``some``.
+        yield from boxes.pairs(own[some[own]], finer[~some[finer]], side, level)
+
+
+@dataclass(frozen=True, slots=True)
+class _Boxes:
+    """The boxes of triangles.
+
+    Attributes:
+        low: The lowest corner of each, of shape (m, 3).
+        high: The highest.
+    """
+
+    low: Floats
+    high: Floats
+
+    def pairs(
+        self, own: Integers, finer: Integers, side: float, level: Integers
+    ) -> Iterator[tuple[Integers, Integers]]:
+        """Yield the pairs of two sets of triangles whose boxes overlap.
+
+        Args:
+            own: The triangles of one grid.
+            finer: Those of this grid and of finer ones.
+            side: The length of the grid's cubes.
+            level: The grid of each triangle.
+        """
+        if not len(own) or not len(finer):
             return
-        for start in range(0, len(same), _PAIRS_AT_ONCE):
-            rows = same[start : start + _PAIRS_AT_ONCE]
-            a, b = owner[rows], owner[rows + gap]
-            meet = (low[a] <= high[b]).all(axis=1) & (low[b] <= high[a]).all(axis=1)
+        base = self.low.min(axis=0)
+        side = self._finer_side(own, finer, side, int(level[own[0]]))
+        rows, keys = self._cubes(own, side, base)
+        order = np.argsort(keys, kind="stable")
+        rows, keys = rows[order], keys[order]
+        others, asked = self._cubes(finer, side, base)
+        begin = np.searchsorted(keys, asked)
+        count = np.searchsorted(keys, asked, side="right") - begin
+        busy = np.flatnonzero(count)
+        total = np.cumsum(count[busy])
+        last = int(total[-1]) if len(total) else 0
+        ends = np.searchsorted(total, np.arange(_PAIRS_AT_ONCE, last, _PAIRS_AT_ONCE))
+        for part in np.split(busy, ends):
+            which, at = runs(part, begin[part], count[part])
+            a, b = others[which], rows[at]
+            keep = (level[a] < level[b]) | (a < b)
+            keep &= (self.low[a] <= self.high[b]).all(axis=1)
+            keep &= (self.low[b] <= self.high[a]).all(axis=1)
             # A pair in several cubes counts in the first one that it shares.
-            shared = np.maximum(first[a], first[b])
-            key = (shared[:, 0] << 42) | (shared[:, 1] << 21) | shared[:, 2]
-            meet &= key == keys[rows]
-            if meet.any():
-                yield a[meet], b[meet]
+            corner = np.maximum(self.low[a], self.low[b]) - base
+            keep &= _keys(np.floor(corner / side).astype(np.int64)) == asked[which]
+            if keep.any():
+                yield a[keep], b[keep]
+
+    def _finer_side(self, own: Integers, finer: Integers, side: float, most: int) -> float:
+        """Return a length of cubes that leaves fewer pairs: few large triangles meet all others.
+
+        It is halved until there are more than a few cubes for each triangle.
+
+        Args:
+            own: The triangles of one grid.
+            finer: Those that they are compared with.
+            side: The length of the grid's cubes.
+            most: How often it is halved at most.
+        """
+        both = np.concatenate([own, finer])
+        low, high = self.low[both], self.high[both]
+        low, high = low - self.low.min(axis=0), high - self.low.min(axis=0)
+        for _ in range(most):
+            half = 0.5 * side
+            spans = np.floor(high / half) - np.floor(low / half) + 1.0
+            if spans.prod(axis=1).sum() > _CUBES * len(both):
+                break
+            side = half
+        return side
+
+    def _cubes(self, some: Integers, side: float, base: Floats) -> tuple[Integers, Integers]:
+        """Return triangles with the key of each cube that their boxes are in."""
+        first = np.floor((self.low[some] - base) / side).astype(np.int64)
+        spans = np.floor((self.high[some] - base) / side).astype(np.int64) - first + 1
+        rows, number = runs(np.arange(len(some)), np.zeros(len(some), np.int64), spans.prod(axis=1))
+        across, up = spans[rows, 1], spans[rows, 2]
+        offset = np.stack([number // (across * up), number // up % across, number % up], axis=1)
+        return some[rows], _keys(first[rows] + offset)
+
+
+def _keys(cells: Integers) -> Integers:
+    """Return one number for each cube."""
+    found: Integers = (cells[:, 0] << 42) | (cells[:, 1] << 21) | cells[:, 2]
+    return found
+
+
+def meeting_triangles(
+    points: Floats,
+    triangles: Integers,
+    some: Bools,
+    watch: Callable[[float], None],
+    faces: Integers | None = None,
+) -> Integers:
+    """Return the triangles of pairs that intersect, in 64 or in 32 bits, one of which is given.
+
+    Args:
+        points: Of shape (n, 3).
+        triangles: Of shape (m, 3).
+        some: The triangles that are looked at.
+        watch: Called now and then.
+        faces: Triangles with the same number from 0 are known to be apart.
+    """
+    if not some.any():
+        return np.empty(0, np.int64)
+    single = points.astype(np.float32).astype(np.float64)
+    pairs = [
+        intersecting_pairs(places, triangles, some, watch, faces) for places in (points, single)
+    ]
+    found: Integers = np.unique(np.concatenate(pairs))
+    return found

@@ -19,6 +19,7 @@ from distal.lang.functions import Func
 from distal.lang.runtime_access import executor
 from distal.mesh import surface_arithmetic, triangle_arithmetic
 from distal.mesh.files.parts import Finish, Finishes
+from distal.mesh.jumps import DIFFERENT
 from distal.mesh.kernels import rows_of
 from distal.mesh.palette import nearest, palette_of
 from distal.mesh.solid import Floats, Integers
@@ -36,6 +37,10 @@ _MATTE: Final = Finish(roughness=1.0)
 # Finishes of triangles are rounded to this share, and more of them are averaged: patterns.
 _STEP: Final = 1.0 / 64.0
 _MOST_FINISHES: Final = 16
+# Triangles are looked at in the middle, and at this share of the way to each corner.
+_NEAR_CORNER: Final = 0.9
+# Colors are often whole codes, which rounding must not divide.
+_OFF_CODES: Final = 0.137
 
 
 def surface_at(assembly: Assembly, body: StatementList, node: Node, p: Expr) -> Expr:
@@ -114,6 +119,25 @@ class Painted:
         """Return the numbers that differ where materials do: of the color and of the finish."""
         colors = self.colors(places)
         return np.concatenate([colors, self._finishes(places)], axis=1) if self._shines else colors
+
+    def labels(self, points: Floats, triangles: Integers) -> Integers:
+        """Return a number for each triangle: the same for the same appearance, -1 where it varies.
+
+        Args:
+            points: Of shape (n, 3).
+            triangles: Of shape (m, 3).
+        """
+        corners = [points[triangles[:, i]] for i in range(3)]
+        middles = middles_of(points, triangles)
+        seen = self.appearance(middles)
+        shares = np.full(len(triangles), _NEAR_CORNER)
+        varies = np.zeros(len(triangles), np.bool_)
+        for corner in corners:
+            near = rows_of(triangle_arithmetic.along, middles, corner, shares)
+            varies |= np.abs(self.appearance(near) - seen).max(axis=1) > DIFFERENT
+        steps = np.rint(seen / DIFFERENT + _OFF_CODES)
+        _, found = np.unique(steps, axis=0, return_inverse=True)
+        return np.where(varies, -1, found.reshape(-1))
 
     def of_triangles(self, points: Floats, triangles: Integers) -> Floats:
         """Return the color of each triangle, at its middle."""

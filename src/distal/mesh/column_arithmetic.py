@@ -15,7 +15,6 @@ from distal.lang import (
     cross,
     dot,
     func,
-    gradient,
     length,
     max,
     value_and_gradient,
@@ -25,8 +24,6 @@ from distal.mesh.arithmetic import OFF_SURFACE
 
 # A column is at most this share of the triangle's longest side.
 LONGEST = 0.5
-# How far beside a point the sign is looked at, in cells.
-CROSSED = 1e-3
 # Below this cosine between the normal of the triangle and that of the surface, they do not face
 # each other: the foot of the column is at a crease.
 LEAST_COSINE = 0.3
@@ -116,17 +113,3 @@ def columns(
     middle_height = column(field, places[6], normal, longest)
     expected = at_inner * 0.425706391607957 - at_outer * 0.092373058274624
     return vec3(sums.x, area * (middle_height - expected), sums.z), first, squares, products
-
-
-@func
-def crosses_surface(field: Field3, p: vec3, step: float) -> bool:
-    """Return whether the field changes its sign beside a point where it is 0.
-
-    Args:
-        field: The field.
-        p: The point.
-        step: The length of a cell.
-    """
-    away = gradient(field, p + vec3(0.31, 0.59, 0.74) * (OFF_SURFACE * step))
-    across = away * (CROSSED * step / max(length(away), 1e-9))
-    return field(p + across) * field(p - across) < 0.0

@@ -37,6 +37,9 @@ _MOST_OF_WHOLE: Final = 0.4
 # Cells beside those that are too large that are divided with them, in each round. Where large cells
 # meet small ones along a crease, an error may move by a cell in each round.
 _RINGS: Final = (0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4, 5)
+# So does a turn along an edge of constant radius. From the fifth round on it may be a seventh more
+# than it should: this is the square.
+_TURNS: Final = (1.0, 1.0, 1.0, 1.0, 1.3)
 
 
 def _unwatched(share: float) -> None:
@@ -49,6 +52,7 @@ def divided(
     found: Extracted,
     tolerance: float,
     watch: Callable[[float], None],
+    angle: float = math.inf,
     *,
     joined_only: bool = False,
 ) -> Extracted:
@@ -60,6 +64,7 @@ def divided(
         found: The mesh.
         tolerance: How far it may be from the surface, in scene units.
         watch: Called with the share of the work that is done.
+        angle: How much the surface may turn within a triangle, in radians.
         joined_only: Whether no cells are divided but those that were joined.
 
     Raises:
@@ -71,6 +76,7 @@ def divided(
     lattice, looked_at = tree.values.lattice, found.looked_at
     wanted = _some(_too_large(found, tree, tolerance), tree, joined_only=joined_only)
     for number, rings in enumerate(_RINGS):
+        turn = _TURNS[min(number, len(_TURNS) - 1)]
         if not wanted or _too_many(tree, wanted):
             break
         before = tree.divided
@@ -78,18 +84,21 @@ def divided(
         changed = changes(tree, before)
         part = topology_of_changes(tree, changed, _MOST_OF_WHOLE)
         wanted = ()
-        # Cells that only a suspicion divides may have no surface in them.
-        if part is not None and len(part[0].edges.axis):
+        # Cells that only a suspicion divides may have no surface in them. Then edges at the rim of
+        # the part are all there is: they count for nothing, and may have no segments.
+        if part is not None and part[1].any():
             topology, certain = part
             seen = replace(looked_at, suspected=_places_near(looked_at.suspected, tree, changed))
-            made = completed(kernels, extent, lattice, topology, seen, tolerance, _unwatched)
-            wanted = _too_large(made, tree, tolerance, certain)
+            made = completed(kernels, extent, lattice, topology, seen, tolerance, _unwatched, angle)
+            wanted = _too_large(made, tree, tolerance, certain, turn)
             wanted = _some(wanted, tree, joined_only=joined_only)
         if not wanted or number == len(_RINGS) - 1 or _too_many(tree, wanted):
             topology, tree = topology_of_tree(tree)
-            made = completed(kernels, extent, lattice, topology, looked_at, tolerance, _unwatched)
+            given = lattice, topology, looked_at, tolerance
+            made = completed(kernels, extent, *given, _unwatched, angle)
             found = replace(made, tree=tree)
-            wanted = _some(_too_large(found, tree, tolerance), tree, joined_only=joined_only)
+            wanted = _too_large(found, tree, tolerance, turn=turn)
+            wanted = _some(wanted, tree, joined_only=joined_only)
         watch((number + 1) / len(_RINGS))
     return found
 
@@ -131,7 +140,11 @@ def _places_near(places: Floats, tree: Tree, changed: Divided) -> Floats:
 
 
 def _too_large(
-    found: Extracted, tree: Tree, tolerance: float, certain: Bools | None = None
+    found: Extracted,
+    tree: Tree,
+    tolerance: float,
+    certain: Bools | None = None,
+    turn: float = 1.0,
 ) -> Divided:
     """Return the keys of the cells to divide, by level.
 
@@ -140,11 +153,12 @@ def _too_large(
         tree: Its cells.
         tolerance: How far the mesh may be from the surface.
         certain: The edges that count; None for all.
+        turn: How much the surface may turn, as for ``Misses.excess``.
     """
     topology, made, misses = found.topology, found.made, found.misses
     corners = misses.points[made.triangles].max(axis=1)
     edges = misses.roots > tolerance
-    edges[made.edge[np.maximum(misses.triangles, corners) > tolerance]] = True
+    edges[made.edge[np.maximum(misses.excess(tolerance, turn), corners) > tolerance]] = True
     far = edges if certain is None else edges & certain
     far_points = np.zeros(len(topology.points.size), np.bool_)
     far_points[topology.edges.around[far]] = True
@@ -183,7 +197,7 @@ def bad_share(found: Extracted, tolerance: float, joined: Joined = "measured") -
             those that they replace, by an error that is quadratic in the length of a cell.
     """
     weights = _weights(found)
-    misses = found.misses.triangles
+    misses = found.misses.excess(tolerance)
     if joined == "good":
         misses = np.where(weights > 1, 0.0, misses)
     elif joined == "replaced":
@@ -191,10 +205,10 @@ def bad_share(found: Extracted, tolerance: float, joined: Joined = "measured") -
     return float(((misses > tolerance) * weights).sum() / weights.sum())
 
 
-def typical_error(found: Extracted) -> float:
+def typical_error(found: Extracted, tolerance: float) -> float:
     """Return the error that all but a tenth of the surface stays below, joined ones as replaced."""
     weights = _weights(found)
-    misses = np.repeat(found.misses.triangles / weights, weights)
+    misses = np.repeat(found.misses.excess(tolerance) / weights, weights)
     return float(np.quantile(misses, 0.9)) if len(misses) else math.inf
 
 

@@ -6,6 +6,7 @@ what they miss. ``spacing`` chooses the length of a cell.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Final
@@ -23,9 +24,11 @@ from distal.mesh.accuracy import (
 )
 from distal.mesh.bricks import Slopes, SurfaceBricks, surface_bricks
 from distal.mesh.cell_tree import CornerValues, balanced
+from distal.mesh.element_grid import to_triangles
 from distal.mesh.joining import JOINED_LEVELS
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import BRICK, DIGIT_OF_FILES, Lattice, cells_of_keys, keys_of
+from distal.mesh.leaf_spacing import LeafSpacing, NeededCells
 from distal.mesh.places import cell_points, margin_of, move_beyond, roots_of
 from distal.mesh.problems import MeshProblem
 from distal.mesh.reach import reached
@@ -52,16 +55,18 @@ class Extent:
         low: The lowest corner of its box.
         high: The highest corner.
         slopes: How fast its values change.
+        measured: The largest side of the solid itself, if that is less; None if it is not measured.
     """
 
     low: Floats
     high: Floats
     slopes: Slopes
+    measured: float | None = None
 
     @property
     def size(self) -> float:
-        """The largest side of the box."""
-        return float((self.high - self.low).max())
+        """The largest side of the box, or of the solid."""
+        return self.measured or float((self.high - self.low).max())
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,12 +78,14 @@ class LookedAt:
         sampled: How many bricks were sampled.
         surface: The cells that the surface passes through.
         suspected: Points of the surface that they do not see.
+        needed: The cells that the leaves of the shape need; None if they were not asked.
     """
 
     step: float
     sampled: int
     surface: Integers
     suspected: Floats
+    needed: NeededCells | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,6 +153,10 @@ class Extracted:
         """The largest distance, measured both ways."""
         return max(self.accuracy.largest, self.accuracy.from_surface)
 
+    def excess(self, tolerance: float) -> float:
+        """Return the largest distance, or turn as a distance (``Misses.excess``)."""
+        return max(self.error, float(self.misses.excess(tolerance).max()))
+
     @property
     def divisible(self) -> bool:
         """Whether its undivided cells can be halved."""
@@ -182,6 +193,8 @@ def extracted(
     watch: Callable[[float], None],
     joined: float | None = None,
     digit: float = DIGIT_OF_FILES,
+    leaves: LeafSpacing | None = None,
+    angle: float = math.inf,
 ) -> Extracted | Nothing:
     """Return the mesh at one spacing.
 
@@ -195,6 +208,8 @@ def extracted(
         joined: Cells are joined where the surface moves by less, in scene units; None for equal
             cells.
         digit: The rounding of places, as a share.
+        leaves: The spacing that the shape's leaves need; None for that of the lattice alone.
+        angle: How much the surface may turn within a triangle, in radians.
 
     Raises:
         MeshProblem: The shape cannot be meshed.
@@ -205,20 +220,30 @@ def extracted(
     found = surface_bricks(
         kernels, lattice, extent.slopes, most, lambda share: watch(_SAMPLED * share), joined
     )
-    suspected = lost_places(kernels, found.lost, step)
-    if not len(found.bricks):
+    suspected = lost_places(kernels, found.lost, step, extent.size)
+    levels = levels_of(lattice)
+    needed = None if leaves is None else leaves.needed(lattice, found.near, levels)
+    halves = () if needed is None else needed.divided
+    if not len(found.bricks) and not halves:
         return Nothing(step, found.sampled, suspected)
     surface = _surface_cells(found)
-    looked_at = LookedAt(step, found.sampled, surface, suspected)
-    joins = joined is not None and levels_of(lattice) > 0
-    if joins and len(found.separate[-1]) * _MOST_SEPARATE < len(surface):
-        topology, tree = topology_of_tree(_joined_tree(kernels, lattice, found, surface))
+    looked_at = LookedAt(step, found.sampled, surface, suspected, needed)
+    joins = joined is not None and levels > 0
+    joins = joins and len(found.separate[-1]) * _MOST_SEPARATE < len(surface)
+    if joins or halves:
+        if joins:
+            tree = _joined_tree(kernels, lattice, found, surface)
+        else:
+            tree = Tree.of_equal_cells(kernels, lattice, keys_of(surface))
+        topology, tree = topology_of_tree(tree.with_halves(halves))
+        if not len(topology.segments.axis):
+            return Nothing(step, found.sampled, suspected)
         units = tree.values.lattice
-        made = completed(kernels, extent, units, topology, looked_at, tolerance, watch)
+        made = completed(kernels, extent, units, topology, looked_at, tolerance, watch, angle)
         return replace(made, tree=tree)
     topology = topology_of(kernels, lattice, found)
     del found  # samples and masks are not needed any more
-    return completed(kernels, extent, lattice, topology, looked_at, tolerance, watch)
+    return completed(kernels, extent, lattice, topology, looked_at, tolerance, watch, angle)
 
 
 def _surface_cells(found: SurfaceBricks) -> Integers:
@@ -253,6 +278,7 @@ def completed(
     looked_at: LookedAt,
     tolerance: float,
     watch: Callable[[float], None],
+    angle: float = math.inf,
 ) -> Extracted:
     """Return the mesh of a topology.
 
@@ -264,6 +290,7 @@ def completed(
         looked_at: What equal cells have seen.
         tolerance: How far lines between points may be from the surface, in scene units.
         watch: Called with the share of the work that is done.
+        angle: How much the surface may turn within a triangle, in radians.
     """
     roots = roots_of(kernels, lattice, topology)
     watch(_ROOTS)
@@ -275,9 +302,12 @@ def completed(
     inside_first = topology.edges.first < 0.0
     made = triangulated(kernels, lattice, topology, roots, places, reach, inside_first, tolerance)
     watch(_TRIANGLES)
-    accuracy, normals, misses = measured(kernels, made, roots, topology, lattice.step)
+    limits = tolerance, angle
+    accuracy, normals, misses = measured(kernels, made, roots, topology, lattice.step, *limits)
     suspected, surface = looked_at.suspected, looked_at.surface
     lost, nearest = split_lost(lattice, topology, places, suspected, surface)
+    # Corners between samples are as far away as the mesh is, not as its points are.
+    nearest = to_triangles(made.points[made.triangles], suspected, nearest, tolerance)
     lengths = np.sqrt(np.einsum("ij,ij->i", roots.slopes, roots.slopes))
     steepest = int(np.argmax(lengths))
     return Extracted(

@@ -9,17 +9,25 @@ from __future__ import annotations
 from distal.lang import (
     Field3,
     abs,
+    asin,
     clamp,
     cross,
     dot,
     func,
+    gradient,
     length,
     max,
+    min,
     sign,
     value_and_gradient,
     vec3,
 )
-from distal.mesh.arithmetic import OFF_SURFACE, first_order_distance, step_to_surface, unit_or_zero
+from distal.mesh.arithmetic import (
+    OFF_SURFACE,
+    first_order_distance,
+    step_to_surface,
+    unit_or_zero,
+)
 
 # A diagonal that passes an edge at a flatter angle has no certain place in 32 bits: it is off by
 # 1e-7 for each unit of the angle. Points that are closer to the edge than a share of the cell count
@@ -28,6 +36,14 @@ LEAST_TURN = 2e-3
 LEAST_ARM = 0.01
 # Of two places that are as close to the surface but for this share of a cell, the first is taken.
 CLEARLY = 1e-4
+# Where a value and its gradient say that the surface is, the sign is another a little beyond: after
+# so many times the distance.
+BEYOND = 1.5
+# Signs beside a point of the surface are taken at so many times the distance within which it is on
+# the surface.
+ACROSS = 4.0
+# Below this cosine between a triangle's normal and that of the surface, this is another face.
+SAME_FACE = 0.5
 
 
 @func
@@ -245,11 +261,19 @@ def diagonal_fits(p: vec3, q: vec3, third: vec3, fourth: vec3, margin: float) ->
 
 
 @func
-def largest_miss(field: Field3, a: vec3, b: vec3, c: vec3) -> vec3:
+def largest_miss(field: Field3, a: vec3, b: vec3, c: vec3, off: float = OFF_SURFACE) -> vec3:
     """Return the largest and the mean distance of seven points of a triangle from the surface.
 
     The points are the middle, the middles of the sides, and those between the middle and the
-    corners. The third number is 1 if one of the values is not a number, else 0.
+    corners. The third number is 1 if one of the values is not a number, else 0. Where faces
+    coincide inside of a solid, the distance of the middle is that to the surface beyond.
+
+    Args:
+        field: The field.
+        a: The first corner of the triangle.
+        b: The second, counter-clockwise seen from outside.
+        c: The third.
+        off: How far beyond a surface its sign is taken, as a share of the longest side.
     """
     largest = 0.0
     total = 0.0
@@ -264,24 +288,114 @@ def largest_miss(field: Field3, a: vec3, b: vec3, c: vec3) -> vec3:
         (b + middle) * 0.5,
         (c + middle) * 0.5,
     ]
+    at_middle = 0.0
+    step = vec3(0.0)
     for i in range(7):
         value, slope = value_and_gradient(field, points[i])
         miss = first_order_distance(value, slope)
         if not miss >= 0.0:
             invalid = 1.0
+        if i == 0:
+            at_middle = value
+            step = step_to_surface(value, slope)
         largest = max(largest, miss)
         total += miss
+    side = max(length(b - a), max(length(c - b), length(a - c)))
+    normal = unit_or_zero(cross(b - a, c - a) / max(side * side, 1e-300))
+    outwards = normal if at_middle < 0.0 else -normal
+    least = BEYOND * length(step) + off * side
+    if (field(middle + outwards * least) < 0.0) == (at_middle < 0.0):
+        # At a crease, the nearest face has another normal than the triangle.
+        beyond = middle + step * BEYOND + unit_or_zero(step) * (off * side)
+        if (field(beyond) < 0.0) == (at_middle < 0.0):
+            depth = depth_along(field, middle, outwards, at_middle < 0.0, least, side)
+            largest = max(largest, depth)
     return vec3(largest, total / 7.0, invalid)
 
 
 @func
-def lost_surface(field: Field3, p: vec3, reach: float, close: float = 1e-6) -> tuple[bool, vec3]:
+def depth_along(
+    field: Field3, p: vec3, way: vec3, inside: bool, least: float, most: float
+) -> float:
+    """Return how far the surface is along a direction, at most, to a thirtieth.
+
+    Args:
+        field: The field.
+        p: The point.
+        way: The direction, of length 1.
+        inside: Whether the point is inside.
+        least: A distance that is not behind it.
+        most: How far it may be.
+    """
+    distance = least
+    for _step in range(40):
+        distance = distance * 2.0
+        if (field(p + way * distance) < 0.0) != inside or distance > most:
+            break
+    low = 0.5 * distance
+    for _step in range(4):
+        half = 0.5 * (low + distance)
+        behind = (field(p + way * half) < 0.0) != inside
+        distance = half if behind else distance
+        low = low if behind else half
+    return distance
+
+
+@func
+def turn_in_triangle(
+    field: Field3,
+    a: vec3,
+    b: vec3,
+    c: vec3,
+    pieces: float,
+    angle: float,
+    least_radius: float,
+) -> float:
+    """Return how much the surface turns within a triangle, as a share of what it may, squared.
+
+    Normals are compared at three points inside, half as far apart as the corners: those at corners
+    are of both sides where a crease is. What faces another way than the triangle is another face
+    of the solid, beside a crease.
+
+    Args:
+        field: The field.
+        a: The first corner.
+        b: The second corner.
+        c: The third corner.
+        pieces: Of how many such triangles a side of the whole triangle is.
+        angle: How much the surface may turn within the whole triangle, in radians.
+        least_radius: Where the radius is below this, it may turn by any angle.
+    """
+    middle = (a + b + c) / 3.0
+    points = [(a + middle) * 0.5, (b + middle) * 0.5, (c + middle) * 0.5]
+    face = unit_or_zero(cross(b - a, c - a))
+    normals = [vec3(0.0), vec3(0.0), vec3(0.0)]
+    for i in range(3):
+        normal = unit_or_zero(gradient(field, points[i]))
+        normals[i] = normal if dot(normal, face) > SAME_FACE else vec3(0.0)
+    turn = 0.0
+    rate = 1e-30
+    for i in range(3):
+        n, m = normals[i], normals[(i + 1) % 3]
+        if dot(n, n) > 0.0 and dot(m, m) > 0.0:
+            between = 2.0 * asin(min(0.5 * length(n - m), 1.0))
+            turn = max(turn, between)
+            rate = max(rate, between / max(length(points[i] - points[(i + 1) % 3]), 1e-30))
+    share = 2.0 * turn * pieces / angle
+    return 0.0 if rate * least_radius > 1.0 else share * share
+
+
+@func
+def lost_surface(
+    field: Field3, p: vec3, reach: float, narrow: float, close: float = 1e-6
+) -> tuple[bool, vec3]:
     """Return whether there is a surface closer to a point than ``reach``, and a point of it.
 
     Args:
         field: The field.
         p: The point.
         reach: How far the surface may be.
+        narrow: A gap that is not wider is none.
         close: How close to the surface a point of it is, as a share of ``reach``.
     """
     q = p
@@ -290,4 +404,25 @@ def lost_surface(field: Field3, p: vec3, reach: float, close: float = 1e-6) -> t
         value, slope = value_and_gradient(field, q)
         q = clamp(q + step_to_surface(value, slope), p - reach, p + reach)
     value, slope = value_and_gradient(field, q)
-    return first_order_distance(value, slope) < close * reach, q
+    near = first_order_distance(value, slope) < close * reach
+    beside = ACROSS * close * reach
+    # On the surface the gradient may be 0 or noise; beside it, it is not. At an edge of the shape
+    # it may lie in a face.
+    across = unit_or_zero(gradient(field, q + vec3(0.31, 0.59, 0.74) * (0.5 * beside)))
+    along = unit_or_zero(q - p)
+    inside = sides_inside(field, q, across * beside, along * beside)
+    # Where two solids touch, the value is 0 with the inside on both sides; where a cutter ends on
+    # a face, with the outside on both.
+    crosses = inside > 0 and inside < 4
+    gap = max(narrow, beside)
+    apart = sides_inside(field, q, across * gap, along * gap) < 4
+    return near and crosses and apart, q
+
+
+@func
+def sides_inside(field: Field3, p: vec3, across: vec3, along: vec3) -> int:
+    """Return how many of the four places beside a point, in two directions, are inside."""
+    count = 1 if field(p + across) < 0.0 else 0
+    count += 1 if field(p - across) < 0.0 else 0
+    count += 1 if field(p + along) < 0.0 else 0
+    return count + (1 if field(p - along) < 0.0 else 0)

@@ -20,7 +20,7 @@ from distal.mesh import column_arithmetic, triangle_arithmetic
 from distal.mesh.extract import Extent, Extracted
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.parallel import parallel_map, slices_of
-from distal.mesh.solid import Floats
+from distal.mesh.solid import Floats, Integers
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +46,19 @@ class Integrals:
     columns: float
     rough: float
     triangles: int
+
+
+def size_and_volume(points: Floats, triangles: Integers) -> tuple[list[float], float]:
+    """Return the lengths of a mesh along x, y and z, and the volume within its triangles.
+
+    Args:
+        points: Of shape (n, 3).
+        triangles: Of shape (m, 3).
+    """
+    low, high = points.min(axis=0), points.max(axis=0)
+    corners = [points[triangles[:, i]] - low for i in range(3)]
+    volumes = rows_of(triangle_arithmetic.moments, *corners)[0]
+    return (high - low).tolist(), float(volumes.sum())
 
 
 def integrals_of(kernels: FieldKernels, found: Extracted, extent: Extent) -> Integrals:

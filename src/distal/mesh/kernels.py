@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from distal.scene.tree.node import Node
 
 
+# To start threads takes longer than to compute so few rows of a function without a field.
+_FEW_ROWS: Final = 1 << 12
 # The name under which a tree keeps the functions of its field.
 FIELD_FUNCTIONS: Final = "functions of the field"
 
@@ -118,7 +120,8 @@ class FieldKernels:
 def rows_of(function: Func, *columns: Any) -> Any:
     """Return the values of a function that needs no field, for many rows."""
     args = [as_rows(column) for column in columns]
-    return executor().call(function, args, {}, here=is_worker())
+    here = is_worker() or len(args[0]) < _FEW_ROWS
+    return executor().call(function, args, {}, here=here)
 
 
 def as_rows(column: Any) -> Any:

@@ -19,17 +19,10 @@ from distal.mesh.brackets import Brackets, brackets_of
 from distal.mesh.certain_boxes import MOST_BOXES, Effort
 from distal.mesh.extract import Extent, Extracted
 from distal.mesh.kernels import FieldKernels, rows_of
-from distal.mesh.meshing import (
-    MeshRequest,
-    above,
-    extent_of,
-    found_mesh,
-    refuse_nothing,
-    refuse_problem,
-    shown_place,
-)
+from distal.mesh.meshing import MeshRequest, extent_of, found_mesh
 from distal.mesh.overhangs import Overhang, overhang_of
 from distal.mesh.problems import MeshProblem
+from distal.mesh.refusals import above, refuse_nothing, refuse_problem, shown_place
 from distal.mesh.requests import watch_of
 from distal.mesh.rungs import Climbed, climbed, unconfirmed
 from distal.mesh.spacing import BALL_CELLS

@@ -6,7 +6,6 @@ Input: a tree and places. Output: shapes with the author's names. Does not depen
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Final
 
 from distal.frontend import Assembly
@@ -21,6 +20,7 @@ from distal.scene.lowering.part_map import path_in
 from distal.scene.lowering.parts.table import rolled_for
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.tree.node import Node
+from distal.scene.tree.part_names import PlacedPart
 from distal.scene.tree.values import StatementList
 
 # The name under which a tree keeps its ``PartAt``.
@@ -71,30 +71,6 @@ class PartAt(Composed):
         return [found[int(number)] for number in numbers]
 
 
-@dataclass(frozen=True, slots=True)
-class PlacedPart:
-    """What is at a place.
-
-    Attributes:
-        leaf: The shape of the library.
-        label: The author's name that is nearest to it, its own or of what holds it; "" without any.
-    """
-
-    leaf: Node
-    label: str
-
-    @property
-    def line(self) -> int | None:
-        """The author's line; None if it is not known."""
-        return None if self.leaf.place is None else self.leaf.place.line
-
-    @property
-    def text(self) -> str:
-        """The author's name, the kind of the shape and the line, for messages."""
-        kind = self.leaf.rule.name
-        return _with_line(f"{self.label} ({kind})" if self.label else kind, self.line)
-
-
 def parts_at(
     node: Node, places: Floats, params: Mapping[str, Any], time: float
 ) -> list[PlacedPart]:
@@ -114,12 +90,3 @@ def parts_at(
 def part_at(node: Node, place: Floats, params: Mapping[str, Any], time: float) -> PlacedPart:
     """Return what of a tree is at a place."""
     return parts_at(node, place[None], params, time)[0]
-
-
-def named(node: Node) -> str:
-    """Return a shape's name and the author's line, for messages."""
-    return _with_line(node.name, None if node.place is None else node.place.line)
-
-
-def _with_line(name: str, line: int | None) -> str:
-    return f"'{name}'" if line is None else f"'{name}' (line {line})"

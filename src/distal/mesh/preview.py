@@ -15,21 +15,17 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.mesh import preview_arithmetic, triangle_arithmetic
+from distal.mesh import preview_arithmetic
 from distal.mesh.files.parts import FilePart, corner_codes, display_codes, part_of
-from distal.mesh.kernels import rows_of
+from distal.mesh.files.shading import corner_normals
 
 if TYPE_CHECKING:
-    from distal.mesh.solid import Bools, Floats, Integers, Mesh
+    from distal.mesh.solid import Floats, Integers, Mesh
 
 # About a megabyte in a notebook; larger meshes are shown with fewer triangles.
 MOST_TRIANGLES: Final = 100_000
 _PLACES: Final = 2**16 - 1
 _NORMALS: Final = 2**7 - 1
-# At a point with more triangles than this each has its own normal: pairs grow as the square.
-_MOST_AROUND: Final = 64
-# Triangles that are less round, along creases, face anywhere: they take a neighbor's direction.
-_THIN: Final = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,73 +102,6 @@ def fewer(points: Floats, triangles: Integers, most: int) -> tuple[Integers, Int
         # Triangles of a surface are as many as the square of the cells along a side.
         cells *= min(0.9, 0.97 * (most / max(len(kept), 1)) ** 0.5)
     return kept, of
-
-
-def corner_normals(points: Floats, triangles: Integers, normals: Floats | None) -> Floats:
-    """Return a normal for each corner of each triangle, of shape (m, 3, 3).
-
-    It is the point's, unless one of the triangles around the point faces another way; then it is
-    the mean of the triangles that face as this one does.
-
-    Args:
-        points: Of shape (n, 3).
-        triangles: Of shape (m, 3).
-        normals: Of shape (n, 3), or None if they are not known.
-    """
-    corners = [points[triangles[:, i]] for i in range(3)]
-    areas, faces = rows_of(triangle_arithmetic.face, *corners)
-    thin = np.flatnonzero(rows_of(triangle_arithmetic.roundness, *corners) < _THIN)
-    at = triangles.reshape(-1)
-    faces[thin] = faces[_largest_at(at, areas)[triangles[thin, 0]]]
-    of = np.repeat(np.arange(len(triangles)), 3)
-    found = faces[of] if normals is None else normals[at]
-    sharp = np.ones(len(points), bool)
-    if normals is not None:
-        smooth = rows_of(preview_arithmetic.is_smooth, faces[of], found)
-        sharp = np.bincount(at, ~smooth, len(points)) > 0
-    _join(found, at, of, sharp, faces, areas)
-    return found.reshape(-1, 3, 3)
-
-
-def _largest_at(at: Integers, areas: Floats) -> Integers:
-    """Return the largest triangle at each point, from the point of each corner."""
-    found = np.zeros(int(at.max(initial=-1)) + 1, np.int64)
-    of = np.repeat(np.arange(len(areas)), 3)
-    order = np.argsort(areas[of], kind="stable")
-    found[at[order]] = of[order]
-    return found
-
-
-def _join(
-    found: Floats, at: Integers, of: Integers, sharp: Bools, faces: Floats, areas: Floats
-) -> None:
-    """Set the normals of corners at edges to means of triangles.
-
-    Args:
-        found: The normal of each corner, changed in place.
-        at: The point of each corner.
-        of: The triangle of each corner.
-        sharp: The points at edges.
-        faces: The normal of each triangle.
-        areas: Its area.
-    """
-    corners = np.flatnonzero(sharp[at])
-    found[corners] = faces[of[corners]]
-    corners = corners[np.argsort(at[corners], kind="stable")]
-    _, begins, counts = np.unique(at[corners], return_index=True, return_counts=True)
-    few = np.repeat(counts <= _MOST_AROUND, counts)
-    begin, count = np.repeat(begins, counts)[few], np.repeat(counts, counts)[few]
-    # Each corner of a point with each corner of this point.
-    one = np.repeat(np.flatnonzero(few), count)
-    if not len(one):
-        return
-    other = np.arange(len(one)) - np.repeat(np.cumsum(count) - count - begin, count)
-    first, second = of[corners[one]], of[corners[other]]
-    shares = rows_of(preview_arithmetic.joined, faces[first], faces[second], areas[second])
-    sums = [np.bincount(one, shares[:, axis], len(corners)) for axis in range(3)]
-    chosen = corners[few]
-    total = np.stack(sums, axis=1)[few]
-    found[chosen] = rows_of(preview_arithmetic.unit, total, faces[of[chosen]])
 
 
 def _codes(part: FilePart, triangles: Integers, of: Integers) -> NDArray[np.uint8]:

@@ -1,10 +1,9 @@
 """How triangles of a mesh are shown in a notebook, as scene code: their places and their light.
 
-Input: corners of triangles in a box whose largest side is 1, and how a person moved the camera;
-normals of triangles. Output: places in the picture, display values; normals of corners. The camera
-and the lights are those of the look "studio"; the lights turn with the camera about the vertical
-axis, so each side is lit alike. There are no shadows. ``web/src/mesh/`` calls ``seen_corner`` and
-``seen_color`` in WebGL.
+Input: corners of triangles in a box whose largest side is 1, and how a person moved the camera.
+Output: places in the picture, display values. The camera and the lights are those of the look
+"studio"; the lights turn with the camera about the vertical axis, so each side is lit alike. There
+are no shadows. ``web/src/mesh/`` calls ``seen_corner`` and ``seen_color`` in WebGL.
 """
 
 from __future__ import annotations
@@ -21,7 +20,6 @@ from distal.lang import (
     max,
     min,
     normalize,
-    select,
     sin,
     struct,
     tan,
@@ -29,7 +27,6 @@ from distal.lang import (
     vec3,
     vec4,
 )
-from distal.mesh.arithmetic import unit_or_zero
 from distal.render.ambient import hemisphere_light
 from distal.render.backdrops import towards
 from distal.render.camera import basis_turned
@@ -62,9 +59,6 @@ GROUND: Final = NUMBERS["ground"]
 MATERIAL: Final = NUMBERS["material"]
 # The nearest depth that is shown, as a share of the radius of the box.
 NEAREST: Final = 0.01
-# Below this cosine between a point's normal and a triangle's, or between two triangles', the edge
-# between them is seen: 30 degrees.
-SMOOTH: Final = math.cos(math.radians(30.0))
 
 
 @struct
@@ -151,27 +145,3 @@ def seen_color(normal: vec3, code: vec3) -> vec4:
     rim = distant_light(n, towards(RIM_AZIMUTH, RIM_ELEVATION), RIM_INTENSITY, RIM_COLOR)
     light = received(main, n) + received(rim, n) + hemisphere_light(n, SKY, GROUND, FILL)
     return display(vec4(decode_srgb(code) * light, 1.0), EXPOSURE, TONE_MAP)
-
-
-@func
-def is_smooth(face: vec3, normal: vec3) -> bool:
-    """Return whether a triangle may be lit by the normal of its corner."""
-    return dot(face, normal) > SMOOTH
-
-
-@func
-def joined(face: vec3, other: vec3, area: float) -> vec3:
-    """Return the share of another triangle in the normal of a corner; 0 beyond an edge.
-
-    Args:
-        face: The normal of the corner's triangle.
-        other: That of the other triangle.
-        area: The other's area.
-    """
-    return select(is_smooth(face, other), other * area, vec3(0.0))
-
-
-@func
-def unit(total: vec3, face: vec3) -> vec3:
-    """Return the direction of a sum, or the normal of the triangle where the sum is 0."""
-    return select(dot(total, total) > 0.0, unit_or_zero(total), face)

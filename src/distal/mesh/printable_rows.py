@@ -147,7 +147,7 @@ def lost_row(field: Field3, lattice: PrintLattice, row: int) -> vec4:
     there.
     """
     p = lattice_place(lattice, lattice_point(lattice, USES[row]))
-    found, q = lost_surface(field, p, lattice.step, CLOSE_32)
+    found, q = lost_surface(field, p, lattice.step, 0.0, CLOSE_32)
     if not found:
         return vec4(0.0)
     home = floor((q - lattice.origin) / lattice.step) - float(CELLS_AROUND)
@@ -342,7 +342,8 @@ def miss_row(field: Field3, row: int) -> vec4:
     b = PLACES[TRIANGLES[4 * row + 1]].xyz
     c = PLACES[TRIANGLES[4 * row + 2]].xyz
     root = ROOTS[TRIANGLES[4 * row + 3]].xyz
-    return vec4(largest_miss(field, a, b, c), distance_to_triangle(root, a, b, c))
+    misses = largest_miss(field, a, b, c, OFF_SURFACE_32)
+    return vec4(misses, distance_to_triangle(root, a, b, c))
 
 
 @func

@@ -6,7 +6,10 @@ the shape's name, the author's line and what to write instead.
 
 from __future__ import annotations
 
-from typing import Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+if TYPE_CHECKING:
+    from distal.scene.lowering.placed_leaves import PlacedLeaf
 
 Kind: TypeAlias = Literal["too many", "no number", "leaves its box", "too far"]
 
@@ -23,3 +26,19 @@ class MeshProblem(Exception):  # noqa: N818 (no message: only a kind)
         super().__init__(kind)
         self.kind: Kind = kind
         self.place = place
+
+
+class ThinWall(MeshProblem):
+    """A wall or a gap between two leaves is so thin that it needs too many cells.
+
+    Attributes:
+        thickness: About how thick it is.
+        leaves: The leaves on its two sides.
+    """
+
+    def __init__(
+        self, place: tuple[float, ...], thickness: float, leaves: tuple[PlacedLeaf, PlacedLeaf]
+    ) -> None:
+        super().__init__("too many", place)
+        self.thickness = thickness
+        self.leaves = leaves

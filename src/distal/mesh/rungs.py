@@ -14,8 +14,6 @@ from typing import Final
 
 import numpy as np
 
-from distal.ir.types import FLOAT, VEC3, Type
-from distal.mesh import column_arithmetic
 from distal.mesh.extract import Extent, Extracted, Nothing, extracted
 from distal.mesh.integrals import Integrals, integrals_of
 from distal.mesh.kernels import FieldKernels
@@ -138,7 +136,7 @@ def climbed(
             raise
         done += 0.5 * (1.0 - done)
         sampled = made.sampled
-        found.lost = _missed(kernels, made, spacing)
+        found.lost = made.lost
         if isinstance(made, Nothing):
             found.nothing = made
         else:
@@ -151,30 +149,13 @@ def climbed(
             _take(found, rungs, extent)
         if spacing <= smallest * _SAME and _enough(found, volume_tolerance):
             break
-        # A surface of which the cells are too coarse to say whether it has an inside is looked at
-        # again; so are both sides of a sheet, until that is too much work.
-        is_open = len(found.lost) or (len(made.lost) and sampled * _ORDER <= most)
-        if isinstance(made, Nothing) and not is_open and spacing <= smallest * _SAME:
+        # Parts whose cells are too coarse to say how thick they are are looked at again.
+        if isinstance(made, Nothing) and not len(made.lost) and spacing <= smallest * _SAME:
             break
         cells *= _FINER
     error = None if found.estimate is None else found.estimate.volume
     found.reached = volume_tolerance is None or (error is not None and error <= volume_tolerance)
     return found
-
-
-def _missed(kernels: FieldKernels, made: Extracted | Nothing, step: float) -> Floats:
-    """Return the places of the parts that a mesh misses.
-
-    Where two members of a union touch, the value is 0 inside the solid: that is no surface.
-    """
-    lost = made.lost
-    if not len(lost):
-        return lost
-    types: list[tuple[str, Type]] = [("p", VEC3), ("step", FLOAT)]
-    crosses = kernels.call(
-        column_arithmetic.crosses_surface, lost, np.full(len(lost), step), types=types
-    )
-    return np.asarray(lost[np.asarray(crosses, bool)])
 
 
 def _take(found: Climbed, rungs: Sequence[Integrals], extent: Extent) -> None:

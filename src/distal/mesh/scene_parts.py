@@ -17,12 +17,12 @@ from distal.fields.guarantees import Operator, ended
 from distal.lang.runtime_access import executor
 from distal.mesh.files import formats
 from distal.mesh.meshing import MeshRequest, mesh_of_node
-from distal.mesh.parts import named
 from distal.mesh.solid import Mesh
 from distal.scene.lowering.attributes import paints
 from distal.scene.lowering.derived import BoundsOf
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
+from distal.scene.tree.part_names import named
 
 if TYPE_CHECKING:
     from distal.scene.scene import Scene

@@ -15,6 +15,7 @@ from typing import Final
 from distal.mesh.dividing import bad_share, divided, typical_error
 from distal.mesh.extract import Extent, Extracted, Nothing, extracted
 from distal.mesh.kernels import FieldKernels
+from distal.mesh.leaf_spacing import LEAST_WALL, LeafSpacing
 
 # The first mesh has this many cells along the largest side of the box.
 FIRST_CELLS: Final = 24
@@ -41,10 +42,12 @@ class Wanted:
     Attributes:
         tolerance: How far it may be from the surface, in scene units.
         feature: The smallest diameter of parts and gaps that must be found; None if not given.
+        angle: How much the surface may turn within a triangle, in radians; infinite for any angle.
     """
 
     tolerance: float
     feature: float | None
+    angle: float = math.inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +85,9 @@ def meshed(
     # Finer first where the tolerance is: a cell is rarely more than 50 times as long.
     step = min(extent.size / FIRST_CELLS, 50.0 * wanted.tolerance)
     step = max(step, extent.size / 64.0)
+    least = min(wanted.feature or math.inf, LEAST_WALL * wanted.tolerance) / BALL_CELLS
+    leaves = LeafSpacing(kernels, extent.slopes, extent.low, extent.high, least)
+    step = leaves.aligned(step)
     done = 0.0
     for number in range(_MOST_ROUNDS):
         share = (0.1 if number == 0 else 0.85) * (1.0 - done)
@@ -89,22 +95,32 @@ def meshed(
         def inner(part: float, base: float = done, share: float = share) -> None:
             watch(base + share * part)
 
-        tolerance = wanted.tolerance
-        found = extracted(kernels, extent, step, tolerance, MOST_BRICKS, inner, tolerance)
+        tolerance, angle = wanted.tolerance, wanted.angle
+        found = extracted(
+            kernels,
+            extent,
+            step,
+            tolerance,
+            MOST_BRICKS,
+            inner,
+            tolerance,
+            leaves=leaves,
+            angle=angle,
+        )
         if isinstance(found, Extracted) and _joined_too_large(found, tolerance, finest):
-            found = divided(kernels, extent, found, tolerance, inner, joined_only=True)
+            found = divided(kernels, extent, found, tolerance, inner, angle, joined_only=True)
         done += share
         following = _next_step(found, wanted, finest)
         if following is None:
-            if isinstance(found, Extracted) and found.tree and found.error > tolerance:
-                found = divided(kernels, extent, found, tolerance, inner, joined_only=True)
+            if isinstance(found, Extracted) and found.tree and found.excess(tolerance) > tolerance:
+                found = divided(kernels, extent, found, tolerance, inner, angle, joined_only=True)
             return found
         if isinstance(found, Extracted) and following == DIVIDE:
 
             def last(part: float, base: float = done) -> None:
                 watch(base + (1.0 - base) * part)
 
-            return divided(kernels, extent, found, tolerance, last)
+            return divided(kernels, extent, found, tolerance, last, angle)
         bricks = max(found.sampled, 1) * (found.step / following) ** 2
         if bricks > MOST_BRICKS:
             return _too_fine(found, wanted, following, bricks, by_feature=following == finest)
@@ -114,7 +130,12 @@ def meshed(
 
 def _joined_too_large(found: Extracted, tolerance: float, finest: float) -> bool:
     """Return whether joined cells must be divided before anything can be said about the others."""
-    if found.tree is None or found.step > finest or len(found.lost) or found.error <= tolerance:
+    if (
+        found.tree is None
+        or found.step > finest
+        or len(found.lost)
+        or found.excess(tolerance) <= tolerance
+    ):
         return False
     shares = (bad_share(found, tolerance, "good"), bad_share(found, tolerance, "replaced"))
     return shares[0] < _FEW <= shares[1]
@@ -139,11 +160,11 @@ def _next_step(found: Extracted | Nothing, wanted: Wanted, finest: float) -> flo
         return found.step / 2.0 if wanted.feature is None and fewer else None
     divisible = found.divisible
     corner = found.corner.distance if divisible else 0.0
-    if max(found.error, corner) <= wanted.tolerance:
+    if max(found.excess(wanted.tolerance), corner) <= wanted.tolerance:
         return None
     if divisible and bad_share(found, wanted.tolerance, "good") < _FEW:
         return DIVIDE
-    error = typical_error(found) if divisible else found.error
+    error = typical_error(found, wanted.tolerance) if divisible else found.excess(wanted.tolerance)
     factor = _AIM * math.sqrt(wanted.tolerance / error)
     return found.step * min(max(factor, _FINEST_STEP), _COARSEST_STEP)
 

@@ -7,6 +7,7 @@ which cells are too large for a tolerance is decided in ``dividing``.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import count
 from typing import Final
 
 import numpy as np
@@ -18,6 +19,7 @@ from distal.mesh.cell_tree import (
     Divided,
     Leaves,
     balanced,
+    differences,
     leaves_of,
 )
 from distal.mesh.kernels import FieldKernels
@@ -35,6 +37,10 @@ MOST_MARGIN: Final = 0.25
 _LOOKED_AT: Final = 1
 _MEASURED: Final = 2
 _NEEDED: Final = 3
+# How often cells are divided one by one before those in rows with them are divided too, ever
+# longer rows up to so many cells to each side.
+_ONE_BY_ONE: Final = 40
+_LONGEST_ROW: Final = 256
 
 
 def levels_of(lattice: Lattice) -> int:
@@ -102,6 +108,18 @@ class Tree:
         both = zip(self.divided, more, strict=True)
         return replace(self, divided=balanced([np.concatenate(pair) for pair in both]))
 
+    def with_halves(self, needed: Divided) -> Tree:
+        """Return the tree in which some cells are divided that are not joined, and what they need.
+
+        Args:
+            needed: The keys of cells of the base level, of their halves, and so on.
+        """
+        if not needed:
+            return self
+        none = self.surface[:0]
+        after = self.levels - self.base - len(needed)
+        return self.with_divided((*(none,) * self.base, *needed, *(none,) * after))
+
 
 def topology_of_tree(tree: Tree) -> tuple[Topology, Tree]:
     """Return the topology of a tree, and the tree with what had to be divided or added for it.
@@ -137,13 +155,37 @@ def settled(tree: Tree, before: Divided) -> Tree:
     Raises:
         MeshProblem: A value is no number.
     """
-    while True:
+    for number in count():
         changed = changes(tree, before)
         leaves, inner = _near(tree, changed, _LOOKED_AT)
         wrong = to_divide(tree.values, leaves, inner)
         if not any(len(keys) for keys in wrong):
-            return tree
+            break
+        if number >= _ONE_BY_ONE:
+            wrong = _with_rows(wrong, tree, min(2 << number - _ONE_BY_ONE, _LONGEST_ROW))
         before, tree = tree.divided, tree.with_divided(wrong)
+    return tree
+
+
+def _with_rows(wrong: Divided, tree: Tree, reach: int) -> Divided:
+    """Return cells to divide and those in rows with them along x, y and z.
+
+    Where a face of the solid is close to a plane of the lattice, each cell along its edge is found
+    wrong only when the one beside it is divided.
+
+    Args:
+        wrong: The keys of the cells, by level.
+        tree: The cells.
+        reach: How many cells away.
+    """
+    leaves = leaves_of(tree.surface, tree.divided, tree.levels, tree.base)
+    far = np.arange(-reach, reach + 1)
+    steps = (differences(np.eye(3, dtype=np.int64))[:, None] * far).reshape(-1)
+    found = []
+    for level, keys in enumerate(wrong):
+        own = leaves.key[leaves.of_level(level)]
+        found.append(own[position(own, sorted_keys((keys[:, None] + steps).reshape(-1))) >= 0])
+    return tuple(found)
 
 
 def changes(tree: Tree, before: Divided) -> Divided:

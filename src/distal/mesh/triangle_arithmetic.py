@@ -5,7 +5,7 @@ Input: corners of triangles. Output: numbers. One row for each triangle or pair.
 
 from __future__ import annotations
 
-from distal.lang import abs, array, clamp, cross, dot, func, length, max, min, sqrt, vec3
+from distal.lang import abs, array, clamp, cross, dot, func, length, max, min, sqrt, vec2, vec3
 from distal.mesh.arithmetic import unit_or_zero
 
 
@@ -71,6 +71,22 @@ def distance_to_triangle(p: vec3, a: vec3, b: vec3, c: vec3) -> float:
     if outside or dot(normal, normal) < 1e-300:
         return min(to_line(p, a, b), min(to_line(p, b, c), to_line(p, c, a)))
     return abs(dot(normal, p - a)) / sqrt(dot(normal, normal))
+
+
+@func
+def distance_if_alike(p: vec3, normal: vec3, a: vec3, b: vec3, c: vec3, least: float) -> float:
+    """Return the distance from a point to a triangle; 1e30 if its normal is another.
+
+    Args:
+        p: The point.
+        normal: The normal that is expected there, of length 1.
+        a: The first corner of the triangle.
+        b: The second corner.
+        c: The third corner.
+        least: The least cosine between the normal and that of the triangle.
+    """
+    outside = unit_or_zero(cross(b - a, c - a))
+    return distance_to_triangle(p, a, b, c) if dot(outside, normal) >= least else 1e30
 
 
 @func
@@ -176,18 +192,42 @@ def has_gap(
         size: The size of the triangles, which limits rounding errors.
         share_first: Whether the first corners are the same point, 0.
     """
-    room = 1e-13 * size * length(axis)
-    low_a = min(dot(a[1], axis), dot(a[2], axis))
-    high_a = max(dot(a[1], axis), dot(a[2], axis))
-    low_b = min(dot(b[1], axis), dot(b[2], axis))
-    high_b = max(dot(b[1], axis), dot(b[2], axis))
     if share_first:
-        return (high_a < -room and low_b > room) or (low_a > room and high_b < -room)
-    low_a = min(low_a, 0.0)
-    high_a = max(high_a, 0.0)
-    low_b = min(low_b, dot(b[0], axis))
-    high_b = max(high_b, dot(b[0], axis))
+        return has_corner_gap(a, b, axis) or has_corner_gap(b, a, axis)
+    room = 1e-13 * size * length(axis)
+    low_a = min(min(dot(a[1], axis), dot(a[2], axis)), 0.0)
+    high_a = max(max(dot(a[1], axis), dot(a[2], axis)), 0.0)
+    low_b = min(min(dot(b[1], axis), dot(b[2], axis)), dot(b[0], axis))
+    high_b = max(max(dot(b[1], axis), dot(b[2], axis)), dot(b[0], axis))
     return low_b - high_a > room or low_a - high_b > room
+
+
+@func
+def has_corner_gap(
+    a: array[vec3, 3],  # type: ignore[valid-type]
+    b: array[vec3, 3],  # type: ignore[valid-type]
+    axis: vec3,
+) -> bool:
+    """Return whether a plane through the first corner of two triangles, 0, lies between them.
+
+    One of them may have a side in the plane: rounding turns it by less than the other is away.
+
+    Args:
+        a: The corners of the first triangle.
+        b: The corners of the other.
+        axis: The plane's normal.
+    """
+    if min(min(length(a[1]), length(a[2])), min(length(b[1]), length(b[2]))) <= 0.0:
+        return False
+    room = 1e-13 * length(axis)
+    first = vec2(dot(a[1], axis) / length(a[1]), dot(a[2], axis) / length(a[2]))
+    second = vec2(dot(b[1], axis) / length(b[1]), dot(b[2], axis) / length(b[2]))
+    low_a = min(first.x, first.y)
+    high_a = max(first.x, first.y)
+    low_b = min(second.x, second.y)
+    high_b = max(second.x, second.y)
+    touch = 0.1 * room
+    return (high_a < touch and low_b > room) or (low_a > -touch and high_b < -room)
 
 
 @func

@@ -46,12 +46,19 @@ def width_at(
     inside = 0.0
     beyond = least
     value = side * field(start + way * beyond)
-    if not value > 0.0 or length(normal) < 0.5:
+    # Where two solids touch, near their common edge, the start is inside.
+    touches = side * field(start - way * least) > 0.0
+    if not value > 0.0 or touches or length(normal) < 0.5:
         return -1.0, start, normal
     for _step in range(STEPS):
         inside = beyond
         beyond = beyond + max(value / slope, least)
         value = side * field(start + way * beyond)
+        if not value > 0.0:
+            # Faces that coincide are no surface: the line goes on behind them.
+            behind = side * field(start + way * (beyond + least))
+            value = behind if behind > 0.0 else value
+            beyond = beyond + least if behind > 0.0 else beyond
         if not value > 0.0 or beyond > most:
             break
     if value > 0.0:

@@ -16,12 +16,11 @@ import numpy as np
 
 from distal.ir.types import FLOAT, VEC3, Type
 from distal.mesh import width_arithmetic
+from distal.mesh.accuracy import NARROWEST
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.parts import part_at
 from distal.mesh.solid import Floats
 
-# The narrowest width that is seen, as a share of the size of the box.
-NARROWEST: Final = 1e-6
 _FOLLOWED: Final = 64  # lines that are followed to a place where they are shorter
 _ROUNDS: Final = 24
 _MOST_LINES: Final = 200_000

@@ -534,6 +534,7 @@ class Scene(Composed, Presentable):
         *,
         unit: str = "mm",
         bed: bool = False,
+        angle: float | None = None,
     ) -> SceneParts:
         """Save the scene's parts as meshes in one file, with their names, colors and materials.
 
@@ -551,6 +552,7 @@ class Scene(Composed, Presentable):
             cancel: An event, or a function without arguments, that ends the work early.
             unit: The length of one scene unit: "um", "mm", "cm", "m", "inch" or "ft".
             bed: Move all parts together, so that they stand on 0 and are centered there.
+            angle: How much a surface may turn within a triangle, in radians, as for ``mesh``.
 
         Raises:
             CompileError: No part has an end, or a part cannot be meshed.
@@ -563,6 +565,7 @@ class Scene(Composed, Presentable):
             time=time,
             progress=progress,
             cancel=cancel,
+            angle=angle,
         )
         return scene_parts.saved(self, path, request, unit=unit, bed=bed)
 

@@ -26,12 +26,13 @@ from distal.mesh.kernels import FIELD_FUNCTIONS, OfField
 from distal.mesh.measuring import Measures, measures_of
 from distal.mesh.meshing import MeshRequest
 from distal.mesh.parallel import by_one_thread
-from distal.mesh.parts import PARTS, PlacedPart
+from distal.mesh.parts import PARTS
 from distal.mesh.requests import BOUNDS, DISTANCE
 from distal.runtime.received import Received
 from distal.scene.lowering.derived import BoundsOf, DistanceOf
 from distal.scene.tree.errors import SceneValueError
 from distal.scene.tree.node import Node
+from distal.scene.tree.part_names import PlacedPart
 
 if TYPE_CHECKING:
     from distal.mesh.solid import Floats

@@ -45,6 +45,7 @@ from distal.fields.guarantees import (
     operator,
 )
 from distal.fields.turned_boxes import within_axes, within_flat_axes
+from distal.fields.widths import groove_width, pipe_width
 from distal.lang import Func, exp2, func, length, max, min, vec2, vec3
 
 # Limit of an exponent; 2 to this power is larger than any size.
@@ -359,6 +360,7 @@ PIPE = operator(
     bounds=pipe_box,
     limits={"k": Limit.POSITIVE},
     growth=Growth.CORNERED,
+    width=pipe_width,
 )
 ENGRAVE = operator(
     "engrave",
@@ -377,6 +379,7 @@ GROOVE = operator(
     bounds=combine.first_box,
     limits=_SIZES,
     growth=Growth.FIRST,
+    width=groove_width,
 )
 TONGUE = operator(
     "tongue",
@@ -385,6 +388,7 @@ TONGUE = operator(
     bounds=ridge_box,
     limits=_SIZES,
     growth=Growth.FIRST,
+    width=groove_width,
 )
 POWER = operator(
     "union power",

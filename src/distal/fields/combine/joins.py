@@ -16,6 +16,7 @@ from distal.fields.guarantees import (
     Limit,
     operator,
 )
+from distal.fields.widths import clearance_width
 from distal.lang import abs, clamp, func, max, min, mix, select
 
 # Materials of combinations
@@ -197,6 +198,7 @@ CLEARANCE = operator(
     bounds=first_box,
     limits={"gap": Limit.NOT_NEGATIVE},
     growth=Growth.FIRST,
+    width=clearance_width,
 )
 MORPH = operator(
     "morph",

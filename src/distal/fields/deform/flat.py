@@ -9,6 +9,7 @@ from __future__ import annotations
 from distal.fields.deform.solid import bent, bent_bounds, bent_slope, bent_value, elongated
 from distal.fields.guarantees import LOWER_BOUND, Bounds2, Growth, Limit, operator
 from distal.fields.repeat.flat import flat_bounds, in_space, slab
+from distal.fields.widths import deformed_width
 from distal.lang import func, vec2
 
 
@@ -64,4 +65,5 @@ BEND_FLAT = operator(
     bounds=bent_flat_bounds,
     needs="a shape that ends around the origin: the farther out, the steeper it would get",
     growth=Growth.HELD,
+    width=deformed_width,
 )

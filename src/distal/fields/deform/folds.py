@@ -21,6 +21,7 @@ from distal.fields.guarantees import (
 )
 from distal.fields.noise.space import GRADIENT_SLOPE, gradient_noise
 from distal.fields.repeat.cells import ROOM
+from distal.fields.widths import deformed_width
 from distal.lang import (
     abs,
     atan2,
@@ -244,6 +245,7 @@ WRAP = operator(
     limits={"radius": Limit.POSITIVE},
     needs="a shape that ends along x before it meets itself behind, and along z before the axis",
     growth=Growth.HELD,
+    width=deformed_width,
 )
 SPHERE_FOLD = operator(
     "sphere fold",
@@ -254,6 +256,7 @@ SPHERE_FOLD = operator(
     limits={"inner": Limit.POSITIVE, "outer": Limit.POSITIVE},
     requires=fold_requirement,
     growth=Growth.HELD,
+    width=deformed_width,
 )
 REPEAT_SCALED = operator(
     "repeat scaled",
@@ -275,4 +278,5 @@ WARP = operator(
     slope=warped_slope,
     bounds=warped_bounds,
     growth=Growth.HELD,
+    width=deformed_width,
 )

@@ -25,6 +25,7 @@ from distal.fields.guarantees import (
     Operator,
     operator,
 )
+from distal.fields.widths import eroded_width, offset_width, rounded_width, shell_width
 from distal.lang import abs, dot, func, max, vec2, vec3
 
 INSIDE_ALONE = frozenset({Guarantee.EXACT_INSIDE})
@@ -124,6 +125,7 @@ ROUND = operator(
     limits={"radius": Limit.NOT_NEGATIVE},
     growth=Growth.KEPT,
     fills=True,
+    width=rounded_width,
 )
 OFFSET = operator(
     "offset",
@@ -131,6 +133,7 @@ OFFSET = operator(
     bounds=offset_bounds,
     growth=Growth.KEPT,
     fills=True,
+    width=offset_width,
 )
 DILATE = operator(
     "dilate",
@@ -141,6 +144,7 @@ DILATE = operator(
     limits={"distance": Limit.NOT_NEGATIVE},
     growth=Growth.KEPT,
     fills=True,
+    width=offset_width,
 )
 ERODE = operator(
     "erode",
@@ -148,6 +152,7 @@ ERODE = operator(
     keeps=INSIDE_ALONE,
     limits={"distance": Limit.NOT_NEGATIVE},
     growth=Growth.KEPT,
+    width=eroded_width,
 )
 THICK = {"thickness": Limit.POSITIVE}
 SHELL_INNER = operator(
@@ -156,6 +161,7 @@ SHELL_INNER = operator(
     keeps_exact=EXACT_OUTSIDE,
     limits=THICK,
     growth=Growth.KEPT,
+    width=shell_width,
 )
 SHELL_CENTRE = operator(
     "shell centre",
@@ -165,6 +171,7 @@ SHELL_CENTRE = operator(
     limits=THICK,
     growth=Growth.KEPT,
     fills=True,
+    width=shell_width,
 )
 SHELL_OUTER = operator(
     "shell outer",
@@ -174,6 +181,7 @@ SHELL_OUTER = operator(
     limits=THICK,
     growth=Growth.KEPT,
     fills=True,
+    width=shell_width,
 )
 CUT: Final[Mapping[str, Any]] = {
     "keeps": INSIDE_AND_BOUND,

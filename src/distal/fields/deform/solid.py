@@ -18,6 +18,7 @@ from distal.fields.ease import ease_requirement, ease_slope, eased
 from distal.fields.extents import box_distance, drum_distance, reach, unless_endless
 from distal.fields.guarantees import LOWER_BOUND, Bounds, Growth, Limit, operator
 from distal.fields.place.solid import rotated_y
+from distal.fields.widths import deformed_width
 from distal.lang import abs, clamp, cos, dot, func, length, max, min, mix, sin, sqrt, vec2, vec3
 
 
@@ -342,6 +343,7 @@ TWIST = operator(
     bounds=twisted_bounds,
     needs="a shape that ends around the y axis: the farther out, the steeper it would get",
     growth=Growth.HELD,
+    width=deformed_width,
 )
 BEND = operator(
     "bend",
@@ -351,6 +353,7 @@ BEND = operator(
     bounds=bent_bounds,
     needs="a shape that ends around the z axis: the farther out, the steeper it would get",
     growth=Growth.HELD,
+    width=deformed_width,
 )
 BEND_LINEAR = operator(
     "bend linear",
@@ -360,6 +363,7 @@ BEND_LINEAR = operator(
     bounds=bent_linear_bounds,
     requires=way_requirement,
     growth=Growth.HELD,
+    width=deformed_width,
 )
 BEND_RADIAL = operator(
     "bend radial",
@@ -370,6 +374,7 @@ BEND_RADIAL = operator(
     limits={"inner": Limit.NOT_NEGATIVE},
     requires=ring_requirement,
     growth=Growth.HELD,
+    width=deformed_width,
 )
 TAPER = operator(
     "taper",
@@ -381,6 +386,7 @@ TAPER = operator(
     requires=taper_requirement,
     needs="a shape that ends around the y axis: the farther out, the steeper it would get",
     growth=Growth.HELD,
+    width=deformed_width,
 )
 ATTRACT = operator(
     "attract",
@@ -390,6 +396,7 @@ ATTRACT = operator(
     bounds=attracted_bounds,
     limits={"radius": Limit.POSITIVE, "strength": Limit.NOT_NEGATIVE},
     growth=Growth.HELD,
+    width=deformed_width,
 )
 REPEL = operator(
     "repel",
@@ -399,4 +406,5 @@ REPEL = operator(
     bounds=attracted_bounds,
     limits={"radius": Limit.POSITIVE, "strength": Limit.FRACTION},
     growth=Growth.HELD,
+    width=deformed_width,
 )

@@ -10,8 +10,16 @@ from typing import Final
 
 from distal.fields.constants import HALF_ROOT, TINY
 from distal.fields.flats.edges import LEFT, RIGHT, centred_bounds, inside_both, nearer, turned_from
-from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
+from distal.fields.guarantees import EXACT, UNBOUNDED, Bounds2, Limit, primitive
 from distal.fields.ordering import larger_first
+from distal.fields.widths import (
+    chamfered_width,
+    cross_width,
+    oriented_width,
+    rectangle_width,
+    steps_width,
+    tunnel_width,
+)
 from distal.lang import abs, clamp, dot, floor, func, length, max, min, round, select, vec2, vec4
 
 UP: Final = vec2(0.0, 1.0)
@@ -43,7 +51,11 @@ def _arms_fit(span: float, thickness: float) -> str | None:
     return "thickness may be at most span" if thickness > span else None
 
 
-@primitive("HalfPlane", EXACT)
+@primitive(
+    "HalfPlane",
+    EXACT,
+    width=UNBOUNDED,
+)
 @func
 def half_plane(p: vec2, normal: vec2 = UP, offset: float = 0.0) -> float:
     """Half plane on one side of a straight line.
@@ -69,7 +81,14 @@ def rectangle_bounds(size: vec2) -> Bounds2:
     return centred_bounds(0.5 * size)
 
 
-@primitive("Rectangle", EXACT, bounds=rectangle_bounds, endless=("size",), along="xy")
+@primitive(
+    "Rectangle",
+    EXACT,
+    bounds=rectangle_bounds,
+    endless=("size",),
+    width=rectangle_width,
+    along="xy",
+)
 @func
 def rectangle(p: vec2, size: vec2 = UNIT_SQUARE) -> float:
     """Rectangle with sides along the axes, centred at the origin.
@@ -96,6 +115,7 @@ def rectangle(p: vec2, size: vec2 = UNIT_SQUARE) -> float:
     bounds=rectangle_bounds,
     limits={"radii": Limit.NOT_NEGATIVE},
     requires=_corners_fit,
+    width=rectangle_width,
 )
 @func
 def rounded_rectangle(p: vec2, size: vec2 = UNIT_SQUARE, radii: vec4 = EQUAL_RADII) -> float:
@@ -121,7 +141,13 @@ def rounded_rectangle(p: vec2, size: vec2 = UNIT_SQUARE, radii: vec4 = EQUAL_RAD
     return inside_both(q.x, q.y) - radius
 
 
-@primitive("ChamferedRectangle", EXACT, bounds=rectangle_bounds, requires=_chamfer_fits)
+@primitive(
+    "ChamferedRectangle",
+    EXACT,
+    bounds=rectangle_bounds,
+    requires=_chamfer_fits,
+    width=chamfered_width,
+)
 @func
 def chamfered_rectangle(p: vec2, size: vec2 = UNIT_SQUARE, chamfer: float = 0.2) -> float:
     """Rectangle with corners chamfered at 45 degrees.
@@ -155,7 +181,13 @@ def oriented_rectangle_bounds(start: vec2, end: vec2, thickness: float) -> Bound
     return Bounds2(min(start, end) - reach, max(start, end) + reach)
 
 
-@primitive("OrientedRectangle", EXACT, bounds=oriented_rectangle_bounds, requires=_ends_differ)
+@primitive(
+    "OrientedRectangle",
+    EXACT,
+    bounds=oriented_rectangle_bounds,
+    requires=_ends_differ,
+    width=oriented_width,
+)
 @func
 def oriented_rectangle(
     p: vec2, start: vec2 = LEFT, end: vec2 = RIGHT, thickness: float = 0.25
@@ -190,7 +222,14 @@ def cross_bounds(span: float) -> Bounds2:
     return centred_bounds(vec2(0.5 * span))
 
 
-@primitive("Cross", EXACT, bounds=cross_bounds, limits={"span": Limit.POSITIVE}, requires=_arms_fit)
+@primitive(
+    "Cross",
+    EXACT,
+    bounds=cross_bounds,
+    limits={"span": Limit.POSITIVE},
+    requires=_arms_fit,
+    width=cross_width,
+)
 @func
 def cross_shape(p: vec2, span: float = 1.0, thickness: float = 0.3) -> float:
     """Cross of two equal perpendicular bars.
@@ -222,7 +261,13 @@ def tunnel_bounds(width: float, height: float) -> Bounds2:
     return Bounds2(vec2(-0.5 * width, -height), vec2(0.5 * width, 0.5 * width))
 
 
-@primitive("Tunnel", EXACT, bounds=tunnel_bounds, limits={"height": Limit.NOT_NEGATIVE})
+@primitive(
+    "Tunnel",
+    EXACT,
+    bounds=tunnel_bounds,
+    limits={"height": Limit.NOT_NEGATIVE},
+    width=tunnel_width,
+)
 @func
 def tunnel(p: vec2, width: float = 1.0, height: float = 0.5) -> float:
     """Tunnel profile: half a disc on top of a rectangle; the disc's centre is the origin.
@@ -259,7 +304,13 @@ def from_step(p: vec2, step: vec2, index: float) -> vec2:
     return nearer(from_riser, from_tread)
 
 
-@primitive("Stairs", EXACT, bounds=stairs_bounds, limits={"step": Limit.POSITIVE})
+@primitive(
+    "Stairs",
+    EXACT,
+    bounds=stairs_bounds,
+    limits={"step": Limit.POSITIVE},
+    width=steps_width,
+)
 @func
 def stairs(p: vec2, step: vec2 = STEP, count: int = 4) -> float:
     """Stairs that rise to the right from the origin, with the area below them.

@@ -13,7 +13,8 @@ from typing import Final
 
 from distal.fields.constants import HALF_ROOT, TINY
 from distal.fields.flats.edges import centred_bounds, disc_bounds, nearer
-from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
+from distal.fields.guarantees import EXACT, UNBOUNDED, Bounds2, Limit, primitive
+from distal.fields.widths import blobby_width, ellipse_width, gap_width, radius_width, segment_width
 from distal.lang import abs, dot, func, length, max, min, pow, select, sqrt, vec2
 
 WIDE: Final = vec2(0.7, 0.4)
@@ -53,7 +54,12 @@ def parabola_foot(q: vec2, curvature: float) -> float:
     return largest_root(2.0 - 2.0 * double * q.y, 2.0 * double * q.x) / double
 
 
-@primitive("Parabola", EXACT, limits={"curvature": Limit.POSITIVE})
+@primitive(
+    "Parabola",
+    EXACT,
+    limits={"curvature": Limit.POSITIVE},
+    width=UNBOUNDED,
+)
 @func
 def parabola(p: vec2, curvature: float = 1.0) -> float:
     """Region above the parabola y = curvature x^2.
@@ -82,7 +88,12 @@ def parabola_segment_bounds(width: float, height: float) -> Bounds2:
     return Bounds2(vec2(-0.5 * width, 0.0), vec2(0.5 * width, height))
 
 
-@primitive("ParabolaSegment", EXACT, bounds=parabola_segment_bounds)
+@primitive(
+    "ParabolaSegment",
+    EXACT,
+    bounds=parabola_segment_bounds,
+    width=segment_width,
+)
 @func
 def parabola_segment(p: vec2, width: float = 1.0, height: float = 0.8) -> float:
     """Region between a parabola that opens downwards and the x axis.
@@ -112,7 +123,12 @@ def parabola_segment(p: vec2, width: float = 1.0, height: float = 0.8) -> float:
     return select(inside, -d, d)
 
 
-@primitive("QuadraticCircle", EXACT, bounds=disc_bounds)
+@primitive(
+    "QuadraticCircle",
+    EXACT,
+    bounds=disc_bounds,
+    width=radius_width,
+)
 @func
 def quadratic_circle(p: vec2, radius: float = 0.5) -> float:
     """Approximate circle made of four parabolas, each perpendicular to two axes at its ends.
@@ -151,6 +167,7 @@ def _points_stay(radius: float, depth: float) -> str | None:
     bounds=disc_bounds,
     limits={"depth": Limit.POSITIVE},
     requires=_points_stay,
+    width=blobby_width,
 )
 @func
 def blobby_cross(p: vec2, radius: float = 0.6, depth: float = 0.15) -> float:
@@ -201,7 +218,12 @@ def ellipse_start(scaled: vec2, gap: float) -> float:
     return BELOW_BOTH * min(flat, steep)
 
 
-@primitive("Ellipse", EXACT, bounds=ellipse_bounds)
+@primitive(
+    "Ellipse",
+    EXACT,
+    bounds=ellipse_bounds,
+    width=ellipse_width,
+)
 @func
 def ellipse(p: vec2, radii: vec2 = WIDE) -> float:
     """Ellipse with its axes along x and y.
@@ -259,7 +281,12 @@ def hyperbola_start(m: float, c: float, past: float) -> float:
     return min(pow(0.4 * by_c, 1.0 / 3.0), sqrt(0.4 * rest / beyond), 0.2 * by_c)
 
 
-@primitive("Hyperbola", EXACT, limits={"steepness": Limit.POSITIVE})
+@primitive(
+    "Hyperbola",
+    EXACT,
+    limits={"steepness": Limit.POSITIVE},
+    width=gap_width,
+)
 @func
 def hyperbola(p: vec2, radius: float = 0.4, steepness: float = 1.0) -> float:
     """Region outside of the two branches of a hyperbola, on the left and on the right.

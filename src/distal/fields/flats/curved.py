@@ -11,6 +11,14 @@ from typing import Final
 from distal.fields.constants import HALF_ROOT, TINY
 from distal.fields.flats.edges import LEFT, RIGHT, centred_bounds, nearer, turned_from
 from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
+from distal.fields.widths import (
+    cross_width,
+    ends_width,
+    half_width,
+    heart_width,
+    moon_width,
+    segment_width,
+)
 from distal.lang import abs, dot, func, length, max, min, select, sqrt, vec2, vec3
 
 # Height of the heart whose square has diagonal 1: the square, with half a disc on each upper side.
@@ -60,7 +68,13 @@ def lens_bounds(width: float, height: float) -> Bounds2:
     return centred_bounds(0.5 * vec2(width, height))
 
 
-@primitive("Vesica", EXACT, bounds=lens_bounds, requires=_is_upright)
+@primitive(
+    "Vesica",
+    EXACT,
+    bounds=lens_bounds,
+    requires=_is_upright,
+    width=half_width,
+)
 @func
 def vesica(p: vec2, width: float = 0.6, height: float = 1.0) -> float:
     """Lens: the intersection of two equal discs, with its tips on the y axis.
@@ -98,7 +112,13 @@ def oriented_vesica_bounds(start: vec2, end: vec2, width: float) -> Bounds2:
     )
 
 
-@primitive("OrientedVesica", EXACT, bounds=oriented_vesica_bounds, requires=_lens_is_long)
+@primitive(
+    "OrientedVesica",
+    EXACT,
+    bounds=oriented_vesica_bounds,
+    requires=_lens_is_long,
+    width=half_width,
+)
 @func
 def oriented_vesica(p: vec2, start: vec2 = LEFT, end: vec2 = RIGHT, width: float = 0.5) -> float:
     """Lens with its tips at two given points.
@@ -139,6 +159,7 @@ def moon_bounds(radius: float, cut_radius: float, offset: float) -> Bounds2:
     bounds=moon_bounds,
     limits={"cut_radius": Limit.POSITIVE, "offset": Limit.POSITIVE},
     requires=_circles_cross,
+    width=moon_width,
 )
 @func
 def moon(p: vec2, radius: float = 0.7, cut_radius: float = 0.6, offset: float = 0.4) -> float:
@@ -171,7 +192,13 @@ def moon(p: vec2, radius: float = 0.7, cut_radius: float = 0.6, offset: float = 
     return select(on_circle, past_circle, select(on_cut, past_cut, elsewhere))
 
 
-@primitive("CircleCross", EXACT, bounds=lens_bounds, requires=_is_flat)
+@primitive(
+    "CircleCross",
+    EXACT,
+    bounds=lens_bounds,
+    requires=_is_flat,
+    width=segment_width,
+)
 @func
 def circle_cross(p: vec2, width: float = 1.0, height: float = 0.8) -> float:
     """Star with four points and concave sides made of circular arcs.
@@ -204,7 +231,12 @@ def heart_bounds(height: float) -> Bounds2:
     return centred_bounds(height * vec2(HEART_REACH / HEART_HEIGHT, 0.5))
 
 
-@primitive("Heart", EXACT, bounds=heart_bounds)
+@primitive(
+    "Heart",
+    EXACT,
+    bounds=heart_bounds,
+    width=heart_width,
+)
 @func
 def heart(p: vec2, height: float = 1.0) -> float:
     """Heart: a square standing on its corner, with half a disc on each upper side.
@@ -244,6 +276,7 @@ def uneven_capsule_bounds(bottom: float, top: float, height: float) -> Bounds2:
     bounds=uneven_capsule_bounds,
     limits={"bottom": Limit.POSITIVE, "top": Limit.NOT_NEGATIVE},
     requires=_sides_touch_both,
+    width=ends_width,
 )
 @func
 def uneven_capsule(p: vec2, bottom: float = 0.4, top: float = 0.2, height: float = 0.6) -> float:
@@ -298,6 +331,7 @@ def egg_bounds(bottom: float, top: float, height: float, bulge: float) -> Bounds
     bounds=egg_bounds,
     limits={"bottom": Limit.POSITIVE, "top": Limit.POSITIVE, "bulge": Limit.FRACTION},
     requires=_egg_is_convex,
+    width=ends_width,
 )
 @func
 def egg(
@@ -345,6 +379,7 @@ def rounded_x_bounds(span: float, thickness: float) -> Bounds2:
     bounds=rounded_x_bounds,
     limits={"span": Limit.POSITIVE},
     requires=_bars_are_thin,
+    width=cross_width,
 )
 @func
 def rounded_x(p: vec2, span: float = 1.2, thickness: float = 0.25) -> float:

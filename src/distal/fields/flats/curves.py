@@ -11,6 +11,7 @@ from typing import Final
 from distal.fields.constants import TINY
 from distal.fields.flats.edges import LEFT, RIGHT, from_segment, nearer
 from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Approximation, Bounds2, primitive
+from distal.fields.widths import radius_width
 from distal.lang import Buffer, Vectors, abs, clamp, dot, func, length, max, min, select, size, vec2
 
 LOWER_LEFT: Final = vec2(-0.5, -0.3)
@@ -37,7 +38,12 @@ def segment_bounds(start: vec2, end: vec2, radius: float) -> Bounds2:
     return Bounds2(min(start, end) - radius, max(start, end) + radius)
 
 
-@primitive("Segment", EXACT, bounds=segment_bounds)
+@primitive(
+    "Segment",
+    EXACT,
+    bounds=segment_bounds,
+    width=radius_width,
+)
 @func
 def segment(p: vec2, start: vec2 = LEFT, end: vec2 = RIGHT, radius: float = 0.05) -> float:
     """A straight line with round ends.
@@ -112,7 +118,12 @@ def quadratic_bezier_bounds(start: vec2, control: vec2, end: vec2, radius: float
     return Bounds2(min(start, end, turn) - radius, max(start, end, turn) + radius)
 
 
-@primitive("QuadraticBezier", EXACT_OUTSIDE, bounds=quadratic_bezier_bounds)
+@primitive(
+    "QuadraticBezier",
+    EXACT_OUTSIDE,
+    bounds=quadratic_bezier_bounds,
+    width=radius_width,
+)
 @func
 def quadratic_bezier(
     p: vec2,
@@ -173,6 +184,7 @@ def cubic_bezier_bounds(
     EXACT_OUTSIDE,
     bounds=cubic_bezier_bounds,
     approximates=Approximation("a cubic Bézier curve", 1.4e-3),
+    width=radius_width,
 )
 @func
 def cubic_bezier(
@@ -260,6 +272,7 @@ def spline_bounds(points: Buffer[vec2], radius: float, closed: bool) -> Bounds2:
     EXACT_OUTSIDE,
     bounds=spline_bounds,
     approximates=Approximation("a Catmull-Rom spline", 8e-3),
+    width=radius_width,
 )
 @func
 def spline_path(p: vec2, points: Buffer[vec2], radius: float = 0.05, closed: bool = False) -> float:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Final
 
 from distal.fields.guarantees import EXACT_OUTSIDE, Limit, primitive
+from distal.fields.widths import wall_width
 from distal.lang import abs, dot, func, max, round, select, vec2
 
 ROOT_THREE_QUARTERS: Final = 0.8660254037844386
@@ -45,7 +46,13 @@ def hexagon_cell(p: vec2, cell_size: float) -> vec2:
     return select(dot(second, second) < dot(first, first), second, first)
 
 
-@primitive("Honeycomb", EXACT_OUTSIDE, limits={"wall": Limit.POSITIVE}, requires=_walls_leave_holes)
+@primitive(
+    "Honeycomb",
+    EXACT_OUTSIDE,
+    limits={"wall": Limit.POSITIVE},
+    requires=_walls_leave_holes,
+    width=wall_width,
+)
 @func
 def honeycomb(p: vec2, cell_size: float = 0.3, wall: float = 0.05) -> float:
     """Infinite honeycomb: the walls between hexagonal holes, one of which is at the origin.

@@ -22,6 +22,7 @@ from distal.fields.guarantees import (
     Limit,
     primitive,
 )
+from distal.fields.widths import growing_spiral_width, spiral_width, thickness_width
 from distal.lang import (
     abs,
     clamp,
@@ -67,7 +68,13 @@ def circle_wave_bounds(radius: float, angle: float, thickness: float) -> Bounds2
     return Bounds2(vec2(-UNBOUNDED, -high), vec2(UNBOUNDED, high))
 
 
-@primitive("CircleWave", EXACT_OUTSIDE, bounds=circle_wave_bounds, requires=_arcs_are_apart)
+@primitive(
+    "CircleWave",
+    EXACT_OUTSIDE,
+    bounds=circle_wave_bounds,
+    requires=_arcs_are_apart,
+    width=thickness_width,
+)
 @func
 def circle_wave(
     p: vec2, radius: float = 0.25, angle: float = 1.8, thickness: float = 0.05
@@ -104,7 +111,12 @@ def cool_s_bounds(height: float, thickness: float) -> Bounds2:
     return centred_bounds(0.5 * vec2(height * COOL_S_STEP, height) + 0.5 * thickness)
 
 
-@primitive("CoolS", EXACT_OUTSIDE, bounds=cool_s_bounds)
+@primitive(
+    "CoolS",
+    EXACT_OUTSIDE,
+    bounds=cool_s_bounds,
+    width=thickness_width,
+)
 @func
 def cool_s(p: vec2, height: float = 1.0, thickness: float = 0.03) -> float:
     """The "cool S", a figure of 14 straight lines that pupils draw.
@@ -184,6 +196,7 @@ def from_spiral(p: vec2, turns: int, radius_at: Callable[[float], vec2]) -> vec2
     limits={"inner": Limit.NOT_NEGATIVE, "outer": Limit.POSITIVE},
     requires=_turns_once,
     approximates=Approximation("a spiral", 1.2e-4),
+    width=spiral_width,
 )
 @func
 def archimedean_spiral(
@@ -221,6 +234,7 @@ def archimedean_spiral(
     limits={"inner": Limit.POSITIVE, "outer": Limit.POSITIVE},
     requires=_turns_once,
     approximates=Approximation("a spiral", 1.7e-4),
+    width=growing_spiral_width,
 )
 @func
 def logarithmic_spiral(

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from distal.fields.flats.edges import from_segment, nearer, points_bounds, turned_from
 from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Bounds2, primitive
+from distal.fields.widths import radius_width
 from distal.lang import Buffer, func, length, select, size, vec2
 
 
@@ -78,7 +79,12 @@ def rounded_polygon(p: vec2, points: Buffer[vec2], radius: float = 0.1) -> float
     return from_polygon(p, points) - radius
 
 
-@primitive("Polyline", EXACT_OUTSIDE, bounds=points_bounds)
+@primitive(
+    "Polyline",
+    EXACT_OUTSIDE,
+    bounds=points_bounds,
+    width=radius_width,
+)
 @func
 def polyline(p: vec2, points: Buffer[vec2], radius: float = 0.05, closed: bool = False) -> float:
     """Line with a width through points, with round ends and joints.

@@ -19,6 +19,16 @@ from distal.fields.flats.edges import (
 )
 from distal.fields.flats.slanted import isosceles_trapezoid, trapezoid_bounds
 from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
+from distal.fields.widths import (
+    corners_width,
+    equilateral_width,
+    half_radius_width,
+    isosceles_width,
+    pentagram_width,
+    polygon_width,
+    round_solid_width,
+    star_width,
+)
 from distal.lang import abs, cos, func, length, max, min, select, sin, vec2
 
 LEFT_CORNER: Final = vec2(-0.5, -0.4)
@@ -73,7 +83,12 @@ def triangle_bounds(size: float) -> Bounds2:
     )
 
 
-@primitive("EquilateralTriangle", EXACT, bounds=triangle_bounds)
+@primitive(
+    "EquilateralTriangle",
+    EXACT,
+    bounds=triangle_bounds,
+    width=equilateral_width,
+)
 @func
 def equilateral_triangle(p: vec2, size: float = 1.0) -> float:
     """Equilateral triangle with a corner at the top, centred at the origin.
@@ -99,7 +114,12 @@ def isosceles_triangle_bounds(width: float, height: float) -> Bounds2:
     return trapezoid_bounds(width, 0.0, height)
 
 
-@primitive("IsoscelesTriangle", EXACT, bounds=isosceles_triangle_bounds)
+@primitive(
+    "IsoscelesTriangle",
+    EXACT,
+    bounds=isosceles_triangle_bounds,
+    width=isosceles_width,
+)
 @func
 def isosceles_triangle(p: vec2, width: float = 0.8, height: float = 1.0) -> float:
     """Isosceles triangle with its tip at the top; y = 0 is at half of its height.
@@ -125,7 +145,13 @@ def triangle2_bounds(first: vec2, second: vec2, third: vec2) -> Bounds2:
     return Bounds2(min(first, second, third), max(first, second, third))
 
 
-@primitive("Triangle2", EXACT, bounds=triangle2_bounds, requires=_not_in_line)
+@primitive(
+    "Triangle2",
+    EXACT,
+    bounds=triangle2_bounds,
+    requires=_not_in_line,
+    width=corners_width,
+)
 @func
 def triangle2(
     p: vec2,
@@ -161,7 +187,12 @@ def triangle2(
     return select(inside > 0.0, -d, d)
 
 
-@primitive("Pentagon", EXACT, bounds=disc_bounds)
+@primitive(
+    "Pentagon",
+    EXACT,
+    bounds=disc_bounds,
+    width=round_solid_width,
+)
 @func
 def pentagon(p: vec2, radius: float = 0.5) -> float:
     """Regular pentagon with a corner at the top.
@@ -181,7 +212,12 @@ def pentagon(p: vec2, radius: float = 0.5) -> float:
     return past_corner(q, radius, PI / 5.0)
 
 
-@primitive("Hexagon", EXACT, bounds=disc_bounds)
+@primitive(
+    "Hexagon",
+    EXACT,
+    bounds=disc_bounds,
+    width=round_solid_width,
+)
 @func
 def hexagon(p: vec2, radius: float = 0.5) -> float:
     """Regular hexagon with a corner at the top.
@@ -201,7 +237,12 @@ def hexagon(p: vec2, radius: float = 0.5) -> float:
     return past_corner(q, radius, PI / 6.0)
 
 
-@primitive("Octagon", EXACT, bounds=disc_bounds)
+@primitive(
+    "Octagon",
+    EXACT,
+    bounds=disc_bounds,
+    width=round_solid_width,
+)
 @func
 def octagon(p: vec2, radius: float = 0.5) -> float:
     """Regular octagon with a corner at the top.
@@ -221,7 +262,13 @@ def octagon(p: vec2, radius: float = 0.5) -> float:
     return past_corner(q, radius, PI / 8.0)
 
 
-@primitive("RegularPolygon", EXACT, bounds=disc_bounds, requires=_three_corners)
+@primitive(
+    "RegularPolygon",
+    EXACT,
+    bounds=disc_bounds,
+    requires=_three_corners,
+    width=polygon_width,
+)
 @func
 def regular_polygon(p: vec2, radius: float = 0.5, count: int = 7) -> float:
     """Regular polygon with a corner at the top.
@@ -253,7 +300,12 @@ def past_point_of_star(q: vec2, radius: float, inner: float, angle: float) -> fl
     return select(turned_from(notch - point, q - point) < 0.0, -d, d)
 
 
-@primitive("Hexagram", EXACT, bounds=disc_bounds)
+@primitive(
+    "Hexagram",
+    EXACT,
+    bounds=disc_bounds,
+    width=half_radius_width,
+)
 @func
 def hexagram(p: vec2, radius: float = 0.5) -> float:
     """Star with six points made of two triangles; one point is at the top.
@@ -273,7 +325,12 @@ def hexagram(p: vec2, radius: float = 0.5) -> float:
     return past_point_of_star(q, radius, radius / ROOT_THREE, PI / 6.0)
 
 
-@primitive("Pentagram", EXACT, bounds=disc_bounds)
+@primitive(
+    "Pentagram",
+    EXACT,
+    bounds=disc_bounds,
+    width=pentagram_width,
+)
 @func
 def pentagram(p: vec2, radius: float = 0.5) -> float:
     """Star with five points made of the diagonals of a pentagon; one point is at the top.
@@ -294,7 +351,12 @@ def pentagram(p: vec2, radius: float = 0.5) -> float:
 
 
 @primitive(
-    "RegularStar", EXACT, bounds=disc_bounds, limits={"inner": Limit.POSITIVE}, requires=_is_a_star
+    "RegularStar",
+    EXACT,
+    bounds=disc_bounds,
+    limits={"inner": Limit.POSITIVE},
+    requires=_is_a_star,
+    width=star_width,
 )
 @func
 def regular_star(p: vec2, radius: float = 0.5, inner: float = 0.25, count: int = 7) -> float:

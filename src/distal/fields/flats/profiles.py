@@ -14,6 +14,7 @@ from distal.fields.flats.curved import egg, egg_bounds, uneven_capsule, uneven_c
 from distal.fields.flats.edges import disc_bounds, fold_sectors, from_segment
 from distal.fields.flats.round import from_arc
 from distal.fields.guarantees import EXACT, NOTHING, Bounds2, Limit, primitive
+from distal.fields.widths import cam_width, gear_width
 from distal.lang import (
     Texture2D,
     abs,
@@ -99,6 +100,7 @@ def gear_bounds(radius: float, addendum: float, count: int) -> Bounds2:
         "dedendum": Limit.POSITIVE,
     },
     requires=_teeth_are_whole,
+    width=gear_width,
 )
 @func
 def gear_profile(
@@ -178,6 +180,7 @@ def tangent_cam_bounds(base: float, nose: float, lift: float) -> Bounds2:
     bounds=tangent_cam_bounds,
     limits={"base": Limit.POSITIVE, "nose": Limit.POSITIVE, "lift": Limit.POSITIVE},
     requires=_nose_stands_out,
+    width=cam_width,
 )
 @func
 def tangent_cam(p: vec2, base: float = 0.4, nose: float = 0.15, lift: float = 0.3) -> float:
@@ -216,6 +219,7 @@ def arc_cam_bounds(base: float, nose: float, lift: float, bulge: float) -> Bound
         "bulge": Limit.FRACTION,
     },
     requires=_arc_nose_stands_out,
+    width=cam_width,
 )
 @func
 def arc_cam(

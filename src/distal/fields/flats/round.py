@@ -11,6 +11,13 @@ import math
 from distal.fields.constants import PI
 from distal.fields.flats.edges import disc_bounds, turned_from
 from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
+from distal.fields.widths import (
+    annulus_width,
+    cut_width,
+    radius_width,
+    sector_width,
+    thickness_width,
+)
 from distal.lang import abs, clamp, cos, dot, func, length, max, min, select, sin, sqrt, vec2
 
 
@@ -45,7 +52,12 @@ def _cuts_the_disc(radius: float, height: float) -> str | None:
     return None
 
 
-@primitive("Circle", EXACT, bounds=disc_bounds)
+@primitive(
+    "Circle",
+    EXACT,
+    bounds=disc_bounds,
+    width=radius_width,
+)
 @func
 def circle(p: vec2, radius: float = 1.0) -> float:
     """Disc, centred at the origin.
@@ -70,7 +82,13 @@ def annulus_bounds(radius: float, thickness: float) -> Bounds2:
     return disc_bounds(radius + 0.5 * thickness)
 
 
-@primitive("Annulus", EXACT, bounds=annulus_bounds, requires=_hole_is_left)
+@primitive(
+    "Annulus",
+    EXACT,
+    bounds=annulus_bounds,
+    requires=_hole_is_left,
+    width=annulus_width,
+)
 @func
 def annulus(p: vec2, radius: float = 0.75, thickness: float = 0.25) -> float:
     """Full ring, centred at the origin.
@@ -98,7 +116,13 @@ def pie_bounds(radius: float, angle: float) -> Bounds2:
     return Bounds2(vec2(-reach, min(end.y, 0.0)), vec2(reach, radius))
 
 
-@primitive("Pie", EXACT, bounds=pie_bounds, requires=_less_than_a_turn)
+@primitive(
+    "Pie",
+    EXACT,
+    bounds=pie_bounds,
+    requires=_less_than_a_turn,
+    width=sector_width,
+)
 @func
 def pie(p: vec2, radius: float = 1.0, angle: float = 0.7) -> float:
     """Sector of a disc, symmetric about the y axis.
@@ -131,7 +155,12 @@ def cut_disk_bounds(radius: float, height: float) -> Bounds2:
 
 
 @primitive(
-    "CutDisk", EXACT, bounds=cut_disk_bounds, limits={"height": Limit.ANY}, requires=_cuts_the_disc
+    "CutDisk",
+    EXACT,
+    bounds=cut_disk_bounds,
+    limits={"height": Limit.ANY},
+    requires=_cuts_the_disc,
+    width=cut_width,
 )
 @func
 def cut_disk(p: vec2, radius: float = 1.0, height: float = -0.3) -> float:
@@ -178,7 +207,12 @@ def arc_bounds(radius: float, angle: float, thickness: float) -> Bounds2:
 
 
 @primitive(
-    "Arc", EXACT, bounds=arc_bounds, limits={"angle": Limit.NOT_NEGATIVE}, requires=_ends_are_apart
+    "Arc",
+    EXACT,
+    bounds=arc_bounds,
+    limits={"angle": Limit.NOT_NEGATIVE},
+    requires=_ends_are_apart,
+    width=thickness_width,
 )
 @func
 def arc(p: vec2, radius: float = 0.75, angle: float = 1.6, thickness: float = 0.2) -> float:
@@ -211,7 +245,13 @@ def ring_bounds(radius: float, angle: float, thickness: float) -> Bounds2:
     return Bounds2(vec2(-reach, low), vec2(reach, outer))
 
 
-@primitive("Ring", EXACT, bounds=ring_bounds, requires=_ring_is_open)
+@primitive(
+    "Ring",
+    EXACT,
+    bounds=ring_bounds,
+    requires=_ring_is_open,
+    width=thickness_width,
+)
 @func
 def ring(p: vec2, radius: float = 0.75, angle: float = 1.6, thickness: float = 0.25) -> float:
     """Arc of a ring with straight ends, symmetric about the y axis.
@@ -258,6 +298,7 @@ def horseshoe_bounds(radius: float, angle: float, legs: float, thickness: float)
     bounds=horseshoe_bounds,
     limits={"legs": Limit.NOT_NEGATIVE},
     requires=_legs_are_apart,
+    width=thickness_width,
 )
 @func
 def horseshoe(

@@ -11,6 +11,7 @@ from typing import Final
 from distal.fields.flats.boxes import rectangle_bounds
 from distal.fields.flats.edges import centred_bounds, from_segment, nearer, turned_from
 from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
+from distal.fields.widths import parallelogram_width, rhombus_width, trapezoid_width
 from distal.lang import abs, clamp, func, length, max, select, vec2
 
 DIAGONALS: Final = vec2(1.0, 0.6)
@@ -20,7 +21,12 @@ def _has_a_side(bottom: float, top: float) -> str | None:
     return "bottom or top must be above 0" if bottom == 0.0 and top == 0.0 else None
 
 
-@primitive("Rhombus2", EXACT, bounds=rectangle_bounds)
+@primitive(
+    "Rhombus2",
+    EXACT,
+    bounds=rectangle_bounds,
+    width=rhombus_width,
+)
 @func
 def rhombus2(p: vec2, size: vec2 = DIAGONALS) -> float:
     """Rhombus with its diagonals along the axes.
@@ -55,6 +61,7 @@ def trapezoid_bounds(bottom: float, top: float, height: float) -> Bounds2:
     bounds=trapezoid_bounds,
     limits={"bottom": Limit.NOT_NEGATIVE, "top": Limit.NOT_NEGATIVE},
     requires=_has_a_side,
+    width=trapezoid_width,
 )
 @func
 def isosceles_trapezoid(
@@ -92,7 +99,12 @@ def parallelogram_bounds(width: float, height: float, skew: float) -> Bounds2:
     return centred_bounds(0.5 * vec2(width + abs(skew), height))
 
 
-@primitive("Parallelogram", EXACT, bounds=parallelogram_bounds)
+@primitive(
+    "Parallelogram",
+    EXACT,
+    bounds=parallelogram_bounds,
+    width=parallelogram_width,
+)
 @func
 def parallelogram(p: vec2, width: float = 0.8, height: float = 0.6, skew: float = 0.3) -> float:
     """Parallelogram with two horizontal sides, centred at the origin.

@@ -11,6 +11,7 @@ import math
 from distal.fields.constants import PI
 from distal.fields.flats.edges import from_segment, nearer
 from distal.fields.guarantees import INSIDE_AND_BOUND, Bounds2, Limit, primitive
+from distal.fields.widths import rack_width
 from distal.lang import abs, clamp, func, length, max, round, select, tan, vec2
 
 
@@ -74,6 +75,7 @@ def rack_bounds(module: float, base: float, clearance: float, count: int) -> Bou
         "clearance": Limit.NOT_NEGATIVE,
     },
     requires=_rack_is_whole,
+    width=rack_width,
 )
 @func
 def rack_profile(

@@ -18,6 +18,7 @@ from distal.fields.extents import (
 )
 from distal.fields.flats.edges import inside_both
 from distal.fields.guarantees import EXACT, UNBOUNDED, Bounds, Bounds2, Growth, Limit, operator
+from distal.fields.widths import deformed_width, extruded_width
 from distal.lang import abs, clamp, cos, func, length, max, min, mix, sin, sqrt, vec2, vec3
 
 ENDED = "a flat shape with an end: without a box its slope grows without end"
@@ -258,6 +259,7 @@ EXTRUDE = operator(
     bounds=extruded_bounds,
     limits={"height": Limit.POSITIVE},
     growth=Growth.KEPT,
+    width=extruded_width,
 )
 EXTRUDE_ENDLESS = operator(
     "extrude endless",
@@ -276,6 +278,7 @@ EXTRUDE_ROUNDED = operator(
     limits={"height": Limit.POSITIVE, "radius": Limit.NOT_NEGATIVE},
     requires=edges_requirement,
     growth=Growth.KEPT,
+    width=extruded_width,
 )
 EXTRUDE_CHAMFERED = operator(
     "extrude chamfered",
@@ -286,6 +289,7 @@ EXTRUDE_CHAMFERED = operator(
     limits={"height": Limit.POSITIVE, "chamfer": Limit.NOT_NEGATIVE},
     requires=bevels_requirement,
     growth=Growth.KEPT,
+    width=extruded_width,
 )
 EXTRUDE_TWISTED = operator(
     "extrude twisted",
@@ -296,6 +300,7 @@ EXTRUDE_TWISTED = operator(
     limits={"height": Limit.POSITIVE},
     needs=ENDED,
     growth=Growth.HELD,
+    width=deformed_width,
 )
 EXTRUDE_TAPERED = operator(
     "extrude tapered",
@@ -306,6 +311,7 @@ EXTRUDE_TAPERED = operator(
     limits={"height": Limit.POSITIVE, "top": Limit.POSITIVE},
     needs=ENDED,
     growth=Growth.HELD,
+    width=extruded_width,
 )
 LOFT = operator(
     "loft",
@@ -319,4 +325,5 @@ LOFT = operator(
     requires=loft_requirement,
     needs=ENDED,
     growth=Growth.KEPT,
+    width=extruded_width,
 )

@@ -27,6 +27,7 @@ from distal.fields.guarantees import (
     Limit,
     operator,
 )
+from distal.fields.widths import deformed_width
 from distal.lang import (
     Field3,
     abs,
@@ -279,6 +280,7 @@ WRAP_CYLINDER = operator(
     requires=relief_requirement,
     needs="a flat shape that is less wide than the cylinder is around",
     growth=Growth.HELD,
+    width=deformed_width,
 )
 SLICE = operator(
     "slice",

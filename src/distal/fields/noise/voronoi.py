@@ -17,6 +17,7 @@ from typing import Final
 
 from distal.fields.guarantees import LOWER_BOUND, Limit, primitive
 from distal.fields.noise.lattice import SEED_STEP, fraction
+from distal.fields.widths import radius_width, thickness_width, voronoi_gap_width
 from distal.lang import (
     clamp,
     dot,
@@ -243,7 +244,13 @@ def _balls_leave_room(cell_size: float, radius: float) -> str | None:
     return "radius must be at most 0.7 cell_size" if radius > 0.7 * cell_size else None
 
 
-@primitive("VoronoiWalls", LOWER_BOUND, requires=_walls_leave_room, tier=2)
+@primitive(
+    "VoronoiWalls",
+    LOWER_BOUND,
+    requires=_walls_leave_room,
+    tier=2,
+    width=thickness_width,
+)
 @func
 def voronoi_walls(
     p: vec3, cell_size: float = 0.5, thickness: float = 0.08, jitter: float = 0.8, seed: int = 0
@@ -268,7 +275,12 @@ def voronoi_walls(
 
 
 @primitive(
-    "VoronoiCells", LOWER_BOUND, limits={"gap": Limit.POSITIVE}, requires=_gap_leaves_room, tier=2
+    "VoronoiCells",
+    LOWER_BOUND,
+    limits={"gap": Limit.POSITIVE},
+    requires=_gap_leaves_room,
+    tier=2,
+    width=voronoi_gap_width,
 )
 @func
 def voronoi_cells(
@@ -293,7 +305,13 @@ def voronoi_cells(
     return 0.5 * gap - cell_size * voronoi_border(p / cell_size, jitter, seed)
 
 
-@primitive("VoronoiLines", LOWER_BOUND, requires=_walls_leave_room, tier=2)
+@primitive(
+    "VoronoiLines",
+    LOWER_BOUND,
+    requires=_walls_leave_room,
+    tier=2,
+    width=thickness_width,
+)
 @func
 def voronoi_lines(
     p: vec2, cell_size: float = 0.5, thickness: float = 0.08, jitter: float = 0.8, seed: int = 0
@@ -317,7 +335,13 @@ def voronoi_lines(
     return cell_size * voronoi_border_2(p / cell_size, jitter, seed) - 0.5 * thickness
 
 
-@primitive("ScatteredBalls", LOWER_BOUND, requires=_balls_leave_room, tier=2)
+@primitive(
+    "ScatteredBalls",
+    LOWER_BOUND,
+    requires=_balls_leave_room,
+    tier=2,
+    width=radius_width,
+)
 @func
 def scattered_balls(
     p: vec3,

@@ -12,6 +12,7 @@ from distal.fields.guarantees import EXACT, LOWER_BOUND, NOTHING, Bounds2, Growt
 from distal.fields.ordering import larger_first
 from distal.fields.place.mirrors import count_requirement, folded
 from distal.fields.place.solid import scaled_value
+from distal.fields.widths import deformed_width, scaled_width, stretched_flat_width
 from distal.lang import abs, cos, dot, func, length, mat2, max, min, sin, sqrt, vec2
 
 
@@ -223,6 +224,7 @@ SCALE_FLAT = operator(
     bounds=scaled_flat_bounds,
     limits={"factor": Limit.POSITIVE},
     growth=Growth.KEPT,
+    width=scaled_width,
 )
 STRETCH_FLAT = operator(
     "flat scale axes",
@@ -233,6 +235,7 @@ STRETCH_FLAT = operator(
     bounds=stretched_flat_bounds,
     limits={"factors": Limit.POSITIVE},
     growth=Growth.HELD,
+    width=stretched_flat_width,
 )
 SHEAR_FLAT = operator(
     "flat shear",
@@ -242,6 +245,7 @@ SHEAR_FLAT = operator(
     slope=sheared_flat_slope,
     bounds=sheared_flat_bounds,
     growth=Growth.HELD,
+    width=deformed_width,
 )
 MIRROR_FLAT = operator(
     "flat mirror",

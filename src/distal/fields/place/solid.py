@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from distal.fields.extents import at_least_one, box_distance, smallest, turned
 from distal.fields.guarantees import EXACT, LOWER_BOUND, NOTHING, Bounds, Growth, Limit, operator
+from distal.fields.widths import deformed_width, scaled_width, stretched_width
 from distal.lang import (
     abs,
     cos,
@@ -431,6 +432,7 @@ SCALE = operator(
     bounds=scaled_bounds,
     limits={"factor": Limit.POSITIVE},
     growth=Growth.KEPT,
+    width=scaled_width,
 )
 STRETCH = operator(
     "scale axes",
@@ -441,6 +443,7 @@ STRETCH = operator(
     bounds=stretched_bounds,
     limits={"factors": Limit.POSITIVE},
     growth=Growth.HELD,
+    width=stretched_width,
 )
 SHEAR = operator(
     "shear",
@@ -450,4 +453,5 @@ SHEAR = operator(
     slope=sheared_slope,
     bounds=sheared_bounds,
     growth=Growth.HELD,
+    width=deformed_width,
 )

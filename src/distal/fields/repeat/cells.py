@@ -30,6 +30,7 @@ from collections.abc import Callable
 
 from distal.fields.extents import largest, smallest
 from distal.fields.guarantees import ENDLESS, UNBOUNDED, Bounds, Site
+from distal.fields.widths import SHEET
 from distal.lang import (
     Vectors,
     abs,
@@ -110,6 +111,18 @@ def interval(
 def onward(spacing: vec3) -> Copies:
     """Return the copies from index 0 on, infinite."""
     return Copies(spacing, vec3(0.0), vec3(0.0), vec3(UNBOUNDED) * repeated_axes(spacing))
+
+
+@func
+def width_of_copies(child_width: float, copies: Copies, bounds: Bounds) -> float:
+    """Return the width of a repetition: of the shape, or of the gap between the boxes of copies."""
+    sides = bounds.high - bounds.low
+    gap = child_width
+    for axis in range(3):
+        room = abs(copies.spacing[axis]) - sides[axis]
+        if room > 0.0 and copies.last[axis] > copies.first[axis]:
+            gap = min(gap, SHEET * room)
+    return gap
 
 
 @func

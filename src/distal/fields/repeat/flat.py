@@ -32,6 +32,7 @@ from distal.fields.repeat.cells import (
     site_in,
     slope_in,
     value_in,
+    width_of_copies,
 )
 from distal.fields.repeat.grid import (
     SPACING,
@@ -119,6 +120,12 @@ def slope_in_flat(slope: float, bounds: Bounds2, copies: Copies, neighbours: int
 def bounds_in_flat(bounds: Bounds2, copies: Copies) -> Bounds2:
     """Return the rectangle around all copies."""
     return flat_bounds(bounds_in(slab(bounds), copies))
+
+
+@func
+def width_of_flat_copies(child_width: float, copies: Copies, bounds: Bounds2) -> float:
+    """Return the width of a repetition: of the shape, or of the gap between copies."""
+    return width_of_copies(child_width, copies, slab(bounds))
 
 
 @func
@@ -338,6 +345,7 @@ FLAT: Final = CellFunctions(
     bounds_in_flat,
     nearest_copy_distance_flat,
     nearest_copy_site_flat,
+    width_of_flat_copies,
 )
 REPEAT_FLAT = one_cell("flat repeat", FLAT, endless_flat, limited=False)
 REPEAT_NEIGHBOURS_FLAT = several_cells("flat repeat neighbours", FLAT, endless_flat, limited=False)

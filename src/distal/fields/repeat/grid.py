@@ -32,6 +32,7 @@ from distal.fields.repeat.cells import (
     site_in,
     slope_in,
     value_in,
+    width_of_copies,
 )
 from distal.fields.repeat.varied import cells_of_copies
 from distal.lang import floor, func, round, vec3
@@ -58,6 +59,7 @@ class CellFunctions:
     bounds: Func
     nearest_distance: Func
     nearest_site: Func
+    width: Func
 
 
 def one_cell(
@@ -84,6 +86,7 @@ def one_cell(
         point=functions.site,
         finish=functions.value,
         fixed={"neighbours": 0, "limited": limited},
+        width=functions.width,
         keeps=INSIDE_AND_BOUND,
         slope=functions.slope,
         bounds=functions.bounds,
@@ -118,6 +121,7 @@ def several_cells(
         around=functions.nearest_distance,
         site=functions.nearest_site,
         fixed={"limited": limited},
+        width=functions.width,
         keeps=LOWER_BOUND,
         slope=functions.slope,
         bounds=functions.bounds,
@@ -172,7 +176,13 @@ def interval_requirement(
 
 
 SOLID: Final = CellFunctions(
-    site_in, value_in, slope_in, bounds_in, nearest_copy_distance, nearest_copy_site
+    site_in,
+    value_in,
+    slope_in,
+    bounds_in,
+    nearest_copy_distance,
+    nearest_copy_site,
+    width_of_copies,
 )
 REPEAT = one_cell("repeat", SOLID, endless, limited=False)
 REPEAT_NEIGHBOURS = several_cells("repeat neighbours", SOLID, endless, limited=False)

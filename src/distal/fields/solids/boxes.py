@@ -15,16 +15,22 @@ from distal.fields.guarantees import (
     EXACT,
     EXACT_OUTSIDE,
     INSIDE_AND_BOUND,
+    UNBOUNDED,
     Bounds,
     Limit,
     primitive,
 )
+from distal.fields.widths import box_width, chamfered_box_width, frame_width
 from distal.lang import abs, func, length, max, min, select, sqrt, vec2, vec3
 
 UNIT_CUBE: Final = vec3(1.0)
 
 
-@primitive("Corner", EXACT)
+@primitive(
+    "Corner",
+    EXACT,
+    width=UNBOUNDED,
+)
 @func
 def corner(p: vec3) -> float:
     """The octant of space where x, y and z are negative.
@@ -60,6 +66,7 @@ def box_chord(p: vec3, direction: vec3, size: vec3) -> vec2:
     bounds=box_bounds,
     chord=box_chord,
     endless=("size",),
+    width=box_width,
     along="xyz",
 )
 @func
@@ -88,6 +95,7 @@ def box(p: vec3, size: vec3 = UNIT_CUBE) -> float:
     side_growth=1.0,
     chord=box_chord,
     endless=("size",),
+    width=box_width,
     along="xyz",
 )
 @func
@@ -122,7 +130,14 @@ def round_box_requires(size: tuple[float, ...], rounding: float) -> str | None:
     return _fits_every_side("rounding", rounding, size)
 
 
-@primitive("RoundBox", EXACT, bounds=box_bounds, requires=round_box_requires, endless=("size",))
+@primitive(
+    "RoundBox",
+    EXACT,
+    bounds=box_bounds,
+    requires=round_box_requires,
+    endless=("size",),
+    width=box_width,
+)
 @func
 def round_box(p: vec3, size: vec3 = UNIT_CUBE, rounding: float = 0.1) -> float:
     """Box with rounded edges; the full size does not change.
@@ -148,7 +163,12 @@ def chamfer_box_requires(size: vec3, chamfer: float) -> str | None:
 
 
 @primitive(
-    "ChamferBox", INSIDE_AND_BOUND, bounds=box_bounds, requires=chamfer_box_requires, growth=1.0
+    "ChamferBox",
+    INSIDE_AND_BOUND,
+    bounds=box_bounds,
+    requires=chamfer_box_requires,
+    growth=1.0,
+    width=chamfered_box_width,
 )
 @func
 def chamfer_box(p: vec3, size: vec3 = UNIT_CUBE, chamfer: float = 0.1) -> float:
@@ -177,7 +197,13 @@ def box_frame_requires(size: vec3, thickness: float) -> str | None:
     return _fits_every_side("thickness", thickness, size)
 
 
-@primitive("BoxFrame", EXACT, bounds=box_bounds, requires=box_frame_requires)
+@primitive(
+    "BoxFrame",
+    EXACT,
+    bounds=box_bounds,
+    requires=box_frame_requires,
+    width=frame_width,
+)
 @func
 def box_frame(p: vec3, size: vec3 = UNIT_CUBE, thickness: float = 0.1) -> float:
     """The twelve edges of a box as beams with a square cross-section.
@@ -223,6 +249,7 @@ def round_frame_requires(size: vec3, thickness: float) -> str | None:
     bounds=box_bounds,
     limits={"thickness": Limit.NOT_NEGATIVE},
     requires=round_frame_requires,
+    width=frame_width,
 )
 @func
 def round_frame(p: vec3, size: vec3 = UNIT_CUBE, thickness: float = 0.1) -> float:

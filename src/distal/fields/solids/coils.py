@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from distal.fields.constants import PI, TAU
 from distal.fields.guarantees import LOWER_BOUND, UNBOUNDED, Approximation, Bounds, primitive
+from distal.fields.widths import coil_width
 from distal.lang import abs, atan2, func, length, max, round, sqrt, vec2, vec3
 
 
@@ -60,6 +61,7 @@ def helix_bounds(major: float, minor: float, pitch: float) -> Bounds:
     tier=2,
     growth=coil_growth,
     approximates=Approximation("a tube with a round section", 7e-5),
+    width=coil_width,
 )
 @func
 def helix(p: vec3, major: float = 0.5, minor: float = 0.1, pitch: float = 0.4) -> float:
@@ -102,6 +104,7 @@ def spring_growth(major: float, pitch: float) -> float:
     growth=spring_growth,
     side_growth=coil_growth,
     approximates=Approximation("a tube with a round section", 3.3e-5),
+    width=coil_width,
 )
 @func
 def spring(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from distal.fields.chords import in_cone
 from distal.fields.constants import TINY
-from distal.fields.guarantees import EXACT, INSIDE_AND_BOUND, Bounds, Limit, primitive
+from distal.fields.guarantees import EXACT, INSIDE_AND_BOUND, UNBOUNDED, Bounds, Limit, primitive
 from distal.fields.solids.axes import (
     HIGH_END,
     LOW_END,
@@ -21,6 +21,14 @@ from distal.fields.solids.axes import (
     below_pi,
     discs_bounds,
     upright_bounds,
+)
+from distal.fields.widths import (
+    cone_between_width,
+    cone_width,
+    end_radii_width,
+    ends_width,
+    frustum_between_width,
+    frustum_width,
 )
 from distal.lang import abs, clamp, cos, dot, func, length, max, min, select, sin, sqrt, vec2, vec3
 
@@ -36,7 +44,12 @@ def opening(q: vec2, angle: float) -> float:
     return select(q.x * s > q.y * c, beside, select(beside > 0.0, tip, -tip))
 
 
-@primitive("InfiniteCone", EXACT, requires=below_pi)
+@primitive(
+    "InfiniteCone",
+    EXACT,
+    requires=below_pi,
+    width=UNBOUNDED,
+)
 @func
 def infinite_cone(p: vec3, angle: float = 0.5) -> float:
     """Infinite cone that opens downwards from its tip at the origin.
@@ -96,6 +109,7 @@ def capped_cone_chord(p: vec3, direction: vec3, bottom: float, top: float, heigh
     bounds=capped_cone_bounds,
     limits={"bottom": Limit.NOT_NEGATIVE, "top": Limit.NOT_NEGATIVE},
     requires=capped_cone_requires,
+    width=frustum_width,
 )
 @func
 def capped_cone(p: vec3, bottom: float = 0.6, top: float = 0.3, height: float = 1.0) -> float:
@@ -151,6 +165,7 @@ def capped_cone_between_chord(
     bounds=capped_cone_between_bounds,
     limits={"start_radius": Limit.NOT_NEGATIVE, "end_radius": Limit.NOT_NEGATIVE},
     requires=capped_cone_between_requires,
+    width=frustum_between_width,
 )
 @func
 def capped_cone_between(
@@ -193,7 +208,13 @@ def cone_chord(p: vec3, direction: vec3, radius: float, height: float) -> vec2:
     return in_cone(p, direction, UPWARD, radius, 0.0, height)
 
 
-@primitive("Cone", EXACT, bounds=cone_bounds, chord=cone_chord)
+@primitive(
+    "Cone",
+    EXACT,
+    bounds=cone_bounds,
+    chord=cone_chord,
+    width=cone_width,
+)
 @func
 def cone(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
     """Upright cone with its tip at the top.
@@ -226,6 +247,7 @@ def cone_cheap_growth(radius: float, height: float) -> float:
     bounds=cone_bounds,
     growth=cone_cheap_growth,
     chord=cone_chord,
+    width=cone_width,
 )
 @func
 def cone_cheap(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
@@ -269,6 +291,7 @@ def cone_between_chord(p: vec3, direction: vec3, start: vec3, end: vec3, radius:
     bounds=cone_between_bounds,
     requires=apart,
     chord=cone_between_chord,
+    width=cone_between_width,
 )
 @func
 def cone_between(
@@ -329,6 +352,7 @@ def round_cone_bounds(bottom: float, top: float, height: float) -> Bounds:
     EXACT,
     bounds=round_cone_bounds,
     limits={"bottom": Limit.POSITIVE, "top": Limit.POSITIVE, "height": Limit.NOT_NEGATIVE},
+    width=ends_width,
 )
 @func
 def round_cone(p: vec3, bottom: float = 0.5, top: float = 0.25, height: float = 1.0) -> float:
@@ -363,6 +387,7 @@ def round_cone_between_bounds(
     EXACT,
     bounds=round_cone_between_bounds,
     limits={"start_radius": Limit.POSITIVE, "end_radius": Limit.POSITIVE},
+    width=end_radii_width,
 )
 @func
 def round_cone_between(

@@ -22,6 +22,7 @@ from distal.fields.solids.axes import (
     sphere_bounds,
     upright_bounds,
 )
+from distal.fields.widths import bitten_width, cut_width, half_width, sector_width, thickness_width
 from distal.lang import abs, clamp, cos, dot, func, length, max, min, select, sin, sqrt, vec2, vec3
 
 
@@ -54,6 +55,7 @@ def cut_sphere_chord(p: vec3, direction: vec3, radius: float, height: float) -> 
     bounds=cut_sphere_bounds,
     limits={"height": Limit.ANY},
     requires=_plane_cuts_ball,
+    width=cut_width,
 )
 @func
 def cut_sphere(p: vec3, radius: float = 1.0, height: float = 0.25) -> float:
@@ -101,6 +103,7 @@ def cut_hollow_sphere_requires(radius: float, height: float, thickness: float) -
     bounds=cut_hollow_sphere_bounds,
     limits={"height": Limit.ANY},
     requires=cut_hollow_sphere_requires,
+    width=thickness_width,
 )
 @func
 def cut_hollow_sphere(
@@ -140,6 +143,7 @@ def death_star_requires(radius: float, cut_radius: float, distance: float) -> st
     bounds=sphere_bounds,
     limits={"cut_radius": Limit.POSITIVE, "distance": Limit.POSITIVE},
     requires=death_star_requires,
+    width=bitten_width,
 )
 @func
 def death_star(
@@ -179,7 +183,13 @@ def solid_angle_bounds(angle: float, radius: float) -> Bounds:
     )
 
 
-@primitive("SolidAngle", EXACT, bounds=solid_angle_bounds, requires=below_pi)
+@primitive(
+    "SolidAngle",
+    EXACT,
+    bounds=solid_angle_bounds,
+    requires=below_pi,
+    width=sector_width,
+)
 @func
 def solid_angle(p: vec3, angle: float = 0.6, radius: float = 1.0) -> float:
     """Sector of a ball: the part within an angle of the y axis, its tip at the origin.
@@ -231,7 +241,13 @@ def vesica_solid_requires(height: float, width: float) -> str | None:
     return "width must be at most height" if width > height else None
 
 
-@primitive("VesicaSolid", EXACT, bounds=vesica_solid_bounds, requires=vesica_solid_requires)
+@primitive(
+    "VesicaSolid",
+    EXACT,
+    bounds=vesica_solid_bounds,
+    requires=vesica_solid_requires,
+    width=half_width,
+)
 @func
 def vesica_solid(p: vec3, height: float = 1.5, width: float = 0.75) -> float:
     """Upright solid of an arc rotated about its chord, with two tips, like a grain of rice.
@@ -264,7 +280,13 @@ def vesica_between_requires(start: vec3, end: vec3, width: float) -> str | None:
     return apart(start, end)
 
 
-@primitive("VesicaBetween", EXACT, bounds=vesica_between_bounds, requires=vesica_between_requires)
+@primitive(
+    "VesicaBetween",
+    EXACT,
+    bounds=vesica_between_bounds,
+    requires=vesica_between_requires,
+    width=half_width,
+)
 @func
 def vesica_between(
     p: vec3, start: vec3 = LOW_END, end: vec3 = HIGH_END, width: float = 0.5

@@ -21,6 +21,7 @@ from distal.fields.solids.axes import (
     discs_bounds,
     upright_bounds,
 )
+from distal.fields.widths import between_width, cylinder_width, radius_width
 from distal.lang import abs, clamp, dot, func, length, max, vec2, vec3
 
 
@@ -42,6 +43,7 @@ def infinite_cylinder_bounds(radius: float) -> Bounds:
     EXACT,
     bounds=infinite_cylinder_bounds,
     chord=infinite_cylinder_chord,
+    width=radius_width,
     along="y",
 )
 @func
@@ -83,7 +85,14 @@ def cylinder_chord(p: vec3, direction: vec3, radius: float, height: float) -> ve
     return in_cylinder(p, direction, UPWARD, 0.5 * height, radius)
 
 
-@primitive("Cylinder", EXACT, bounds=cylinder_bounds, chord=cylinder_chord, along="y")
+@primitive(
+    "Cylinder",
+    EXACT,
+    bounds=cylinder_bounds,
+    chord=cylinder_chord,
+    width=cylinder_width,
+    along="y",
+)
 @func
 def cylinder(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
     """Upright cylinder, centred at the origin.
@@ -123,6 +132,7 @@ def cylinder_between_chord(p: vec3, direction: vec3, start: vec3, end: vec3, rad
     bounds=cylinder_between_bounds,
     requires=apart,
     chord=cylinder_between_chord,
+    width=between_width,
 )
 @func
 def cylinder_between(
@@ -160,7 +170,11 @@ def rounded_cylinder_bounds(radius: float, height: float, rounding: float) -> Bo
 
 
 @primitive(
-    "RoundedCylinder", EXACT, bounds=rounded_cylinder_bounds, requires=rounded_cylinder_requires
+    "RoundedCylinder",
+    EXACT,
+    bounds=rounded_cylinder_bounds,
+    requires=rounded_cylinder_requires,
+    width=cylinder_width,
 )
 @func
 def rounded_cylinder(
@@ -202,6 +216,7 @@ def capsule_chord(p: vec3, direction: vec3, radius: float, height: float) -> vec
     bounds=capsule_bounds,
     limits={"height": Limit.NOT_NEGATIVE},
     chord=capsule_chord,
+    width=radius_width,
 )
 @func
 def capsule(p: vec3, radius: float = 0.4, height: float = 1.0) -> float:
@@ -248,7 +263,13 @@ def capsule_between_chord(p: vec3, direction: vec3, start: vec3, end: vec3, radi
     return in_capsule(p - 0.5 * (start + end), direction, axis, half, radius)
 
 
-@primitive("CapsuleBetween", EXACT, bounds=capsule_between_bounds, chord=capsule_between_chord)
+@primitive(
+    "CapsuleBetween",
+    EXACT,
+    bounds=capsule_between_bounds,
+    chord=capsule_between_chord,
+    width=radius_width,
+)
 @func
 def capsule_between(
     p: vec3, start: vec3 = LOW_END, end: vec3 = HIGH_END, radius: float = 0.4

@@ -14,6 +14,7 @@ from typing import Final
 
 from distal.fields.constants import TINY
 from distal.fields.guarantees import LOWER_BOUND, NOTHING, Bounds, primitive
+from distal.fields.widths import sponge_width
 from distal.lang import (
     abs,
     atan2,
@@ -60,7 +61,13 @@ def _repeats_are_few(iterations: int) -> str | None:
 
 
 @primitive(
-    "MengerSponge", LOWER_BOUND, bounds=cube_bounds, requires=_repeats_are_few, tier=3, growth=1.0
+    "MengerSponge",
+    LOWER_BOUND,
+    bounds=cube_bounds,
+    requires=_repeats_are_few,
+    tier=3,
+    growth=1.0,
+    width=sponge_width,
 )
 @func
 def menger_sponge(p: vec3, size: float = 1.0, iterations: int = 4) -> float:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from distal.fields.constants import HALF_ROOT, PI, TAU
 from distal.fields.flats.teeth import below_teeth
 from distal.fields.guarantees import LOWER_BOUND, Bounds, Limit, primitive
+from distal.fields.widths import cylinder_width
 from distal.lang import abs, atan2, cos, func, length, max, sin, sqrt, vec2, vec3
 
 
@@ -84,6 +85,7 @@ def knurled_growth(radius: float, depth: float, slant: float, count: int) -> flo
     side_growth=knurled_side_growth,
     limits={"depth": Limit.POSITIVE},
     requires=_grooves_fit,
+    width=cylinder_width,
 )
 @func
 def knurled_cylinder(

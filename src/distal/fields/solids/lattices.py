@@ -13,6 +13,7 @@ from typing import Final
 from distal.fields.flats.edges import nearer
 from distal.fields.flats.honeycomb import hexagon_cell, hexagon_reach
 from distal.fields.guarantees import EXACT_OUTSIDE, Limit, primitive
+from distal.fields.widths import radius_width
 from distal.lang import abs, clamp, dot, floor, func, length, max, min, round, select, vec2, vec3
 
 ROOT_HALF: Final = 0.7071067811865476
@@ -50,7 +51,13 @@ def descending(q: vec3) -> vec3:
     return vec3(highest, middle, lowest)
 
 
-@primitive("CubicLattice", EXACT_OUTSIDE, requires=_cubic_gaps_stay, tier=2)
+@primitive(
+    "CubicLattice",
+    EXACT_OUTSIDE,
+    requires=_cubic_gaps_stay,
+    tier=2,
+    width=radius_width,
+)
 @func
 def cubic_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.06) -> float:
     """Infinite lattice of struts along the edges of cubes, with a node at the origin.
@@ -77,7 +84,13 @@ def from_face_diagonals(q: vec3) -> vec2:
     return vec2(ROOT_HALF * (s.x - s.y), s.z)
 
 
-@primitive("BccLattice", EXACT_OUTSIDE, requires=_diagonal_gaps_stay, tier=2)
+@primitive(
+    "BccLattice",
+    EXACT_OUTSIDE,
+    requires=_diagonal_gaps_stay,
+    tier=2,
+    width=radius_width,
+)
 @func
 def bcc_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.05) -> float:
     """Infinite lattice of struts from the corners of cubes to their middles (body-centred cubic).
@@ -98,7 +111,13 @@ def bcc_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.05) -> float:
     return ROOT_THIRD * length(q - q.yzx) - radius
 
 
-@primitive("FccLattice", EXACT_OUTSIDE, requires=_diagonal_gaps_stay, tier=2)
+@primitive(
+    "FccLattice",
+    EXACT_OUTSIDE,
+    requires=_diagonal_gaps_stay,
+    tier=2,
+    width=radius_width,
+)
 @func
 def fcc_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.05) -> float:
     """Infinite lattice of struts from cube corners to face middles (face-centred cubic).
@@ -118,7 +137,13 @@ def fcc_lattice(p: vec3, cell_size: float = 0.5, radius: float = 0.05) -> float:
     return length(from_face_diagonals(folded(p, cell_size))) - radius
 
 
-@primitive("OctetLattice", EXACT_OUTSIDE, requires=_octet_gaps_stay, tier=2)
+@primitive(
+    "OctetLattice",
+    EXACT_OUTSIDE,
+    requires=_octet_gaps_stay,
+    tier=2,
+    width=radius_width,
+)
 @func
 def octet_lattice(p: vec3, cell_size: float = 0.75, radius: float = 0.05) -> float:
     """Infinite octet truss: struts along the edges of octahedra and tetrahedra that fill space.
@@ -146,7 +171,13 @@ def octet_lattice(p: vec3, cell_size: float = 0.75, radius: float = 0.05) -> flo
     return length(nearer(nearest, from_face_diagonals(q))) - radius
 
 
-@primitive("KelvinLattice", EXACT_OUTSIDE, requires=_open_cells_stay, tier=2)
+@primitive(
+    "KelvinLattice",
+    EXACT_OUTSIDE,
+    requires=_open_cells_stay,
+    tier=2,
+    width=radius_width,
+)
 @func
 def kelvin_lattice(p: vec3, cell_size: float = 0.75, radius: float = 0.04) -> float:
     """Infinite Kelvin lattice: struts along the edges of truncated octahedra that fill space.
@@ -186,6 +217,7 @@ def _prisms_stay_open(cell_size: float, height: float, radius: float) -> str | N
     limits={"height": Limit.POSITIVE},
     requires=_prisms_stay_open,
     tier=2,
+    width=radius_width,
 )
 @func
 def hexagonal_lattice(
@@ -237,7 +269,13 @@ def from_face_centred(q: vec3) -> vec3:
     return away - vec3(0.0, 0.0, step.z)
 
 
-@primitive("DiamondLattice", EXACT_OUTSIDE, requires=_open_cells_stay, tier=2)
+@primitive(
+    "DiamondLattice",
+    EXACT_OUTSIDE,
+    requires=_open_cells_stay,
+    tier=2,
+    width=radius_width,
+)
 @func
 def diamond_lattice(p: vec3, cell_size: float = 0.75, radius: float = 0.05) -> float:
     """Infinite diamond lattice: struts along the bonds of the atoms in a diamond.

@@ -16,6 +16,7 @@ from distal.fields.ordering import larger_first, largest_first
 from distal.fields.solids.axes import cube_of_radius, sphere_bounds
 from distal.fields.solids.boxes import UNIT_CUBE, box_bounds
 from distal.fields.solids.regular import DIAGONAL, octahedron_chord
+from distal.fields.widths import octahedron_width, pyramid_width, tetrahedron_width
 from distal.lang import (
     Buffer,
     abs,
@@ -55,7 +56,13 @@ def face_edge(height: float, past_edge: float, past_end: float) -> float:
     return select(past_edge > 0.0, length(vec3(height, past_edge, max(past_end, 0.0))), height)
 
 
-@primitive("Octahedron", EXACT, bounds=sphere_bounds, chord=octahedron_chord)
+@primitive(
+    "Octahedron",
+    EXACT,
+    bounds=sphere_bounds,
+    chord=octahedron_chord,
+    width=octahedron_width,
+)
 @func
 def octahedron(p: vec3, radius: float = 1.0) -> float:
     """Regular octahedron with its vertices on the axes.
@@ -81,7 +88,12 @@ def octahedron(p: vec3, radius: float = 1.0) -> float:
     )
 
 
-@primitive("Tetrahedron", EXACT, bounds=cube_of_radius("tetrahedron_bounds", DIAGONAL))
+@primitive(
+    "Tetrahedron",
+    EXACT,
+    bounds=cube_of_radius("tetrahedron_bounds", DIAGONAL),
+    width=tetrahedron_width,
+)
 @func
 def tetrahedron(p: vec3, radius: float = 1.0) -> float:
     """Regular tetrahedron on alternate corners of a cube, one of them along (1, 1, 1).
@@ -116,7 +128,12 @@ def pyramid_bounds(size: float, height: float) -> Bounds:
     return Bounds(-reach, reach)
 
 
-@primitive("Pyramid", EXACT, bounds=pyramid_bounds)
+@primitive(
+    "Pyramid",
+    EXACT,
+    bounds=pyramid_bounds,
+    width=pyramid_width,
+)
 @func
 def pyramid(p: vec3, size: float = 1.0, height: float = 1.0) -> float:
     """Upright pyramid with a square base.

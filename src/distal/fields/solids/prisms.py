@@ -14,6 +14,7 @@ from distal.fields.constants import PI
 from distal.fields.flats.edges import fold_past, fold_sectors, inside_both
 from distal.fields.guarantees import EXACT, Bounds, Limit, primitive
 from distal.fields.ordering import larger_first
+from distal.fields.widths import prism_width, rhombus_prism_width
 from distal.lang import abs, cos, dot, func, length, max, min, select, sin, vec2, vec3
 
 DIAGONALS: Final = vec2(1.0, 0.6)
@@ -43,7 +44,13 @@ def tri_prism_bounds(apothem: float, height: float) -> Bounds:
     return Bounds(vec3(-half, -0.5 * height, -2.0 * apothem), vec3(half, 0.5 * height, apothem))
 
 
-@primitive("TriPrism", EXACT, bounds=tri_prism_bounds, along="y")
+@primitive(
+    "TriPrism",
+    EXACT,
+    bounds=tri_prism_bounds,
+    width=prism_width,
+    along="y",
+)
 @func
 def tri_prism(p: vec3, apothem: float = 0.4, height: float = 1.0) -> float:
     """Upright prism over an equilateral triangle; one side faces +z.
@@ -89,7 +96,14 @@ def hex_prism_chord(p: vec3, direction: vec3, apothem: float, height: float) -> 
     )
 
 
-@primitive("HexPrism", EXACT, bounds=hex_prism_bounds, chord=hex_prism_chord, along="y")
+@primitive(
+    "HexPrism",
+    EXACT,
+    bounds=hex_prism_bounds,
+    chord=hex_prism_chord,
+    width=prism_width,
+    along="y",
+)
 @func
 def hex_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
     """Upright prism over a regular hexagon; two sides face along z.
@@ -117,7 +131,13 @@ def octagon_prism_bounds(apothem: float, height: float) -> Bounds:
     return Bounds(-reach, reach)
 
 
-@primitive("OctagonPrism", EXACT, bounds=octagon_prism_bounds, along="y")
+@primitive(
+    "OctagonPrism",
+    EXACT,
+    bounds=octagon_prism_bounds,
+    width=prism_width,
+    along="y",
+)
 @func
 def octagon_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
     """Upright prism over a regular octagon; sides face along x and z.
@@ -151,7 +171,14 @@ def prism_requires(count: int) -> str | None:
     return None if count >= 3 else "count must be 3 or more"
 
 
-@primitive("Prism", EXACT, bounds=prism_bounds, requires=prism_requires, along="y")
+@primitive(
+    "Prism",
+    EXACT,
+    bounds=prism_bounds,
+    requires=prism_requires,
+    width=prism_width,
+    along="y",
+)
 @func
 def prism(p: vec3, count: int = 5, apothem: float = 0.5, height: float = 1.0) -> float:
     """Upright prism over a regular polygon; one side faces +z.
@@ -181,7 +208,13 @@ def rhombus_bounds(diagonals: vec2, height: float, rounding: float) -> Bounds:
     return Bounds(-reach, reach)
 
 
-@primitive("Rhombus", EXACT, bounds=rhombus_bounds, limits={"diagonals": Limit.POSITIVE})
+@primitive(
+    "Rhombus",
+    EXACT,
+    bounds=rhombus_bounds,
+    limits={"diagonals": Limit.POSITIVE},
+    width=rhombus_prism_width,
+)
 @func
 def rhombus(
     p: vec3, diagonals: vec2 = DIAGONALS, height: float = 1.0, rounding: float = 0.05

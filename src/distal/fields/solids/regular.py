@@ -18,6 +18,7 @@ from distal.fields.chords import between_faces, in_both
 from distal.fields.constants import ROOT_THREE
 from distal.fields.guarantees import INSIDE_AND_BOUND, primitive
 from distal.fields.solids.axes import cube_of_radius, sphere_bounds
+from distal.fields.widths import octahedron_width, round_solid_width
 from distal.lang import abs, func, max, vec2, vec3, vec4
 from distal.lang.functions import Func
 
@@ -64,7 +65,12 @@ def equal_faces(name: str, face: float, reach: float) -> Callable[[Func], Func]:
         bounds = cube_of_radius(f"{distance.name}_bounds", reach)
         growth, side_growth = 1.0 / face, reach / face
         make = primitive(
-            name, INSIDE_AND_BOUND, bounds=bounds, growth=growth, side_growth=side_growth
+            name,
+            INSIDE_AND_BOUND,
+            bounds=bounds,
+            growth=growth,
+            side_growth=side_growth,
+            width=round_solid_width,
         )
         return make(distance)
 
@@ -125,6 +131,7 @@ def octahedron_chord(p: vec3, direction: vec3, radius: float) -> vec2:
     bounds=sphere_bounds,
     growth=1.0 / OCTAHEDRON_FACE,
     chord=octahedron_chord,
+    width=octahedron_width,
 )
 @func
 def octahedron_cheap(p: vec3, radius: float = 1.0) -> float:
@@ -188,6 +195,7 @@ def icosahedron(p: vec3, radius: float = 1.0) -> float:
     bounds=cube_of_radius("truncated_octahedron_bounds", TRUNCATED_OCTAHEDRON_SQUARE),
     growth=ROOT_THREE,
     side_growth=1.0,
+    width=round_solid_width,
 )
 @func
 def truncated_octahedron(p: vec3, radius: float = 1.0) -> float:

@@ -10,6 +10,7 @@ import math
 
 from distal.fields.constants import PI
 from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, Bounds, Limit, primitive
+from distal.fields.widths import minor_width, ring_width
 from distal.lang import abs, cos, func, length, max, select, sin, vec2, vec3
 
 
@@ -20,7 +21,13 @@ def flat_bounds(radius: float) -> Bounds:
     return Bounds(-reach, reach)
 
 
-@primitive("CircleLine", EXACT_OUTSIDE, bounds=flat_bounds, signed=False)
+@primitive(
+    "CircleLine",
+    EXACT_OUTSIDE,
+    bounds=flat_bounds,
+    signed=False,
+    width=0.0,
+)
 @func
 def circle_line(p: vec3, radius: float = 0.75) -> float:
     """Circle without thickness around the y axis.
@@ -39,7 +46,13 @@ def circle_line(p: vec3, radius: float = 0.75) -> float:
     return length(vec2(length(p.xz) - radius, p.y))
 
 
-@primitive("Disc", EXACT_OUTSIDE, bounds=flat_bounds, signed=False)
+@primitive(
+    "Disc",
+    EXACT_OUTSIDE,
+    bounds=flat_bounds,
+    signed=False,
+    width=0.0,
+)
 @func
 def disc(p: vec3, radius: float = 0.75) -> float:
     """Round plate without thickness around the y axis.
@@ -70,7 +83,13 @@ def torus_requires(major: float, minor: float) -> str | None:
     return "minor must be at most major" if minor > major else None
 
 
-@primitive("Torus", EXACT, bounds=torus_bounds, requires=torus_requires)
+@primitive(
+    "Torus",
+    EXACT,
+    bounds=torus_bounds,
+    requires=torus_requires,
+    width=ring_width,
+)
 @func
 def torus(p: vec3, major: float = 0.75, minor: float = 0.25) -> float:
     """Torus (ring) around the y axis.
@@ -112,7 +131,13 @@ def capped_torus_requires(angle: float, major: float, minor: float) -> str | Non
     return None
 
 
-@primitive("CappedTorus", EXACT, bounds=capped_torus_bounds, requires=capped_torus_requires)
+@primitive(
+    "CappedTorus",
+    EXACT,
+    bounds=capped_torus_bounds,
+    requires=capped_torus_requires,
+    width=minor_width,
+)
 @func
 def capped_torus(p: vec3, angle: float = 2.0, major: float = 0.75, minor: float = 0.25) -> float:
     """Arc of a ring around the y axis, with round ends, symmetric about the x axis.
@@ -151,7 +176,12 @@ def link_requires(major: float, minor: float) -> str | None:
 
 
 @primitive(
-    "Link", EXACT, bounds=link_bounds, limits={"height": Limit.NOT_NEGATIVE}, requires=link_requires
+    "Link",
+    EXACT,
+    bounds=link_bounds,
+    limits={"height": Limit.NOT_NEGATIVE},
+    requires=link_requires,
+    width=ring_width,
 )
 @func
 def link(p: vec3, height: float = 0.5, major: float = 0.4, minor: float = 0.15) -> float:

@@ -12,13 +12,20 @@ from distal.fields.constants import TINY
 from distal.fields.guarantees import EXACT, LOWER_BOUND, NOTHING, Bounds, Limit, primitive
 from distal.fields.solids.axes import sphere_bounds
 from distal.fields.solids.regular import along_vertices
+from distal.fields.widths import radii_width, radius_width, superellipsoid_width
 from distal.lang import abs, clamp, func, length, max, min, pow, select, sqrt, vec2, vec3
 
 EGG: Final = vec3(0.5, 0.75, 0.5)
 HALF_BALL: Final = vec3(0.5)
 
 
-@primitive("Sphere", EXACT, bounds=sphere_bounds, chord=in_ball)
+@primitive(
+    "Sphere",
+    EXACT,
+    bounds=sphere_bounds,
+    chord=in_ball,
+    width=radius_width,
+)
 @func
 def sphere(p: vec3, radius: float = 1.0) -> float:
     """Ball, centred at the origin.
@@ -85,6 +92,7 @@ def ellipsoid_chord(p: vec3, direction: vec3, radii: vec3) -> vec2:
     bounds=ellipsoid_bounds,
     growth=ellipsoid_growth,
     chord=ellipsoid_chord,
+    width=radii_width,
 )
 @func
 def ellipsoid(p: vec3, radii: vec3 = EGG) -> float:
@@ -149,6 +157,7 @@ def superellipsoid_growth(radii: vec3, across: float, upward: float) -> float:
     requires=superellipsoid_requires,
     growth=superellipsoid_growth,
     side_growth=superellipsoid_side_growth,
+    width=superellipsoid_width,
 )
 @func
 def superellipsoid(
@@ -218,6 +227,7 @@ def blob_requires(radius: float, height: float) -> str | None:
     limits={"height": Limit.NOT_NEGATIVE},
     requires=blob_requires,
     growth=1.0,
+    width=radius_width,
 )
 @func
 def blob(p: vec3, radius: float = 0.75, height: float = 0.2) -> float:

@@ -39,6 +39,7 @@ from distal.fields.solids.regular import (
     along_faces,
     along_vertices,
 )
+from distal.fields.widths import radius_width
 from distal.lang import abs, func, max, pow, vec3
 from distal.lang.functions import Func
 
@@ -143,6 +144,7 @@ def smooth_body(name: str, weight: float, face: float, reach: float) -> Callable
             requires=smooth_requires,
             growth=named(f"{distance.name}_growth", growth),
             side_growth=growth_of_sides,
+            width=radius_width,
         )
         return make(distance)
 

@@ -14,6 +14,7 @@ from distal.fields.constants import TINY
 from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, UNBOUNDED, Bounds, primitive
 from distal.fields.solids.cones import opening
 from distal.fields.solids.cylinders import to_segment
+from distal.fields.widths import thickness_width
 from distal.lang import abs, cross, dot, func, length, max, min, select, vec2, vec3
 
 UP: Final = vec3(0.0, 1.0, 0.0)
@@ -36,7 +37,15 @@ def plane_bounds(y: float) -> Bounds:
     return Bounds(vec3(-UNBOUNDED), vec3(UNBOUNDED, y, UNBOUNDED))
 
 
-@primitive("Plane", EXACT, bounds=plane_bounds, linear=True, chord=plane_chord, along="xyz")
+@primitive(
+    "Plane",
+    EXACT,
+    bounds=plane_bounds,
+    linear=True,
+    chord=plane_chord,
+    width=UNBOUNDED,
+    along="xyz",
+)
 @func
 def plane(p: vec3, y: float = 0.0) -> float:
     """Ground: the half space below a horizontal plane.
@@ -71,7 +80,14 @@ def half_space_bounds(normal: vec3, offset: float) -> Bounds:
     )
 
 
-@primitive("HalfSpace", EXACT, bounds=half_space_bounds, linear=True, chord=half_space_chord)
+@primitive(
+    "HalfSpace",
+    EXACT,
+    bounds=half_space_bounds,
+    linear=True,
+    chord=half_space_chord,
+    width=UNBOUNDED,
+)
 @func
 def half_space(p: vec3, normal: vec3 = UP, offset: float = 0.0) -> float:
     """Half space on one side of a plane.
@@ -104,7 +120,14 @@ def slab_chord(p: vec3, direction: vec3, thickness: float) -> vec2:
     return between_faces(p.y, direction.y, 0.5 * thickness)
 
 
-@primitive("Slab", EXACT, bounds=slab_bounds, chord=slab_chord, along="xyz")
+@primitive(
+    "Slab",
+    EXACT,
+    bounds=slab_bounds,
+    chord=slab_chord,
+    width=thickness_width,
+    along="xyz",
+)
 @func
 def slab(p: vec3, thickness: float = 0.5) -> float:
     """Infinite horizontal slab, centred at y = 0.
@@ -128,7 +151,12 @@ def wedge_requires(angle: float) -> str | None:
     return None if angle < TURN else "angle must be below a whole turn, 2 pi"
 
 
-@primitive("Wedge", EXACT, requires=wedge_requires)
+@primitive(
+    "Wedge",
+    EXACT,
+    requires=wedge_requires,
+    width=UNBOUNDED,
+)
 @func
 def wedge(p: vec3, angle: float = 1.0) -> float:
     """Infinite wedge between two planes that meet in the z axis; it opens downwards.
@@ -170,7 +198,13 @@ def triangle_bounds(a: vec3, b: vec3, c: vec3) -> Bounds:
     return Bounds(min(a, b, c), max(a, b, c))
 
 
-@primitive("Triangle", EXACT_OUTSIDE, bounds=triangle_bounds, signed=False)
+@primitive(
+    "Triangle",
+    EXACT_OUTSIDE,
+    bounds=triangle_bounds,
+    signed=False,
+    width=0.0,
+)
 @func
 def triangle(p: vec3, a: vec3 = CORNER_A, b: vec3 = CORNER_B, c: vec3 = CORNER_C) -> float:
     """Flat triangle without thickness.
@@ -203,7 +237,13 @@ def quad_bounds(a: vec3, b: vec3, c: vec3, d: vec3) -> Bounds:
     return Bounds(min(a, b, c, d), max(a, b, c, d))
 
 
-@primitive("Quad", EXACT_OUTSIDE, bounds=quad_bounds, signed=False)
+@primitive(
+    "Quad",
+    EXACT_OUTSIDE,
+    bounds=quad_bounds,
+    signed=False,
+    width=0.0,
+)
 @func
 def quad(
     p: vec3,

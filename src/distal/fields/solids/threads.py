@@ -13,6 +13,7 @@ from typing import Final
 from distal.fields.constants import HALF_ROOT, PI, TAU
 from distal.fields.flats.teeth import below_teeth
 from distal.fields.guarantees import LOWER_BOUND, Bounds, Limit, primitive
+from distal.fields.widths import thread_width
 from distal.lang import abs, atan2, func, length, max, min, select, sqrt, vec2, vec3
 
 # Depth of a thread for a pitch of 1: 5/8 of the height sqrt(3)/2 of the full triangle.
@@ -99,6 +100,7 @@ def thread_growth(diameter: float, pitch: float) -> float:
     side_growth=thread_side_growth,
     limits={"diameter": Limit.POSITIVE, "length": Limit.POSITIVE},
     requires=_pitch_fits,
+    width=thread_width,
 )
 @func
 def thread(
@@ -170,6 +172,7 @@ def tapped_hole_bounds(
         "clearance": Limit.NOT_NEGATIVE,
     },
     requires=_hole_fits,
+    width=thread_width,
 )
 @func
 def tapped_hole(

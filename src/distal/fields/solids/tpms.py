@@ -23,6 +23,7 @@ from typing import Final
 from distal.fields.constants import TAU
 from distal.fields.extents import moved_out
 from distal.fields.guarantees import NOTHING, Bounds, Growth, Limit, operator, primitive
+from distal.fields.widths import periodic_width, thickened_width
 from distal.lang import abs, clamp, cos, dot, func, max, sin, vec3
 from distal.lang.functions import Func
 
@@ -69,7 +70,7 @@ def layered(
 
 def minimal_surface(name: str, slope: float) -> Callable[[Func], Func]:
     """Declare the ``@func`` below as an infinite surface with this bound on its slope."""
-    return primitive(name, NOTHING, slope=slope, requires=_sheet_fits, tier=2)
+    return primitive(name, NOTHING, slope=slope, requires=_sheet_fits, tier=2, width=periodic_width)
 
 
 @minimal_surface("Gyroid", GYROID_STEEPEST / GYROID_TYPICAL)
@@ -406,6 +407,7 @@ THICKEN_BY = operator(
         "span": Limit.POSITIVE,
     },
     growth=Growth.FIRST,
+    width=thickened_width,
 )
 """A sheet around the first shape's surface: ``near_thickness`` thick on and in the second shape,
 ``far_thickness`` where that is ``span`` away or more."""

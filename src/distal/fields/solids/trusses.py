@@ -11,6 +11,7 @@ from typing import Final
 from distal.fields.constants import PI
 from distal.fields.flats.edges import from_segment, nearer
 from distal.fields.guarantees import EXACT_OUTSIDE, UNBOUNDED, Bounds, Limit, primitive
+from distal.fields.widths import radius_width
 from distal.lang import atan2, cos, floor, func, length, min, round, sin, vec2, vec3
 
 # Sectors beside that of the point, and bays above and below, whose bars may be nearest.
@@ -79,6 +80,7 @@ def from_straight_bars(p: vec3, major: float, count: int) -> vec2:
     limits={"height": Limit.POSITIVE, "major": Limit.POSITIVE},
     requires=_bars_stay_apart,
     tier=2,
+    width=radius_width,
 )
 @func
 def isotruss(

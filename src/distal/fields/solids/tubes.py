@@ -14,6 +14,7 @@ from distal.fields.flats.curves import from_bezier
 from distal.fields.flats.edges import from_segment, nearer
 from distal.fields.guarantees import EXACT_OUTSIDE, Approximation, Bounds, Limit, primitive
 from distal.fields.solids.cones import round_cone_between
+from distal.fields.widths import end_radii_width, radius_width, tapered_width
 from distal.lang import Buffer, abs, clamp, func, length, max, min, select, size, vec2, vec3, vec4
 
 START: Final = vec3(-0.5, -0.3, 0.0)
@@ -35,7 +36,13 @@ def polyline_tube_bounds(points: Buffer[vec3], radius: float) -> Bounds:
     return Bounds(low - radius, high + radius)
 
 
-@primitive("PolylineTube", EXACT_OUTSIDE, bounds=polyline_tube_bounds, tier=2)
+@primitive(
+    "PolylineTube",
+    EXACT_OUTSIDE,
+    bounds=polyline_tube_bounds,
+    tier=2,
+    width=radius_width,
+)
 @func
 def polyline_tube(
     p: vec3, points: Buffer[vec3], radius: float = 0.1, closed: bool = False
@@ -78,7 +85,13 @@ def tapered_tube_bounds(points: Buffer[vec4]) -> Bounds:
     return Bounds(low, high)
 
 
-@primitive("TaperedPolylineTube", EXACT_OUTSIDE, bounds=tapered_tube_bounds, tier=2)
+@primitive(
+    "TaperedPolylineTube",
+    EXACT_OUTSIDE,
+    bounds=tapered_tube_bounds,
+    tier=2,
+    width=tapered_width,
+)
 @func
 def tapered_polyline_tube(p: vec3, points: Buffer[vec4]) -> float:
     """Round tube along straight lines between points, with a radius for each point.
@@ -115,7 +128,13 @@ def bezier_tube_bounds(start: vec3, control: vec3, end: vec3, radius: float) -> 
     return Bounds(min(start, end, turn) - radius, max(start, end, turn) + radius)
 
 
-@primitive("BezierTube", EXACT_OUTSIDE, bounds=bezier_tube_bounds, tier=2)
+@primitive(
+    "BezierTube",
+    EXACT_OUTSIDE,
+    bounds=bezier_tube_bounds,
+    tier=2,
+    width=radius_width,
+)
 @func
 def bezier_tube(
     p: vec3, start: vec3 = START, control: vec3 = CONTROL, end: vec3 = END, radius: float = 0.1
@@ -161,7 +180,13 @@ def from_chord(p: vec3, start: vec3, control: vec3, end: vec3) -> vec2:
     return vec2(chord, 0.5 * length(control - 0.5 * start - 0.5 * end))
 
 
-@primitive("CurveTube", EXACT_OUTSIDE, bounds=curve_tube_bounds, tier=2)
+@primitive(
+    "CurveTube",
+    EXACT_OUTSIDE,
+    bounds=curve_tube_bounds,
+    tier=2,
+    width=radius_width,
+)
 @func
 def curve_tube(p: vec3, points: Buffer[vec3], radius: float = 0.1) -> float:
     """Round tube along quadratic Bézier curves, one after the other; ``Curve.tube`` makes them.
@@ -223,6 +248,7 @@ def _has_pieces(pieces: int) -> str | None:
     limits={"start_radius": Limit.POSITIVE, "end_radius": Limit.POSITIVE},
     requires=_has_pieces,
     tier=2,
+    width=end_radii_width,
 )
 @func
 def cubic_bezier_tube(
@@ -288,6 +314,7 @@ def tapered_bezier_bounds(
     limits={"start_radius": Limit.POSITIVE, "end_radius": Limit.POSITIVE},
     requires=_has_pieces,
     tier=2,
+    width=end_radii_width,
 )
 @func
 def tapered_bezier_tube(

@@ -124,6 +124,17 @@ def write(
         chosen.write(file, parts)
 
 
+def size_in_file(path: str | PathLike[str], size: Sequence[float]) -> list[float]:
+    """Return the lengths of a mesh along the axes of a file: 3MF and STL have z up.
+
+    Args:
+        path: The file; its suffix is a key of ``MESH_FORMATS``.
+        size: The lengths along x, y and z, y up.
+    """
+    x, y, z = size
+    return [x, z, y] if _chosen(Path(path), MESH_FORMATS, "a mesh").z_up else [x, y, z]
+
+
 def check_output(path: str | PathLike[str], unit: str) -> None:
     """Check that a mesh can be saved, before time is spent on it.
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from distal.file_writer import SaveError
 from distal.mesh.files.parts import FilePart, Finish
+from distal.mesh.files.shading import normals_with_edges
 
 _FLOAT, _UINT, _USHORT = 5126, 5125, 5123
 _VERTICES, _INDICES = 34962, 34963
@@ -122,16 +123,26 @@ def _vertices(
 ]:
     """Return points, normals, linear colors and triangles.
 
-    With colors of triangles, a point where two of them meet is written once for each color.
+    A point where two colors of triangles meet is written once for each color, and a point at an
+    edge once for each side of it.
     """
-    if part.triangle_colors is None:
-        return part.points, part.normals, part.colors, part.triangles
-    shades, which = np.unique(part.triangle_colors, axis=0, return_inverse=True)
-    pairs = part.triangles * len(shades) + which.reshape(-1, 1)
-    found, corners = np.unique(pairs, return_inverse=True)
-    points, colors = np.divmod(found, len(shades))
-    normals = None if part.normals is None else part.normals[points]
-    return part.points[points], normals, shades[colors], corners.reshape(-1, 3)
+    points, colors, triangles = np.arange(len(part.points)), part.colors, part.triangles
+    if part.triangle_colors is not None:
+        shades, which = np.unique(part.triangle_colors, axis=0, return_inverse=True)
+        pairs = part.triangles * len(shades) + which.reshape(-1, 1)
+        found, corners = np.unique(pairs, return_inverse=True)
+        triangles = corners.reshape(-1, 3)
+        points, of_colors = np.divmod(found, len(shades))
+        colors = shades[of_colors]
+    if part.normals is None:
+        return part.points[points], None, colors, triangles
+    normals, of = normals_with_edges(part.points, part.triangles, part.normals)
+    if of is part.triangles:
+        return part.points[points], normals[points], colors, triangles
+    found, corners = np.unique(triangles * len(normals) + of, return_inverse=True)
+    rows, of_normals = np.divmod(found, len(normals))
+    colors = None if colors is None else colors[rows]
+    return part.points[points[rows]], normals[of_normals], colors, corners.reshape(-1, 3)
 
 
 def _material(finish: Finish) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from distal.file_writer import SaveError
 from distal.mesh.files.parts import FilePart, display_codes
+from distal.mesh.files.shading import normals_with_edges
 
 _MOST_MATERIALS: Final = 1024
 
@@ -33,17 +34,22 @@ def write_obj(file: BinaryIO, parts: Sequence[FilePart], library: str) -> str | 
     """
     materials: dict[tuple[int, ...], str] = {}
     texts: list[str] = []
-    start = 1
+    start = first_normal = 1
     for index, part in enumerate(parts):
         texts.append(f"o {part_name(part, index)}\n")
         texts.append(_points(part))
-        if part.normals is not None:
-            texts.append(_lines("vn %.6g %.6g %.6g\n", part.normals))
         order, groups = _groups(part, materials)
         corners = part.triangles[order] + start
+        of_normals = None
+        if part.normals is not None:
+            normals, which = normals_with_edges(part.points, part.triangles, part.normals)
+            texts.append(_lines("vn %.6g %.6g %.6g\n", normals))
+            of_normals = which[order] + first_normal
+            first_normal += len(normals)
         for name, first, last in groups:
             texts.append("" if name is None else f"usemtl {name}\n")
-            texts.append(_faces(corners[first:last], with_normals=part.normals is not None))
+            turned = None if of_normals is None else of_normals[first:last]
+            texts.append(_faces(corners[first:last], turned))
         start += len(part.points)
     head = "# millimeters, y up\n" + (f"mtllib {library}\n" if materials else "")
     file.write((head + "".join(texts)).encode())
@@ -100,10 +106,10 @@ def _library(materials: dict[tuple[int, ...], str]) -> str:
     return "\n".join(lines)
 
 
-def _faces(corners: NDArray[np.int64], *, with_normals: bool) -> str:
-    if not with_normals:
+def _faces(corners: NDArray[np.int64], normals: NDArray[np.int64] | None) -> str:
+    if normals is None:
         return _lines("f %d %d %d\n", corners)
-    return _lines("f %d//%d %d//%d %d//%d\n", np.repeat(corners, 2, axis=1))
+    return _lines("f %d//%d %d//%d %d//%d\n", np.stack([corners, normals], axis=2))
 
 
 def _lines(pattern: str, rows: NDArray[Any]) -> str:

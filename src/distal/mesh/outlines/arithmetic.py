@@ -44,6 +44,21 @@ def unit_or_zero(v: vec2) -> vec2:
 
 
 @func
+def distance_and_normal(field: Field2, p: vec2, step: float) -> tuple[float, vec2]:
+    """Return the distance from a point to the edge, to first order, and the normal there.
+
+    Args:
+        field: The field.
+        p: The point.
+        step: A length; the normal is taken a tiny share of it beside the point, since on the edge
+            the gradient may be 0.
+    """
+    value, slope = value_and_gradient(field, p)
+    beside = gradient(field, p + vec2(0.51, 0.86) * (1e-5 * step))
+    return abs(value) / max(length(slope), 1e-9), unit_or_zero(beside)
+
+
+@func
 def step_to_edge(value: float, slope: vec2) -> vec2:
     """Return the Newton step from a point to the edge of the shape."""
     return slope * (-value / max(dot(slope, slope), 1e-12))
@@ -211,6 +226,29 @@ def distance_to_line(p: vec2, a: vec2, b: vec2) -> float:
     way = b - a
     share = clamp(dot(p - a, way) / max(dot(way, way), 1e-30), 0.0, 1.0)
     return length(p - a - way * share)
+
+
+@func
+def distance_if_alike(p: vec2, normal: vec2, a: vec2, b: vec2, least: float) -> float:
+    """Return the distance from a point to a line whose inside is at its left; 1e30 if it differs.
+
+    Args:
+        p: The point.
+        normal: The normal that is expected there, of length 1.
+        a: The start of the line.
+        b: Its end.
+        least: The least cosine between the normal and that of the line.
+    """
+    outside = unit_or_zero(vec2(b.y - a.y, a.x - b.x))
+    return distance_to_line(p, a, b) if dot(outside, normal) >= least else 1e30
+
+
+@func
+def step_along(away: float, normal: vec2, held: vec2, beyond: float) -> vec2:
+    """Return the step to the edge of a shape along a line; see ``arithmetic.step_along``."""
+    way = normal - held * dot(normal, held)
+    goal = away + (beyond if away > 0.0 else -beyond)
+    return way * (-goal / max(dot(way, way), 0.01))
 
 
 @func

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from distal.lang.parameters import slider
 from distal.lang.render_options import Progress
+from distal.mesh.accuracy import NARROWEST
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.outlines.outline import Outline
 from distal.mesh.outlines.outlining import (
@@ -105,8 +106,11 @@ def layers_at(
     origin = tuple(moved * part if part else 0.0 for part in AXES[axis])
     node = shape.slice(origin, AXES[axis]).node
     _, low, high = box_of(node, {**request.params, _PLACE: 0.0}, request.time)
+    # In the plane of faces that touch, the value is 0 inside of the solid: just above, it is not.
+    size = float((high - low).max())
+    above = 0.25 * NARROWEST * size if math.isfinite(size) else 0.0
     for index, place in enumerate(places):
-        params = {**request.params, _PLACE: place}
+        params = {**request.params, _PLACE: place + above}
         kernels = FieldKernels(node, params, request.time)
         one = replace(request, params=params, progress=_part_of(request, index, len(places)))
         found = outline_or_none(kernels, one)

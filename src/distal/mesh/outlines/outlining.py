@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from distal.lang.render_options import Cancel, Progress, checked_time
 from distal.mesh.kernels import FieldKernels
+from distal.mesh.leaf_check import refuse_missing
 from distal.mesh.outlines.accuracy import area_and_length
+from distal.mesh.outlines.all_leaves import traced_with_leaves
 from distal.mesh.outlines.outline import Outline
 from distal.mesh.outlines.tiles import FlatExtent, Floats, values_at
-from distal.mesh.outlines.tracing import NoOutline, TooManyTiles, TracedOutline, traced
+from distal.mesh.outlines.tracing import NoOutline, TooManyTiles, TracedOutline
 from distal.mesh.problems import MeshProblem
 from distal.mesh.requests import box_of, watch_of
 from distal.scene.tree.errors import refuse
@@ -105,7 +107,7 @@ def outline_or_none(kernels: FieldKernels, request: OutlineRequest) -> Outline |
         hint = f"tolerance={_FINEST_TOLERANCE * extent.size:.2g}"
         refuse(f"tolerance {tolerance:g} is too fine for the size of '{node.name}'", hint)
     try:
-        found = traced(kernels, extent, tolerance, watch_of(request))
+        found = traced_with_leaves(kernels, extent, tolerance, watch_of(request))
     except MeshProblem as problem:
         _refuse_problem(node, extent, problem)
     if isinstance(found, NoOutline):
@@ -119,10 +121,16 @@ def outline_or_none(kernels: FieldKernels, request: OutlineRequest) -> Outline |
             f"tolerance={found.tolerance:.2g}",
             node.place,
         )
-    area, length = area_and_length(found.loops)
-    report = _report(node, extent, found, tolerance)
+    outline, leaves = found.outline, found.leaves
+    if leaves.missing:
+        hint = "make it wider, or take the outline of a part: shape & Rectangle(…)"
+        refuse_missing(leaves.missing, "outline", hint)
+    area, length = area_and_length(outline.loops)
+    report = _report(node, extent, outline, tolerance)
+    report["leaves"] = leaves.report()
+    report["warnings"] += leaves.warnings()
     report |= {"area": area, "length": length, "cpu_s": clock.process_time() - begin}
-    return Outline(found.loops, area, length, report, node.name)
+    return Outline(outline.loops, area, length, report, node.name)
 
 
 def _extent_of(kernels: FieldKernels) -> FlatExtent:

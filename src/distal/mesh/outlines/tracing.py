@@ -114,7 +114,11 @@ class TooManyTiles:
 
 
 def traced(
-    kernels: FieldKernels, extent: FlatExtent, tolerance: float, watch: Watch
+    kernels: FieldKernels,
+    extent: FlatExtent,
+    tolerance: float,
+    watch: Watch,
+    coarsest: float = math.inf,
 ) -> TracedOutline | NoOutline | TooManyTiles:
     """Return an outline within the tolerance, or what prevents it.
 
@@ -123,11 +127,12 @@ def traced(
         extent: Its box and its slope.
         tolerance: How far the outline may be from the edge, in scene units.
         watch: Called with the share of the work that is done.
+        coarsest: The longest cells that are taken.
 
     Raises:
         MeshProblem: The shape has no outline.
     """
-    step, done = extent.size / FIRST_CELLS, 0.0
+    step, done = min(extent.size / FIRST_CELLS, coarsest), 0.0
     for _round in range(_MOST_ROUNDS):
         share = 0.4 * (1.0 - done)
 
@@ -159,7 +164,7 @@ def _at_spacing(
     places = places_of(kernels, lattice, cells, pieces)
     watch(0.8)
     loops, corners = polylines(places, pieces.loops)
-    a, b = _lines(loops)
+    a, b = lines_of(loops)
     # Samples in a cell are at most a diagonal from its roots, whatever the values' gradient says.
     accuracy = along_lines(kernels, a, b, np.ones(len(a), np.int64))
     accuracy = replace(accuracy, largest=min(accuracy.largest, 1.5 * step))
@@ -184,7 +189,7 @@ def _at_spacing(
     )
 
 
-def _lines(loops: list[Floats]) -> tuple[Floats, Floats]:
+def lines_of(loops: list[Floats]) -> tuple[Floats, Floats]:
     """Return both ends of all lines of closed polylines."""
     ends = [np.roll(loop, -1, axis=0) for loop in loops]
     return np.concatenate(loops), np.concatenate(ends)
@@ -262,7 +267,7 @@ def _of_kept(
         points.append(np.roll(loop, -rows[0], axis=0))
         line.append(np.repeat(np.arange(len(rows)), steps) + starts)
         starts += len(rows)
-    a, b = _lines(loops)
+    a, b = lines_of(loops)
     rows = np.concatenate(line)
     back = from_points(np.concatenate(points), a[rows], b[rows])
     return along_lines(kernels, a, b, np.concatenate(counts)).or_worse(back)

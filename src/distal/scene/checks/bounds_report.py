@@ -86,7 +86,11 @@ class _BoundsByNumber(Composed):
         values = Values(assembly)
         composer = RememberedBounds(values)
         composer.of(body, self._root, values.all(self._root))
-        rows = [_columns(composer.found[id(node)]) for node in self._nodes]
+        rows = []
+        for node in self._nodes:
+            # What is below a turn was asked for its box along other axes.
+            own = composer.found.get(id(node)) or composer.of(body, node, values.all(node))
+            rows.append(_columns(own))
         which = Read("i", INT)
         picked: list[Expr] = []
         # One list for each column: a chain of a thousand ifs would be too deep for the passes.

@@ -14,8 +14,11 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.lang.runtime_access import executor
 from distal.scene.checks.bounds_report import NodeBounds
+from distal.scene.lowering.derived import DistanceOf
 from distal.scene.objects.field import BaseShape
+from distal.scene.tree.node import Node
 
 Points: TypeAlias = NDArray[np.float64]
 
@@ -76,11 +79,50 @@ class Measured:
         return max(self.steepest, self.largest_change)
 
 
+def own_values(shape: BaseShape, params: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values of the parameters that a part of the whole has; others are refused."""
+    names = {parameter.name for parameter in shape.parameters()}
+    return {name: value for name, value in params.items() if name in names}
+
+
+class InterpretedParts:
+    """Parts of a whole at one time, evaluated at a few places without compiling anything.
+
+    Each part is lowered once: at few places that takes longer than the evaluation.
+    """
+
+    def __init__(self, params: Mapping[str, Any], time: float) -> None:
+        """Keep what all parts have in common.
+
+        Args:
+            params: Values of parameters by name, also of those that some parts have not.
+            time: Time in seconds.
+        """
+        self._params, self._time = params, time
+        # The functions keep their nodes: ids stay those of these.
+        self._known: dict[tuple[int, Any], tuple[Any, dict[str, Any]]] = {}
+
+    def values(self, node: Node, p: Points, what: Any = DistanceOf) -> Points:
+        """Return values of a part.
+
+        Args:
+            node: The part.
+            p: The places.
+            what: What is evaluated, made of the node.
+        """
+        key = id(node), what
+        if key not in self._known:
+            self._known[key] = what(node), own_values(BaseShape._of(node), self._params)
+        function, own = self._known[key]
+        found = executor().call(function, (p,), {}, params=own, time=self._time, device="reference")
+        return np.asarray(found, np.float64)
+
+
 class _EvaluatedShape:
     """A shape at one time with one set of parameter values, evaluated in 64 bits."""
 
     def __init__(self, shape: BaseShape, params: Mapping[str, Any], time: float) -> None:
-        self._shape, self._params, self._time = shape, params, time
+        self._shape, self._params, self._time = shape, own_values(shape, params), time
         self.dimensions = 2 if shape.flat else 3
 
     def value(self, p: Points) -> Points:

@@ -22,6 +22,7 @@ from distal.fields.guarantees import Operator
 from distal.lang.expressions import Expression
 from distal.lang.runtime_access import executor
 from distal.scene.checks.bounds_report import NodeBounds
+from distal.scene.checks.measuring import InterpretedParts
 from distal.scene.lowering.derived import DistanceOf, GradientOf
 from distal.scene.tree.node import Node
 
@@ -177,14 +178,10 @@ class _FlushPlaces:
         self, node: Node, kind: BlendKind, size: float, params: Mapping[str, Any], time: float
     ) -> None:
         self._node, self._kind, self._size = node, kind, size
-        self._params, self._time = params, time
+        self._parts = InterpretedParts(params, time)
 
     def _value(self, node: Node, p: Floats, what: Any = DistanceOf) -> Floats:
-        # Interpreted: few places, and compiling takes longer.
-        found = executor().call(
-            what(node), (p,), {}, params=self._params, time=self._time, device="reference"
-        )
-        return np.asarray(found, np.float64)
+        return self._parts.values(node, p, what)
 
     def _blend(self, p: Floats) -> Floats:
         """Return the value of the blend, negative where it moved a face to or beyond a place."""

@@ -7,7 +7,7 @@ place in the author's file; also as plain values for editors (``ValidationReport
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Final
@@ -17,6 +17,7 @@ from distal.error_codes import ErrorCode
 from distal.fields.boxes import given_slope
 from distal.fields.guarantees import EXACT, Guarantee, Operator, Primitive, ended
 from distal.scene.checks.bounds_report import NodeBounds, bounds_of_nodes
+from distal.scene.checks.flush_cuts import FlushCut, flush_cuts
 from distal.scene.checks.measuring import Measured, Region, measure
 from distal.scene.checks.moved_faces import moved_face
 from distal.scene.checks.proof_report import proof_note
@@ -156,6 +157,7 @@ def check(
     found += _proofs(
         rows, {f.shape for f in found if f.diagnostic.code in _MEASURED_WRONG}, given, time
     )
+    found += _cuts_at_faces(numbers, flush_cuts(shape.node, given, time, seed))
     order = {severity: i for i, severity in enumerate(Severity)}
     found = sorted(_at_their_roots(found, rows), key=lambda f: order[f.severity])
     return ValidationReport(tuple(rows), _slope_from(rows), tuple(found), table, smooth)
@@ -305,6 +307,19 @@ def _proofs(
             yield CheckFinding(severity, i, diagnostic)
 
 
+def _cuts_at_faces(numbers: Mapping[int, int], cuts: Iterable[FlushCut]) -> Iterator[CheckFinding]:
+    """Yield the cutters that end exactly on a face.
+
+    Args:
+        numbers: The indices of shapes, by the id of their node.
+        cuts: The cutters.
+    """
+    for cut in cuts:
+        leaf, hint = cut.cutter.leaf, "let it go through by a little"
+        diagnostic = Diagnostic(ErrorCode.FLUSH_FACES, cut.message, leaf.place, hint)
+        yield CheckFinding(Severity.WARNING, numbers.get(id(leaf), 0), diagnostic)
+
+
 def _moved_faces(
     chosen: Sequence[int],
     rows: Sequence[ShapeReport],
@@ -329,7 +344,7 @@ def _moved_faces(
             continue
         severity = Severity.WARNING if moved.kind.keeps_faces else Severity.NOTE
         message, hint = moved.text(described(node))
-        diagnostic = Diagnostic(ErrorCode.FACE_MOVED, message, node.place, hint)
+        diagnostic = Diagnostic(ErrorCode.FLUSH_FACES, message, node.place, hint)
         yield CheckFinding(severity, i, diagnostic)
 
 

@@ -33,6 +33,13 @@ from distal.ir.contents import contents
 from distal.ir.nodes import Call, Const, Construct, Expr, Return
 from distal.ir.types import FLOAT, VEC2, VEC3, Type, tuple_type
 from distal.lang.functions import Func
+from distal.scene.lowering.box_axes import (
+    AT_ONCE,
+    BoxAxes,
+    is_move,
+    passes_axes,
+    turns_boxes_again,
+)
 from distal.scene.lowering.existence import NEVER, exists_after, exists_of_either
 from distal.scene.lowering.parts.table import PartTable, TableNode
 from distal.scene.lowering.smooth.cells import CellNode, MemberGrid
@@ -94,9 +101,6 @@ ONE: Final = constant_number(1.0)
 UNKNOWN: Final = constant_number(UNBOUNDED)
 
 
-# The most children of an operator whose bounds are composed in one function.
-AT_ONCE: Final = 16
-
 # The names of ``packed`` as attributes.
 PARTS_OF_BOUNDS: Final = ("slope", "divisor", "bounds", "growth", "side_growth")
 
@@ -121,14 +125,23 @@ class BoundsComposer:
         self._values = values
         self._call = values.assembly.call
 
-    def of(self, body: StatementList, node: Node, values: Sequence[Expr]) -> ShapeBounds:
+    def of(
+        self,
+        body: StatementList,
+        node: Node,
+        values: Sequence[Expr],
+        axes: BoxAxes | None = None,
+    ) -> ShapeBounds:
         """Return the bounds of a subtree with these numbers.
 
         Args:
             body: The statements to add to.
             node: The root of the subtree.
             values: The numbers of the subtree.
+            axes: The axes of the box, seen from the subtree; None for those of its own space.
         """
+        if axes is not None or turns_boxes_again(node):
+            return self._along(body, node, values, axes or BoxAxes.own())
         if isinstance(node, TableNode):
             return self._of_table(node.table)
         if isinstance(node, CellNode):
@@ -141,6 +154,25 @@ class BoundsComposer:
         if len(children) > AT_ONCE and _is_closed(values) and not _folds(rule):
             return self._of_many(body, rule, children, own, flat=node.flat)
         inner = [self.of(body, child, share) for child, share in children]
+        return self.of_operator(body, rule, inner, own)
+
+    def _along(
+        self, body: StatementList, node: Node, values: Sequence[Expr], axes: BoxAxes
+    ) -> ShapeBounds:
+        """Return the bounds of a subtree with a box along some axes."""
+        if not passes_axes(node):
+            # How far the values grow is known of the shape's own box, in any direction.
+            found = self.of(body, node, values)
+            box = axes.box(body, self._call, found.bounds)
+            return replace(found, bounds=box, side_growth=found.growth)
+        own, shares = self._values.split(node, values)
+        rule = node.rule
+        assert isinstance(rule, Operator)
+        if is_move(rule):
+            axes = axes.below(body, self._call, rule, own)
+            return self.of(body, node.children[0], shares[0], axes)
+        children = zip(node.children, shares, strict=True)
+        inner = [self.of(body, child, share, axes) for child, share in children]
         return self.of_operator(body, rule, inner, own)
 
     def _of_many(
@@ -465,8 +497,16 @@ class RememberedBounds(BoundsComposer):
         super().__init__(values)
         self.found: dict[int, ShapeBounds] = {}
 
-    def of(self, body: StatementList, node: Node, values: Sequence[Expr]) -> ShapeBounds:
+    def of(
+        self,
+        body: StatementList,
+        node: Node,
+        values: Sequence[Expr],
+        axes: BoxAxes | None = None,
+    ) -> ShapeBounds:
         """Return the bounds of a subtree, composed once."""
+        if axes is not None:
+            return super().of(body, node, values, axes)
         known = self.found.get(id(node))
         if known is None:
             known = self.found[id(node)] = super().of(body, node, values)

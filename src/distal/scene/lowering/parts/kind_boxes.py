@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from distal.frontend import Assembly
 from distal.ir.build import field
 from distal.ir.nodes import Construct, Param, Read, Return
-from distal.ir.types import FLOAT, VEC3, Type, tuple_type
+from distal.ir.types import FLOAT, VEC2, VEC3, Type, tuple_type
 from distal.lang.composed import Composed
 from distal.lang.runtime_access import executor
 from distal.scene.lowering.bounds import BoundsComposer
@@ -98,7 +98,8 @@ class BoxOfKind(Composed):
         self.name = f"boxes of {kind.node.name}"
         self._kind = kind
         self.signature = tuple((f"column_{i}", c.type) for i, c in enumerate(kind.columns))
-        self.result: Type = tuple_type((VEC3, VEC3, FLOAT, FLOAT))
+        corner = VEC2 if kind.node.flat else VEC3
+        self.result: Type = tuple_type((corner, corner, FLOAT, FLOAT))
 
     def compose(self, assembly: Assembly) -> str:
         """Add the function to the program, and return its name."""

@@ -1,0 +1,146 @@
+"""Find the triangles or lines near places.
+
+Input: corners of triangles in space, or of lines in the plane; places with normals. Output: for
+each place the distance to the nearest element that faces the same way. Does not depend on a shape.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import Final
+
+import numpy as np
+
+from distal.mesh.accuracy import runs
+from distal.mesh.kernels import rows_of
+from distal.mesh.lattice import keys_of
+from distal.mesh.outlines.arithmetic import distance_if_alike as distance_to_line
+from distal.mesh.parallel import parallel_map, slices_of
+from distal.mesh.solid import Bools, Floats, Integers
+from distal.mesh.triangle_arithmetic import distance_if_alike as distance_to_triangle
+from distal.polygons.whole_numbers import numbers_in
+
+# The least cosine between the normal at a place and that of an element that shows it.
+_ALIKE: Final = 1e-3
+_ANY: Final = -2.0
+_MOST_LEVELS: Final = 18  # keys have 21 bits for each coordinate
+_PLACES_AT_ONCE: Final = 1 << 13
+_PAIRS_AT_ONCE: Final = 1 << 20
+
+
+class ElementGrid:
+    """Triangles or lines in cells that are as long as they are.
+
+    Elements of one length, up to a factor of two, share a grid: each is in the cells that it comes
+    closer to than the reach.
+    """
+
+    def __init__(self, corners: Floats, reach: float) -> None:
+        """Sort elements into cells.
+
+        Args:
+            corners: Of shape (n, 3, 3) for triangles, (n, 2, 2) for lines.
+            reach: How far from a place elements are found.
+        """
+        self._corners = corners
+        low, high = corners.min(axis=1) - reach, corners.max(axis=1) + reach
+        self._origin = low.min(axis=0)
+        lengths = (high - low).max(axis=1)
+        self._base = max(float(lengths.min()), float(lengths.max()) * 2.0**-_MOST_LEVELS)
+        level = np.ceil(np.log2(np.maximum(lengths / self._base, 1.0))).astype(np.int64)
+        self._levels = []
+        for number in numbers_in(level):
+            side = self._base * 2.0 ** int(number)
+            own = np.flatnonzero(level == number)
+            self._levels.append(
+                (side, *_sorted(own, self._cells(low[own], side), self._cells(high[own], side)))
+            )
+
+    def _cells(self, places: Floats, side: float) -> Integers:
+        found: Integers = np.floor((places - self._origin) / side).astype(np.int64)
+        return found
+
+    def distances(self, places: Floats, normals: Floats | None = None) -> Floats:
+        """Return the distance of each place to the nearest element that faces as it does.
+
+        It is infinite where none is within reach; elements that are farther may count.
+
+        Args:
+            places: The places.
+            normals: The normal at each, of length 1; None if elements may face anywhere.
+        """
+        least = _ALIKE if normals is not None else _ANY
+        given = np.zeros_like(places) if normals is None else normals
+
+        def of_some(rows: slice) -> Floats:
+            return self._distances(places[rows], given[rows], least)
+
+        found = parallel_map(of_some, slices_of(len(places), _PLACES_AT_ONCE))
+        return np.concatenate([np.empty(0), *found])
+
+    def _distances(self, places: Floats, normals: Floats, cosine: float) -> Floats:
+        nearest = np.full(len(places), np.inf)
+        for side, keys, elements in self._levels:
+            at = _keys(self._cells(places, side))
+            first = np.searchsorted(keys, at)
+            count = np.searchsorted(keys, at, side="right") - first
+            for some in _parts(count, _PAIRS_AT_ONCE):
+                place, row = runs(some, first[some], count[some])
+                corners = self._corners[elements[row]]
+                ends = [corners[:, i] for i in range(corners.shape[1])]
+                function = distance_to_line if len(ends) == 2 else distance_to_triangle
+                least = np.full(len(place), cosine)
+                away = rows_of(function, places[place], normals[place], *ends, least)
+                np.minimum.at(nearest, place, np.where(away < 1e29, away, np.inf))
+        return nearest
+
+
+def to_triangles(corners: Floats, places: Floats, known: Floats, enough: float) -> Floats:
+    """Return the distances of places to triangles, where larger ones than are enough are known.
+
+    Args:
+        corners: Of shape (n, 3, 3).
+        places: Of shape (m, 3).
+        known: A distance of each place that is not too small; infinite ones stay.
+        enough: Smaller ones stay, too.
+    """
+    rows = np.flatnonzero((known > enough) & np.isfinite(known))
+    if not len(rows) or not len(corners):
+        return known
+    found = known.copy()
+    grid = ElementGrid(corners, float(known[rows].max()))
+    found[rows] = np.minimum(known[rows], grid.distances(places[rows]))
+    return found
+
+
+def _parts(count: Integers, most: int) -> list[Integers]:
+    """Return the rows whose counts are not 0, in parts with about so many together."""
+    rows = np.flatnonzero(count)
+    ends = np.flatnonzero(np.diff(np.cumsum(count[rows]) // most)) + 1
+    return [part for part in np.split(rows, ends) if len(part)]
+
+
+def _keys(cells: Integers) -> Integers:
+    """Return keys of cells of space or of the plane; those outside of the grid have none."""
+    solid = np.concatenate([cells, np.zeros((len(cells), 3 - cells.shape[1]), np.int64)], axis=1)
+    inside: Bools = np.all((solid >= 0) & (solid < 1 << 20), axis=1)
+    return np.where(inside, keys_of(np.where(inside[:, None], solid, 0)), -1)
+
+
+def _sorted(own: Integers, low: Integers, high: Integers) -> tuple[Integers, Integers]:
+    """Return the keys of the cells of elements, sorted, and the elements.
+
+    Args:
+        own: The elements.
+        low: The lowest cell of each.
+        high: The highest, at most one farther along each axis.
+    """
+    keys, elements = [], []
+    for bits in product((0, 1), repeat=low.shape[1]):
+        cells = low + np.array(bits)
+        there = np.flatnonzero((cells <= high).all(axis=1))
+        keys.append(_keys(cells[there]))
+        elements.append(own[there])
+    key, element = np.concatenate(keys), np.concatenate(elements)
+    order = np.argsort(key, kind="stable")
+    return key[order], element[order]

@@ -1,0 +1,132 @@
+"""The axes of a box, seen from a shape below moves: so that boxes are not turned several times.
+
+Input: rigid moves and scales, from the outermost. Output: the axes of the outermost box, in the
+coordinates of what is below, and boxes along them. A box around a turned box is larger than the box
+around the turned shape: what is below a turn is asked for its box along the axes above it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Final, TypeGuard, TypeVar
+
+from distal.fields.combine.alternatives import SELECT
+from distal.fields.extents import along_axes, moved_along
+from distal.fields.guarantees import Growth, Operator, signature_types
+from distal.fields.repeat.varied import IN_CELLS
+from distal.ir.build import compose, multiply
+from distal.ir.build import number as constant_number
+from distal.ir.nodes import Expr
+from distal.ir.types import VEC3
+from distal.lang.functions import Func
+from distal.scene.tree.node import Node
+from distal.scene.tree.values import StatementList
+
+# The most children of an operator whose bounds are composed in one function.
+AT_ONCE: Final = 16
+_NUMBERS: Final = (constant_number(0.0), constant_number(1.0))
+Call = Callable[..., Expr]
+
+
+@dataclass(frozen=True, slots=True)
+class BoxAxes:
+    """The axes of a box, seen from a shape.
+
+    Attributes:
+        x: The vector whose product with a point of the shape is its place along the box's x axis,
+            but for ``at``.
+        y: The same for the y axis.
+        z: The same for the z axis.
+        at: Where the shape's origin is along the three axes.
+    """
+
+    x: Expr
+    y: Expr
+    z: Expr
+    at: Expr
+
+    @staticmethod
+    def own() -> BoxAxes:
+        """Return the axes of the shape's own space."""
+        x, y, z = (_vector(*(int(i == j) for j in range(3))) for i in range(3))
+        return BoxAxes(x, y, z, _vector(0, 0, 0))
+
+    def below(
+        self, body: StatementList, call: Call, rule: Operator, own: Mapping[str, Expr]
+    ) -> BoxAxes:
+        """Return the axes, seen from the child of a rigid move or a scale.
+
+        Args:
+            body: The statements to add to.
+            call: Adds a call of a library function (``Assembly.call``).
+            rule: The operator.
+            own: Its numbers, by name.
+        """
+        assert rule.turn is not None
+        factor = None
+        if rule.finish is not None:  # what it makes of a distance of 1
+            factor = call(rule.finish, {**own, "d": _NUMBERS[1]})
+        ways = []
+        for way in (self.x, self.y, self.z):
+            turned = call(rule.turn, {**own, "p": way})
+            ways.append(body.let("way", turned if factor is None else multiply(turned, factor)))
+        origin = call(rule.point, {**own, "p": _vector(0, 0, 0)})
+        x, y, z = ways
+        moved = {"at": self.at, "origin": origin, "x": x, "y": y, "z": z}
+        return BoxAxes(x, y, z, body.let("start", call(moved_along, moved)))
+
+    def box(self, body: StatementList, call: Call, bounds: Expr) -> Expr:
+        """Return the box along these axes around a box of the shape's own space.
+
+        Args:
+            body: The statements to add to.
+            call: Adds a call of a library function (``Assembly.call``).
+            bounds: The box.
+        """
+        given = {"bounds": bounds, "x": self.x, "y": self.y, "z": self.z, "at": self.at}
+        return body.let("bounds", call(along_axes, given))
+
+
+def _vector(x: int, y: int, z: int) -> Expr:
+    return compose(VEC3, _NUMBERS[x], _NUMBERS[y], _NUMBERS[z])
+
+
+def is_move(rule: object) -> TypeGuard[Operator]:
+    """Return whether a rule is a rigid move or a scale."""
+    return isinstance(rule, Operator) and rule.turn is not None
+
+
+def names_no_axis(rule: Operator) -> bool:
+    """Return whether the rules for box and growth hold along any axes: a shape stays where it is.
+
+    Rules that hold for boxes and rectangles alike name no axis.
+    """
+    if isinstance(rule.growth, Func):
+        return False
+    if rule.bounds is None:
+        return rule.point is None and rule.around is None
+    return isinstance(signature_types(rule.bounds)["return"], TypeVar)
+
+
+def passes_axes(node: Node) -> bool:
+    """Return whether the box of a node along any axes follows from those of its children."""
+    rule = node.rule
+    if not isinstance(rule, Operator) or rule is SELECT or rule is IN_CELLS:
+        return False
+    if node.flat or node.has_rows or len(node.children) > AT_ONCE:
+        return False
+    return is_move(rule) or names_no_axis(rule)
+
+
+def turns_boxes_again(node: Node) -> bool:
+    """Return whether a node turns a shape whose box is not its own: one that is turned or combined.
+
+    Args:
+        node: The node.
+    """
+    turns = 0
+    while passes_axes(node) and is_move(node.rule):
+        turns += node.rule.growth is Growth.TURNED
+        (node,) = node.children
+    return turns > 1 or (turns == 1 and passes_axes(node))
