@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from distal import Box, Circle, Cone, Cylinder, Plane, Shape, Sphere
+from distal import Box, Circle, Cone, Cylinder, Octahedron, Plane, Shape, Sphere
 from distal.devices import threads
 from distal.devices.base import Cancelled
 from distal.diagnostics import CompileError
@@ -178,12 +178,12 @@ def test_lost_parts_are_named() -> None:
 
 def test_cut_corners_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tree_topology, "MOST_LEVELS", 0)  # otherwise no corner is cut
-    made = Box(1.0, 0.7, 0.4).rotate(x=0.3, y=0.5, z=0.7).named("block").mesh(tolerance=0.012)
+    made = Octahedron(0.7).rotate(x=0.3, y=0.5, z=0.7).named("block").mesh(tolerance=0.01)
     report = made.report
     (warning,) = report["warnings"]
-    assert warning.startswith("a corner of 'block (Box)' (line ")
+    assert warning.startswith("a corner of 'block (Octahedron)' (line ")
     assert "is cut by up to 0.0" in warning
-    assert report["error"]["largest"] <= 0.012 < report["error"]["cut_corner"] < report["spacing"]
+    assert report["error"]["largest"] <= 0.01 < report["error"]["cut_corner"] < report["spacing"]
 
 
 @func

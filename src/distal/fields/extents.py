@@ -174,7 +174,7 @@ def along_axes(bounds: Bounds, x: vec3, y: vec3, z: vec3, at: vec3) -> Bounds:
 
     Args:
         bounds: The box.
-        x: The first axis, times a scale.
+        x: The first axis.
         y: The second axis.
         z: The third axis.
         at: Where the origin is along the axes.
@@ -184,17 +184,18 @@ def along_axes(bounds: Bounds, x: vec3, y: vec3, z: vec3, at: vec3) -> Bounds:
 
 
 @func
-def moved_along(at: vec3, origin: vec3, x: vec3, y: vec3, z: vec3) -> vec3:
+def moved_along(at: vec3, factor: float, origin: vec3, x: vec3, y: vec3, z: vec3) -> vec3:
     """Return where the origin of a moved shape is along axes.
 
     Args:
         at: Where the origin is before the move.
+        factor: How much the move scales the shape.
         origin: What the move makes of the origin: the point at which the shape is evaluated.
         x: The first axis, seen from the shape.
         y: The second axis.
         z: The third axis.
     """
-    return at - vec3(dot(x, origin), dot(y, origin), dot(z, origin))
+    return at / factor - vec3(dot(x, origin), dot(y, origin), dot(z, origin))
 
 
 @func

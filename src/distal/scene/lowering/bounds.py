@@ -15,6 +15,7 @@ from typing import Final, assert_never
 from distal.fields.boxes import everywhere, everywhere2, hull, hull2
 from distal.fields.combine.alternatives import NOTHINGS, SELECT, box_if
 from distal.fields.combine.joins import COMPLEMENT
+from distal.fields.extents import overlap
 from distal.fields.guarantees import (
     BOUNDS_OF_CHILD,
     UNBOUNDED,
@@ -36,6 +37,7 @@ from distal.lang.functions import Func
 from distal.scene.lowering.box_axes import (
     AT_ONCE,
     BoxAxes,
+    is_cut_twice,
     is_move,
     passes_axes,
     turns_boxes_again,
@@ -169,11 +171,20 @@ class BoundsComposer:
         rule = node.rule
         assert isinstance(rule, Operator)
         if is_move(rule):
-            axes = axes.below(body, self._call, rule, own)
-            return self.of(body, node.children[0], shares[0], axes)
-        children = zip(node.children, shares, strict=True)
-        inner = [self.of(body, child, share, axes) for child, share in children]
-        return self.of_operator(body, rule, inner, own)
+            below = axes.below(body, self._call, rule, own)
+            found = self.of(body, node.children[0], shares[0], below)
+            return replace(found, bounds=axes.above(body, self._call, rule, own, found.bounds))
+        children = list(zip(node.children, shares, strict=True))
+        below = axes.inside(rule)
+        inner = [self.of(body, child, share, below) for child, share in children]
+        found = self.of_operator(body, rule, inner, own)
+        if not is_cut_twice(rule, axes):
+            return found
+        plain = BoxAxes.own(below.overlaps)
+        inner = [self.of(body, child, share, plain) for child, share in children]
+        box = axes.box(body, self._call, self.of_operator(body, rule, inner, own).bounds)
+        both = {"bounds_a": found.bounds, "bounds_b": box}
+        return replace(found, bounds=body.let("bounds", self._call(overlap, both)))
 
     def _of_many(
         self,
