@@ -18,7 +18,6 @@ from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
-from weakref import WeakKeyDictionary
 
 from distal.author_errors import failure, hint_of_nothing, hint_of_syntax
 from distal.diagnostics import CompileError, Diagnostic, LoadError, Span, readable
@@ -27,6 +26,7 @@ from distal.example_files import EXAMPLE_PREFIX, all_examples
 from distal.ir.nodes import EntryKind
 from distal.lang.composed import Composed
 from distal.lang.functions import FrameBuffer, Func, Image
+from distal.lang.identity_map import IdentityMap
 from distal.source_text import SourceTextError, decoded, lines_of, with_plain_ends
 
 # The objects that a scene file may define.
@@ -54,7 +54,7 @@ class LoadedFrom:
     began_ns: int = field(default=0, compare=False)
 
 
-_loaded: WeakKeyDictionary[Any, LoadedFrom] = WeakKeyDictionary()
+_loaded: IdentityMap[LoadedFrom] = IdentityMap()
 
 
 def loaded_from(obj: object) -> LoadedFrom | None:

@@ -75,6 +75,11 @@ class Interned:
                 _remove_dead(_TABLE, key)
         return found
 
+    def __reduce__(self) -> tuple[type[Self], tuple[Any, ...]]:
+        """Pickle the class and the fields: another process interns the node too."""
+        names = (f.name for f in fields(cast(Any, self)) if f.name != "span")
+        return type(self), tuple(getattr(self, name) for name in names)
+
 
 @dataclass_transform(eq_default=False, frozen_default=True, field_specifiers=(field,))
 def interned(cls: type[_Class]) -> type[_Class]:

@@ -9,7 +9,6 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
-from weakref import WeakKeyDictionary
 
 from distal.at_once import AtOnce
 from distal.backends import get_target
@@ -19,6 +18,7 @@ from distal.images.picture import Provenance
 from distal.ir.nodes import Module, Origin
 from distal.ir.types import Buffer
 from distal.lang.composed import Composed
+from distal.lang.identity_map import IdentityMap
 from distal.lang.render_options import RenderOptions
 from distal.loading import loaded_from
 from distal.runtime.lowered import Lowered
@@ -52,7 +52,7 @@ class FunctionTapes:
     """The tapes of functions, kept while the functions exist."""
 
     def __init__(self) -> None:
-        self._known: WeakKeyDictionary[Any, _Known] = WeakKeyDictionary()
+        self._known: IdentityMap[_Known] = IdentityMap()
         self._at_once = AtOnce()
 
     def ready(self, function: Composed, tape: Ready) -> TapeProgram:

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final, NoReturn
-from weakref import WeakKeyDictionary
 
 from distal.at_once import AtOnce
 from distal.backends import get_target
@@ -22,6 +21,7 @@ from distal.ir.walk import expressions_in, map_expressions, substitute
 from distal.lang.composed import Composed
 from distal.lang.expressions import Expression
 from distal.lang.functions import Func, Image
+from distal.lang.identity_map import IdentityMap
 from distal.lang.live_textures import ImageInput, Keyboard, LiveTexture, SoundFile
 from distal.lang.names import LangFunction
 from distal.lang.parameters import Parameter
@@ -66,8 +66,8 @@ class StandardExecutor:
 
     def __init__(self) -> None:
         self._at_once = AtOnce()
-        self._lowered: WeakKeyDictionary[Any, dict[Types, Lowered]] = WeakKeyDictionary()
-        self._together: WeakKeyDictionary[Any, Parts] = WeakKeyDictionary()
+        self._lowered: IdentityMap[dict[Types, Lowered]] = IdentityMap()
+        self._together: IdentityMap[Parts] = IdentityMap()
 
     def parameters(self, function: Func | Composed) -> list[Parameter]:
         """Return the parameters that a function and its callees read, in order of first use."""

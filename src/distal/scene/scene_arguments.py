@@ -180,6 +180,6 @@ def checked_lights(lights: Any, place: Span | None) -> tuple[Light, ...]:
 
 def with_surroundings(given: Sequence[Light], around: Light | None) -> tuple[Light, ...]:
     """Return lights and the light of the background, which counts once if it is among them."""
-    if around is None or around in given:
+    if around is None or any(around is light for light in given):
         return tuple(given)
     return (*given, around)

@@ -44,6 +44,7 @@ from distal.ir.nodes import (
 )
 from distal.ir.types import INT, UINT, Scalar, Type, Vector
 from distal.ir.walk import statements_in
+from distal.lang.source_places import is_library
 
 INT_MAX = 2**31 - 1
 
@@ -64,8 +65,12 @@ def falls_through(body: tuple[Stmt, ...]) -> bool:
 
 
 def place(span: Span) -> str:
-    """Return the file's name and the line for a comment, without the folder."""
-    return f"{comment_text(PurePath(span.file.replace(chr(92), '/')).name)}:{span.line}"
+    """Return the file's name and the line for a comment, without the folder.
+
+    Of a file of distal the name alone: its lines change with each version, the program does not.
+    """
+    name = comment_text(PurePath(span.file.replace(chr(92), "/")).name)
+    return name if is_library(span.file) else f"{name}:{span.line}"
 
 
 class FunctionWriter(ExpressionWriter):

@@ -68,6 +68,9 @@ class Compilation:
         self.diagnostics: list[Diagnostic] = []
         self.in_progress: list[Instance] = []
         self.instances: dict[Any, Instance] = {}
+        # By identity: objects that are equal have places of their own. The objects are kept, so
+        # that no other one gets their identity.
+        self._composed: dict[int, tuple[Composed, Instance]] = {}
         self.is_too_deep = False
         self.recordings: list[Recording] = []
         self._signatures: dict[Overload, FunctionSignature] = {}
@@ -353,17 +356,18 @@ class Compilation:
             CompileError: The object contains itself.
         """
         self._not_lasting()
-        known = self.instances.get(obj)
-        if known is None:
+        _, instance = self._composed.get(id(obj), (obj, None))
+        if instance is None:
             types = tuple(type for _, type in obj.signature)
-            known = self.instances[obj] = Instance("", obj.name, types)
-            known.name = obj.compose(self.assembly)
-            known.result = next(f.result for f in self.functions if f.name == known.name)
-        elif not known.name:
+            instance = Instance("", obj.name, types)
+            self._composed[id(obj)] = (obj, instance)
+            instance.name = obj.compose(self.assembly)
+            instance.result = next(f.result for f in self.functions if f.name == instance.name)
+        elif not instance.name:
             raise CompileError.at(
                 ErrorCode.RECURSION, f"'{obj.name}' is part of itself", None, "write a loop"
             )
-        return known
+        return instance
 
     def check_recursion(self, instance: Instance, span: Span) -> None:
         """Check that a called function is not being lowered now.
