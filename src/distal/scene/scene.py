@@ -45,6 +45,7 @@ from distal.scene.scene_arguments import (
     one_of,
     whole,
 )
+from distal.scene.scene_values import SceneValue
 from distal.scene.steering import Steering
 from distal.scene.tree.shown_numbers import placed
 from distal.scene.view_options import MODES, ViewOptions
@@ -53,6 +54,7 @@ if TYPE_CHECKING:
     from distributed import Client
 
     from distal.cluster.pool import WorkerPool
+    from distal.diagnostics import Span
     from distal.images.picture import Picture
     from distal.mesh.scene_parts import SceneParts
     from distal.scene import rendering
@@ -77,7 +79,7 @@ WORDS: Final[Mapping[str, tuple[str, ...]]] = {
 }
 
 
-class Scene(Composed, Presentable):
+class Scene(SceneValue, Composed, Presentable):
     """Shapes, lights and a camera.
 
     What is not given comes from a look: lights, background, camera, floor, exposure, tone map,
@@ -170,7 +172,7 @@ class Scene(Composed, Presentable):
         far: Number | None = None,
         name: str = "scene",
     ) -> None:
-        # Set before by ``of_shape`` and ``in_look``.
+        # Set before by ``of_shape`` and ``_remade``.
         place = self.place = self.__dict__.get("place") or author_place()
         self.name = name
         numbers = {
@@ -184,7 +186,8 @@ class Scene(Composed, Presentable):
         given = GivenArguments(
             shape, lights, camera, background, default_material, tone_map, numbers
         )
-        made = Dressed(given, as_look(look, place), place, self.__dict__.get("staged"))
+        self.look = as_look(look, place)
+        made = Dressed(given, self.look, place, self.__dict__.get("staged"))
         with paused_collection():  # it would traverse all parts
             standing = floor if floor is not None else made.wants_floor(named=look is not None)
             self.has_floor = standing
@@ -216,6 +219,7 @@ class Scene(Composed, Presentable):
             "lights": None if lights is None else made.given_lights,
             "camera": camera,
             "background": background,
+            "look": look,
             "floor": floor,
             **numbers,
             "tone_map": tone_map,
@@ -258,10 +262,15 @@ class Scene(Composed, Presentable):
         """Return the scene in another look; what its author gave stays. None keeps the look."""
         if look is None:
             return self
-        made = Scene.__new__(Scene)
-        made.__dict__.update(staged=self.staged, place=self.place)
-        Scene.__init__(made, **self._given, look=look)
+        made = self._remade({"look": look}, self.place)
         made.__dict__["asked_display"] = {**self.asked_display, "look": look}
+        return made
+
+    def _remade(self, changes: Mapping[str, Any], place: Span | None) -> Scene:
+        made = Scene.__new__(Scene)
+        made.__dict__.update(staged=self.staged, place=place)
+        Scene.__init__(made, **{**self._given, **changes})
+        made.__dict__["asked_display"] = self.asked_display
         copy_loaded_from(self, made)
         return made
 

@@ -7,14 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final, Literal, TypeAlias
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 from distal.diagnostics import Span
 from distal.fields.guarantees import Limit
 from distal.lang import func, vec3
 from distal.lang.functions import Func
 from distal.lang.immutable import Immutable
+from distal.lang.source_places import author_place
 from distal.scene.tree.arguments import arguments
+from distal.scene.tree.value import Value, value_of
 
 # How the main light shines: as a lamp at some distance, or as the sun.
 Shining: TypeAlias = Literal["lamp", "sun"]
@@ -117,7 +120,7 @@ class LookRow:
     lined: bool = False
 
 
-class Look(Immutable):
+class Look(Value, Immutable):
     """The light, background, camera, floor and tone map of a scene, where the author gives none.
 
     A look never changes after construction; ``studio(exposure=1.5)`` makes one with other numbers.
@@ -138,11 +141,12 @@ class Look(Immutable):
         numbers: All numbers, checked, by name.
     """
 
-    __slots__ = ("name", "numbers", "row")
+    __slots__ = ("_changed", "name", "numbers", "row")
 
     name: str
     row: LookRow
     numbers: Mapping[str, Any]
+    _changed: Mapping[str, Any]
 
     def __init__(
         self, name: str, row: LookRow, changed: Mapping[str, Any], place: Span | None
@@ -156,7 +160,7 @@ class Look(Immutable):
             colors=COLORS,
             place=place,
         )
-        made = {"name": name, "row": row, "numbers": numbers}
+        made = {"name": name, "row": row, "numbers": numbers, "_changed": changed}
         for attribute, value in made.items():
             object.__setattr__(self, attribute, value)
 
@@ -165,6 +169,30 @@ class Look(Immutable):
 
     def __repr__(self) -> str:
         return f"<look {self.name}>"
+
+    @property
+    def arguments(self) -> Mapping[str, Any]:
+        """All numbers of the look, checked, by name."""
+        return MappingProxyType({name: value_of(v) for name, v in self.numbers.items()})
+
+    def replace(self, **changes: Any) -> Look:
+        """Return the look with other numbers: ``look.replace(exposure=1.2)``.
+
+        Args:
+            changes: The numbers that change, by name.
+
+        Raises:
+            SceneTypeError: There is no such number, or it is of another kind.
+            SceneValueError: A number is out of its range.
+        """
+        return Look(self.name, self.row, {**self._changed, **changes}, author_place())
+
+    if not TYPE_CHECKING:  # a checker reports an unknown name itself
+
+        def __getattr__(self, name):
+            if name.startswith("_") or name not in self.numbers:
+                raise AttributeError(f"a look has no '{name}'", name=name, obj=self)
+            return value_of(self.numbers[name])
 
     def __getitem__(self, name: str) -> Any:
         """Return one of the numbers: a float, a tuple, or an expression."""

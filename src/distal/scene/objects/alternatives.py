@@ -23,12 +23,14 @@ from distal.scene.objects.field import BaseShape
 from distal.scene.tree.conversion import Asked, Number, choice
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
+from distal.scene.tree.value import recorded
 from distal.scene.tree.varying import varying_or_same
 from distal.scene.tree.whole_numbers import whole_ends
 
 S = TypeVar("S", bound=BaseShape)
 
 
+@recorded
 def choose(
     which: Parameter | Expression | int, shapes: Mapping[str, S | None] | Sequence[S | None]
 ) -> S:
@@ -67,6 +69,7 @@ def choose(
     return made
 
 
+@recorded
 def selected(condition: Any, yes: Any, no: Any) -> Any:
     """Return ``yes`` where a condition holds, else ``no``; ``select`` of two shapes.
 

@@ -8,7 +8,7 @@ lights): no light is counted twice.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from distal.diagnostics import Span
@@ -38,6 +38,7 @@ from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import unwrapped
 from distal.scene.tree.errors import refuse_kind
+from distal.scene.tree.value import recorded
 
 if TYPE_CHECKING:
     from distal.scene.objects import images as image_files
@@ -46,6 +47,7 @@ else:
     image_files = LazyModule("distal.scene.objects.images")  # needs NumPy
 
 
+@recorded
 class Background(CalledObject):
     """The light of rays that hit nothing.
 
@@ -85,6 +87,7 @@ class Background(CalledObject):
         return made
 
 
+@recorded
 class DeclaredBackground(Background):
     """A background of a declared scene function."""
 
@@ -110,7 +113,11 @@ class Surroundings(Light):
     background: FunctionCall
     light: bool
 
+    def _checked(self) -> Iterator[Mapping[str, Any]]:
+        yield self.background.values
 
+
+@recorded
 class DeclaredSurroundings(Surroundings):
     """Surroundings from a declared scene function and its functions as a light."""
 
@@ -129,6 +136,7 @@ class DeclaredSurroundings(Surroundings):
         )
 
 
+@recorded
 class Environment(Surroundings):
     """Surroundings from a panorama picture (equirectangular: -z in the middle, y up).
 

@@ -8,7 +8,7 @@ y up; by default a camera looks along -z.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from distal.diagnostics import Span
@@ -32,6 +32,7 @@ from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import Asked, number
 from distal.scene.tree.conversion import Number as CheckedNumber
 from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.value import recorded
 from distal.scene.tree.varying import Composer
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
 _DEGREE: Final = math.pi / 180.0
 
 
+@recorded
 class BaseCamera(CalledObject):
     """The base class of cameras.
 
@@ -52,6 +54,7 @@ class BaseCamera(CalledObject):
     __slots__ = ("lens",)
 
     noun: ClassVar[str] = "camera"
+    alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (("fov", "fov_deg"),)
     lens: FunctionCall | None
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
@@ -70,6 +73,9 @@ class BaseCamera(CalledObject):
         """Emit one of the camera's values, such as its target; None if it has no such value."""
         return self.call.value(composer, name) if name in self.call.values else None
 
+    def _checked(self) -> Iterator[Mapping[str, Any]]:
+        yield from (call.values for call in (self.call, self.lens) if call is not None)
+
     def functions(self) -> Iterator[Func]:
         """Yield the scene functions that the camera calls."""
         yield from self.call.functions()
@@ -77,6 +83,7 @@ class BaseCamera(CalledObject):
             yield from self.lens.functions()
 
 
+@recorded
 class TurnedCamera(BaseCamera):
     """A camera rotated by angles; its screen is a rectangle of a physical size.
 
@@ -101,6 +108,8 @@ class TurnedCamera(BaseCamera):
     """
 
     __slots__ = ()
+
+    alternatives: ClassVar = (("screen_distance", "fov", "fov_deg"),)
 
     def __init__(
         self,

@@ -20,14 +20,16 @@ from distal.fields.guarantees import Limit, Operator
 from distal.fields.place import solid as placing
 from distal.ir.types import FLOAT, INT, VEC3, VEC4, Type
 from distal.lang.source_places import author_place
-from distal.scene.objects.field import PLAIN, BaseShape
+from distal.scene.objects.field import BaseShape
 from distal.scene.objects.materials import Material, as_material
+from distal.scene.objects.shape_values import PLAIN
 from distal.scene.objects.turns import LEAST_DEGREES, STEP_OF_DEGREES, warn_of_degrees
 from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.columns import choices, column, rows_of
 from distal.scene.tree.conversion import NO_VALUES, Asked, Number, is_scalar, number, unwrapped
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
+from distal.scene.tree.value import recorded
 from distal.scene.tree.varying import varied_in
 
 if TYPE_CHECKING:
@@ -43,6 +45,7 @@ _ROTATIONS: Final[dict[int, tuple[Operator, str, Type, Limit]]] = {
 }
 
 
+@recorded
 def copies(
     shapes: Shape | Iterable[Shape],
     positions: Columns,

@@ -28,8 +28,10 @@ from distal.scene.tree.arguments import Accept, FunctionParameter, arguments, sl
 from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import unwrapped
 from distal.scene.tree.errors import refuse_kind
+from distal.scene.tree.value import Origin, Value, argument, has
 
 C = TypeVar("C")
+V = TypeVar("V", bound=Value)
 
 _BY_POSITION: Final = inspect.Parameter.POSITIONAL_OR_KEYWORD
 _BY_NAME: Final = inspect.Parameter.KEYWORD_ONLY
@@ -246,16 +248,17 @@ def declared_class(declaration: Declaration, base: type[C]) -> type[C]:
         "__module__": base.__module__,
         "__signature__": signature_of(declaration),
         "declaration": declaration,
+        **{n: argument(n) for n in signature_of(declaration).parameters if not has(base, n)},
     }
     return type(declaration.name, (base,), body)
 
 
 def declared_function(
     declaration: Declaration,
-    make: Callable[[Declaration, dict[str, Any], Span | None], C],
+    make: Callable[[Declaration, dict[str, Any], Span | None], V],
     module: str,
     returns: str,
-) -> Callable[..., C]:
+) -> Callable[..., V]:
     """Return the public function of a declaration.
 
     Args:
@@ -265,10 +268,12 @@ def declared_function(
         returns: The name of the type that the function returns.
     """
 
-    def made(*args: Any, **kwargs: Any) -> C:
+    def made(*args: Any, **kwargs: Any) -> V:
         place = author_place()
         given = given_arguments(declaration, args, kwargs, declaration.name, place)
-        return make(declaration, given, place)
+        value = make(declaration, given, place)
+        value._record(Origin(made, (), given, type(value)))
+        return value
 
     made.__name__ = made.__qualname__ = declaration.name
     made.__module__ = module

@@ -17,6 +17,7 @@ from distal.scene.objects.shape import Shape
 from distal.scene.objects.shapes import made_of
 from distal.scene.tree.conversion import is_scalar
 from distal.scene.tree.errors import refuse
+from distal.scene.tree.value import recorded
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Amount
@@ -29,6 +30,7 @@ _BEVEL_ANGLE: Final = math.pi / 3.0
 _SINK: Final = 0.05  # the countersink of a nut, in diameters
 
 
+@recorded
 class MetricThread(Shape):
     """Threaded rod of a metric size with its coarse pitch, centred at the origin.
 
@@ -51,6 +53,7 @@ class MetricThread(Shape):
         BaseShape.__init__(self, made.named("MetricThread").node)
 
 
+@recorded
 class MetricHole(Shape):
     """Hole to subtract from a part, threaded for a metric size, or wide enough for a bolt.
 
@@ -91,6 +94,7 @@ class MetricHole(Shape):
         BaseShape.__init__(self, made.named("MetricHole").node)
 
 
+@recorded
 class Bolt(Shape):
     """Bolt with a hexagon head, pointing downwards; the head stands on y = 0.
 
@@ -130,6 +134,7 @@ class Bolt(Shape):
         BaseShape.__init__(self, head.union(*parts).named("Bolt").node)
 
 
+@recorded
 class Nut(Shape):
     """Hexagon nut around the y axis, centred at the origin.
 

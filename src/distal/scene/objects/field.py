@@ -37,6 +37,7 @@ from distal.scene.objects.binding import bound, own_node
 from distal.scene.objects.materials import as_material
 from distal.scene.objects.other_names import instead
 from distal.scene.objects.proving import proved
+from distal.scene.objects.shape_values import PLAIN, ShapeValue
 from distal.scene.objects.shaped_edges import suited
 from distal.scene.objects.vm_shapes import vm_node
 from distal.scene.tree.arguments import RESERVED, slots_of
@@ -45,6 +46,7 @@ from distal.scene.tree.conversion import Number as Checked
 from distal.scene.tree.described import described
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
+from distal.scene.tree.value import recorded
 from distal.scene.tree.values import plain_name
 
 if TYPE_CHECKING:
@@ -76,7 +78,7 @@ MOST_PARTS: Final = 1_000_000
 S = TypeVar("S", bound="BaseShape")
 
 
-class BaseShape(Composed, Presentable):
+class BaseShape(ShapeValue, Composed, Presentable):
     """The base class of solid and flat shapes."""
 
     flat: ClassVar[bool] = False
@@ -86,6 +88,9 @@ class BaseShape(Composed, Presentable):
     node: Node
 
     def __init__(self, node: Node) -> None:
+        self._set_node(node)
+
+    def _set_node(self, node: Node) -> None:
         if node.parts > MOST_PARTS:
             refuse(
                 f"this {node.name} is made of {node.parts:,} shapes; more than {MOST_PARTS:,} "
@@ -318,6 +323,9 @@ class BaseShape(Composed, Presentable):
         if rule.repeats:
             own = with_bounds_of_cells(own, rule, numbers, constants, place)
         children = (own, *(other.node for other in others))
+        if others:
+            rule, more = suited(rule, children, numbers)
+            numbers = {**numbers, **more}
         made = self._of(Node(rule, flat, children, numbers, constants, place))
         check_slope(made.node)
         return made
@@ -326,7 +334,7 @@ class BaseShape(Composed, Presentable):
     def _of(cls, node: Node) -> Any:
         plain = PLAIN[node.flat]
         made = plain.__new__(plain)
-        BaseShape.__init__(made, node)
+        made._set_node(node)
         return made
 
     def _combined(
@@ -468,24 +476,22 @@ class BaseShape(Composed, Presentable):
         asked = Asked("priority", "paint", INT, Limit.ANY, place=author_place())
         if rank := plain_choice(priority, asked):
             made = made.with_priority(rank)
-        changed: S = self._of(self.node.with_material(made))
-        return changed
+        return self._again(self.node.with_material(made))
 
     def cut_material(self: S, material: Painted) -> S:
         """Set the material of the faces that this shape cuts into others.
 
         Without it, these faces show the material of the shape that is cut.
         """
-        changed: S = self._of(replace(self.node, cut_material=as_material(material)))
-        return changed
+        return self._again(replace(self.node, cut_material=as_material(material)))
 
     def named(self: S, name: str) -> S:
         """Set a name that is used in emitted texts and messages."""
         if not isinstance(name, str) or not name.strip():
             refuse(f"a name is a text, not {name!r}", None, author_place())
-        changed: S = self._of(replace(self.node, label=name))
-        return changed
+        return self._again(replace(self.node, label=name))
 
+    @recorded
     @classmethod
     def from_function(
         cls: type[S],
@@ -554,6 +560,7 @@ class BaseShape(Composed, Presentable):
         made: S = cls._of(node)
         return made
 
+    @recorded
     @classmethod
     def from_vm(
         cls: type[S],
@@ -599,10 +606,6 @@ def _flat_result(rule: Operator, flat: bool) -> bool | None:
 
 
 _ASSOCIATIVE: Final = (joins.UNION, joins.INTERSECTION)
-
-
-# The class of an operator's result, by ``flat``; the module ``shape`` fills it.
-PLAIN: dict[bool, type[BaseShape]] = {}
 
 
 def joining(

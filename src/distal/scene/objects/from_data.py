@@ -14,6 +14,7 @@ from distal.scene.objects.mesh_shapes import mesh_node, reports_of
 from distal.scene.objects.placed import Placed
 from distal.scene.objects.point_shapes import points_node
 from distal.scene.objects.volume_shapes import volume_node
+from distal.scene.tree.value import recorded
 
 if TYPE_CHECKING:
     from distal.polygons.importing import ImportReport
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 class FromData(Placed):
     """The methods of ``Shape`` that read meshes, volumes and points."""
 
+    @recorded
     @classmethod
     def from_mesh(
         cls,
@@ -87,6 +89,7 @@ class FromData(Placed):
         made: Shape = cls._of(node)
         return made.translate(center)
 
+    @recorded
     @classmethod
     def from_points(
         cls,
@@ -140,6 +143,7 @@ class FromData(Placed):
         made: Shape = cls._of(node)
         return made.translate(center)
 
+    @recorded
     @classmethod
     def from_volume(
         cls,

@@ -15,6 +15,7 @@ from distal.scene.objects.field import BaseShape
 from distal.scene.objects.shape import Shape
 from distal.scene.objects.shapes import made_of
 from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.value import recorded
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Amount
@@ -51,6 +52,7 @@ class Toothed(Shape):
         self.__dict__.update(known)
 
 
+@recorded
 class Gear(Toothed):
     """Gear with involute teeth that turns about the z axis, centred; one tooth points to +y.
 
@@ -95,6 +97,7 @@ class Gear(Toothed):
         )
 
 
+@recorded
 class RingGear(Toothed):
     """Ring with teeth inside, around the z axis, for a ``Gear`` with fewer teeth; a gap is at +y.
 
@@ -141,6 +144,7 @@ class RingGear(Toothed):
         )
 
 
+@recorded
 class Rack(Toothed):
     """Straight bar with teeth along x that point to +y, for a ``Gear`` above it.
 

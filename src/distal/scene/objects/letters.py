@@ -17,6 +17,7 @@ from distal.lang.source_places import author_place
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.shape import Shape2D
 from distal.scene.tree.node import Node
+from distal.scene.tree.value import recorded
 
 if TYPE_CHECKING:
     from distal.scene.objects import lettering, outlines
@@ -25,6 +26,7 @@ else:
     outlines = LazyModule("distal.scene.objects.outlines")  # needs NumPy
 
 
+@recorded
 class Text(Shape2D):
     r"""Text in a font, as a flat shape; the middle of capital letters is at y = 0.
 
@@ -55,6 +57,7 @@ class Text(Shape2D):
         BaseShape.__init__(self, _node(outline, place, even_odd=False))
 
 
+@recorded
 class SvgPath(Shape2D):
     """The area enclosed by an SVG path; y points up, and the middle is at the origin.
 

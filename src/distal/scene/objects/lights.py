@@ -9,7 +9,7 @@ makes it appear white (radiance 1).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Final
 
 from distal.lang.functions import Func
@@ -21,8 +21,10 @@ from distal.scene.objects.declared import declared_call, declared_class, given_a
 from distal.scene.objects.scene_object import SceneObject
 from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.calls import FunctionCall
+from distal.scene.tree.value import recorded
 
 
+@recorded
 class Light(SceneObject):
     """The base class of lights.
 
@@ -67,6 +69,11 @@ class Light(SceneObject):
         ``(u) -> DirectionSample`` and the density, ``(direction) -> float``.
         """
         return None
+
+    def _checked(self) -> Iterator[Mapping[str, Any]]:
+        yield from (
+            call.values for call in (self.radiance, self.sample, self.ambient) if call is not None
+        )
 
     def functions(self) -> Iterator[Func]:
         """Yield the scene functions that the light calls."""

@@ -31,6 +31,7 @@ from distal.scene.tree.calls import FunctionCall, Pattern
 from distal.scene.tree.conversion import Asked, number, unwrapped
 from distal.scene.tree.conversion import Number as CheckedNumber
 from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.value import Origin, recorded, value_of
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Color, Number, Varying
@@ -42,6 +43,7 @@ _SLACK: Final = 1e-6
 _DARKEST: Final = 1e-4
 
 
+@recorded
 class Material(CalledObject):
     """The appearance of a shape. A material never changes after construction.
 
@@ -142,6 +144,15 @@ class Material(CalledObject):
         made._keep(call=call, reflects=reflects, refracts=refracts, emits=emits, priority=priority)
         return made
 
+    def replace(self, **changes: Any) -> Material:
+        """Return the material with other arguments; ``priority`` too, as ``paint`` sets it.
+
+        Raises as the function that makes it.
+        """
+        priority = changes.pop("priority", self.priority)
+        made = super().replace(**changes) if changes else self
+        return made if made.priority == priority else made.with_priority(priority)
+
     def with_call(self, call: FunctionCall) -> Material:
         """Return the material with other values of the same function."""
         return self._with(call, self.priority)
@@ -151,13 +162,15 @@ class Material(CalledObject):
         return self._with(self.call, priority)
 
     def _with(self, call: FunctionCall, priority: int) -> Material:
-        return Material.of(
+        made = Material.of(
             call,
             reflects=self.reflects,
             refracts=self.refracts,
             emits=self.emits,
             priority=priority,
         )
+        made._record(self._origin)
+        return made
 
     @property
     def uses(self) -> frozenset[str]:
@@ -179,13 +192,15 @@ class Material(CalledObject):
             TypeError: The height is a color or another object.
         """
         given = {"surface": self, "height": height}
-        return Material.of(
+        made = Material.of(
             _call("bump", raised, given, author_place(), limits={}),
             reflects=self.reflects,
             refracts=self.refracts,
             emits=self.emits,
             priority=self.priority,
         )
+        made._record(Origin(_bumped, (), given, Material))
+        return made
 
     @property
     def has_bump(self) -> bool:
@@ -206,6 +221,11 @@ class Material(CalledObject):
             t: From 0 to 1; may be a pattern.
         """
         return mixed(self, as_material(other), t, "mix", author_place())
+
+
+def _bumped(surface: Material, height: Number | Varying) -> Material:
+    """Return ``surface.bump(height)``: its arguments are named as those of its function."""
+    return surface.bump(height)
 
 
 @func
@@ -278,16 +298,26 @@ def own_pattern(
     what = function.name
     call = _call(what, function, kwargs, place, args, {})
     result = call.result
+    made: Pattern | Material | None = None
     if isinstance(result, Struct) and result.name == "Surface":
-        return Material.of(call, reflects=True, refracts=True, emits=True)
-    if result is FLOAT or result is VEC3:
-        return Pattern(what, function, call.values, place)
+        made = Material.of(call, reflects=True, refracts=True, emits=True)
+    elif result is FLOAT or result is VEC3:
+        made = Pattern(what, function, call.values, place)
+    if made is not None:
+        numbers = {name: value_of(value) for name, value in call.values.items()}
+        made._record(Origin(pattern_of, (function,), numbers, type(made)))
+        return made
     gives = "nothing that is known" if result is None else f"a {result}"
     refuse_kind(
         f"'{what}' is no pattern: it gives {gives}",
         f"def {what}(p: vec3) -> vec3, or -> float, or -> Surface",
         place,
     )
+
+
+def pattern_of(function: Func, **numbers: Any) -> Pattern | Material:
+    """Make a pattern from an author's function and its numbers by name."""
+    return own_pattern(function, (), numbers, author_place())
 
 
 def mixed(a: Material, b: Material, t: Any, what: str, place: Span | None) -> Material:
@@ -310,12 +340,18 @@ def mixed(a: Material, b: Material, t: Any, what: str, place: Span | None) -> Ma
         accept=accept,
     )
     call = FunctionCall(what, library.mix_surfaces, {"a": a, "b": b, **share}, place)
-    return Material.of(
+    made = Material.of(
         call,
         reflects=a.reflects or b.reflects,
         refracts=a.refracts or b.refracts,
         emits=a.emits or b.emits,
     )
+    made._record(Origin(_mixed_again, (), {"a": a, "b": b, "t": t}, Material))
+    return made
+
+
+def _mixed_again(a: Material, b: Material, t: Number | Varying) -> Material:
+    return a.mix(b, t)
 
 
 def as_material(value: Any, place: Span | None = None) -> Material:
@@ -341,7 +377,9 @@ def as_material(value: Any, place: Span | None = None) -> Material:
             hint,
             place,
         )
-    return _declared(MATERIALS.members["matte"], {"color": value}, place)
+    made = _declared(MATERIALS.members["matte"], {"color": value}, place)
+    made._record(Origin(FUNCTIONS["matte"], (), {"color": value}, Material))
+    return made
 
 
 # Materials with a name
@@ -365,6 +403,7 @@ FUNCTIONS: Final = {
 globals().update(FUNCTIONS)
 
 
+@recorded
 def glass(
     ior: Number | Varying = 1.5,
     color: Color | None = None,

@@ -21,7 +21,7 @@ OTHER_NAMES: Final[Mapping[str, str]] = {
     **dict.fromkeys(("rotate_x", "rotate_y", "rotate_z", "rotateX", "rotateY", "rotateZ"), _ROTATE),
     **dict.fromkeys(("rotated", "rot", "turn"), _ROTATE),
     **dict.fromkeys(("scaled", "resize"), "scale(factor)"),
-    **dict.fromkeys(("color", "colour", "material", "set_material", "with_material"), _PAINT),
+    **dict.fromkeys(("color", "colour", "set_material", "with_material"), _PAINT),
     **dict.fromkeys(("add", "join", "fuse", "merge", "smooth_union", "blend"), _UNION),
     **dict.fromkeys(("subtract", "cut", "minus", "smooth_difference"), _DIFFERENCE),
     **dict.fromkeys(("intersect", "common", "smooth_intersection"), "a & b, or a.intersection(b)"),

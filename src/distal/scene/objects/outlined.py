@@ -12,6 +12,7 @@ from distal.lang.render_options import Cancel, Progress
 from distal.lang.runtime_access import outlining
 from distal.lang.source_places import author_place
 from distal.scene.objects.placed import Placed
+from distal.scene.tree.value import recorded
 
 if TYPE_CHECKING:
     from distal.mesh.outlines.outline import Outline
@@ -25,6 +26,7 @@ else:
 class Outlined(Placed):
     """A flat shape with an outline."""
 
+    @recorded
     @classmethod
     def from_image(
         cls,

@@ -28,6 +28,7 @@ from distal.scene.objects.materials import Material, accept, as_material, mixed,
 from distal.scene.tree.calls import FunctionCall, Pattern
 from distal.scene.tree.conversion import is_scalar
 from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.value import recorded
 
 if TYPE_CHECKING:
     from distal.scene.objects import images as image_files
@@ -83,6 +84,7 @@ def pattern(function: Func, *args: Argument, **kwargs: Argument) -> Any:
     return own_pattern(function, args, kwargs, place)
 
 
+@recorded
 def image_pattern(image: Image, mapping: str = "planar", size: Number | Varying = 1.0) -> Pattern:
     """Project a picture onto a surface.
 
@@ -107,6 +109,7 @@ def image_pattern(image: Image, mapping: str = "planar", size: Number | Varying 
     return _pattern("image_pattern", _MAPPINGS[mapping], given, place)
 
 
+@recorded
 def cube_map(images: Images) -> Pattern:
     """Project six pictures onto a surface from the shape's centre.
 

@@ -10,7 +10,6 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final, TypeVar, overload
 
-from distal.fields.combine.blends import FLAT_UNIONS
 from distal.fields.deform import offsets
 from distal.fields.guarantees import Operator
 from distal.fields.library import OPERATORS
@@ -84,10 +83,7 @@ class Placed(BaseShape):
         place = author_place()
         if operator not in OPERATORS:
             refuse(f"there is no operator '{operator}'", did_you_mean(operator, OPERATORS), place)
-        rule = OPERATORS[operator]
-        if self.flat:
-            rule = FLAT_UNIONS.get(rule, rule)
-        return self._under(rule, args, kwargs, place, others=tuple(others))
+        return self._under(OPERATORS[operator], args, kwargs, place, others=tuple(others))
 
     def shown(self: S, condition: Number) -> S:
         """Show the shape only where a condition holds, else nothing.

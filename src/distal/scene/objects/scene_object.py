@@ -1,7 +1,7 @@
 """Base classes of lights, cameras, materials and backgrounds.
 
-Input: the calls of scene functions that the objects hold. Output: the base classes. Does not depend
-on how the calls are made.
+Input: the calls of scene functions that the objects hold. Output: the base classes, whose objects
+show their arguments. Does not depend on how the calls are made.
 """
 
 from __future__ import annotations
@@ -14,10 +14,11 @@ from distal.lang.functions import Func
 from distal.lang.immutable import Immutable
 from distal.render.declarations import Declaration
 from distal.scene.tree.calls import FunctionCall
+from distal.scene.tree.value import CalledValue
 from distal.scene.tree.varying import Composer
 
 
-class SceneObject(Immutable):
+class SceneObject(CalledValue, Immutable):
     """An object that never changes after construction.
 
     Attributes:
@@ -25,7 +26,7 @@ class SceneObject(Immutable):
         declaration: The declaration that the class was made from, if it was made from one.
     """
 
-    __slots__ = ("__weakref__",)
+    __slots__ = ("__weakref__", "_origin")
 
     noun: ClassVar[str]
     declaration: ClassVar[Declaration]
@@ -55,6 +56,9 @@ class CalledObject(SceneObject):
 
     def __repr__(self) -> str:
         return f"<{self.noun} {self.call.described}>"
+
+    def _checked(self) -> Iterator[Mapping[str, Any]]:
+        yield self.call.values
 
     def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
         """Emit the call. ``site`` provides the function's other arguments (point, normal, cell)."""

@@ -26,13 +26,14 @@ from distal.lang.render_options import Cancel, Progress, RenderOptions
 from distal.lang.source_places import author_place
 from distal.scene.objects.affine import affine_parts, refuse_mirrored
 from distal.scene.objects.copies import CopyColumns, copied
-from distal.scene.objects.field import PLAIN, BaseShape
+from distal.scene.objects.field import BaseShape
 from distal.scene.objects.filling import filled
 from distal.scene.objects.from_data import FromData
 from distal.scene.objects.heights import seen_heights
 from distal.scene.objects.meshable import Meshable
 from distal.scene.objects.outlined import Outlined
 from distal.scene.objects.path_corners import path_corners
+from distal.scene.objects.shape_values import PLAIN
 from distal.scene.objects.turns import warn_of_degrees
 from distal.scene.tree.errors import refuse
 

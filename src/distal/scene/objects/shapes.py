@@ -15,7 +15,9 @@ from distal.lang.source_places import author_place
 from distal.scene.objects.binding import bound
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.shape import Shape, Shape2D
+from distal.scene.objects.shape_values import CLASSES_OF_RULES
 from distal.scene.tree.node import Node
+from distal.scene.tree.value import argument
 
 
 def _make(primitive: Primitive) -> type[BaseShape]:
@@ -37,8 +39,11 @@ def _make(primitive: Primitive) -> type[BaseShape]:
         "__module__": __name__,
         "__signature__": inspect.Signature(own),
         "row": primitive,
+        **{p.name: argument(p.name) for p in own if not hasattr(base, p.name)},
     }
-    return type(primitive.name, (base,), body)
+    made = type(primitive.name, (base,), body)
+    CLASSES_OF_RULES[id(primitive)] = made
+    return made
 
 
 def made_of(name: str, *args: Any, **kwargs: Any) -> Any:

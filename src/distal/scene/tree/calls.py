@@ -25,6 +25,7 @@ from distal.render.footprint import footprint_length
 from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.conversion import NO_VALUES, Number
 from distal.scene.tree.shown_numbers import listed, placed
+from distal.scene.tree.value import CalledValue
 from distal.scene.tree.varying import Composer, expression_of
 
 FOOTPRINT: Final = "footprint"
@@ -157,13 +158,18 @@ def _identifier(what: str) -> str:
     return "".join(c if c.isascii() and c.isalnum() else "_" for c in what)
 
 
-class Pattern(FunctionCall):
+class Pattern(CalledValue, FunctionCall):
     """A color (vec3) or an amount (float) that varies over a surface.
 
     A material accepts it instead of a color or a number.
     """
 
-    __slots__ = ()
+    __slots__ = ("_origin",)
+
+    noun = "pattern"
 
     def __repr__(self) -> str:
         return f"<pattern {self.described}>"
+
+    def _checked(self) -> Iterator[Mapping[str, Any]]:
+        yield self.values

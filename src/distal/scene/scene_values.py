@@ -1,0 +1,97 @@
+"""Scenes as values: their arguments, and scenes with others.
+
+Input: what the author gave a scene, and its checked numbers. Output: arguments by name; attributes
+for the numbers. Does not depend on how a scene is made.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
+
+from distal.frontend.problems import did_you_mean
+from distal.lang.source_places import author_place
+from distal.scene.tree.errors import refuse_kind
+from distal.scene.tree.value import Value, value_of
+
+if TYPE_CHECKING:
+    from distal.diagnostics import Span
+    from distal.scene.looks.look import Look
+    from distal.scene.objects.materials import Material
+    from distal.scene.tree.conversion import Number
+
+
+class SceneValue(Value):
+    """The part of a scene that shows what it was made from.
+
+    ``shape``, ``lights``, ``camera`` and ``background`` are those that are drawn: the author's,
+    else the look's. ``arguments`` are as given.
+
+    Attributes:
+        look: The look that the scene is dressed in.
+    """
+
+    look: Look
+    material: Material
+    has_floor: bool
+    numbers: Mapping[str, Number | None]
+    _given: Mapping[str, Any]
+
+    # The arguments that are numbers, which have no attribute of their own.
+    number_names: ClassVar[tuple[str, ...]] = (
+        "exposure",
+        "fog",
+        "fog_density",
+        "ambient_occlusion",
+        "near",
+        "far",
+        "stride",
+        "stride_growth",
+    )
+
+    @property
+    def arguments(self) -> Mapping[str, Any]:
+        """The arguments by name, as given; None for those that the look decides."""
+        names = inspect.signature(type(self)).parameters
+        return MappingProxyType({name: self._given[name] for name in names})
+
+    @property
+    def floor(self) -> bool:
+        """Whether the scene stands on the look's floor."""
+        return self.has_floor
+
+    @property
+    def default_material(self) -> Material:
+        """The material of shapes without ``paint``."""
+        return self.material
+
+    def replace(self, **changes: Any) -> Self:
+        """Return the scene with other arguments: ``scene.replace(exposure=2, floor=False)``.
+
+        Args:
+            changes: The arguments of ``Scene`` that change, by name.
+
+        Raises:
+            CompileError: At the author's line, as for ``Scene``.
+        """
+        place = author_place()
+        for name in changes:
+            if name not in self._given:
+                hint = did_you_mean(name, self._given) or f"it takes {', '.join(self._given)}"
+                refuse_kind(f"a scene has no '{name}'", hint, place)
+        return self._remade(changes, place)
+
+    def _remade(self, changes: Mapping[str, Any], place: Span | None) -> Self:
+        """Return the scene of other arguments; ``place`` is the line of its messages."""
+        raise NotImplementedError
+
+
+def _number(name: str) -> property:
+    return property(lambda scene: value_of(scene.numbers[name]), doc=f"The argument ``{name}``.")
+
+
+_NUMBERS: Final = {name: _number(name) for name in SceneValue.number_names}
+for _name, _property in _NUMBERS.items():
+    setattr(SceneValue, _name, _property)

@@ -1,0 +1,260 @@
+"""What the objects that an author makes have in common: arguments can be read and replaced.
+
+Input: the objects' own checked values, and the calls that made them. Output: arguments as an author
+gives them, and other objects of the same kind. Does not depend on the objects' classes.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self, TypeVar, cast
+
+from distal.fields.guarantees import ENDLESS
+from distal.ir.nodes import Cast, Uniform
+from distal.lang.expressions import Expression
+from distal.scene.tree.conversion import Number
+from distal.scene.tree.varying import VaryingNumber
+
+Made = TypeVar("Made")
+
+
+class Origin:
+    """The call that made an object; its arguments are bound when they are read.
+
+    Attributes:
+        factory: The class or the function.
+        kind: The class of the object.
+        state: The public attributes of a shape besides its node.
+    """
+
+    __slots__ = ("_args", "_given", "_kwargs", "factory", "kind", "state")
+
+    def __init__(
+        self,
+        factory: Callable[..., Any],
+        args: tuple[Any, ...],
+        kwargs: Mapping[str, Any],
+        kind: type[Any],
+        state: Mapping[str, Any] = MappingProxyType({}),
+    ) -> None:
+        self.factory, self.kind, self.state = factory, kind, state
+        self._args, self._kwargs = args, kwargs
+        self._given: Mapping[str, Any] | None = None
+
+    @property
+    def given(self) -> Mapping[str, Any]:
+        """The arguments that were given, by name."""
+        if self._given is None:
+            signature = inspect.signature(self.factory)
+            known = dict(signature.bind(*self._args, **self._kwargs).arguments)
+            for name, parameter in signature.parameters.items():
+                if parameter.kind is parameter.VAR_KEYWORD:
+                    known.update(known.pop(name, {}))
+            self._given = MappingProxyType(known)
+        return self._given
+
+    @property
+    def arguments(self) -> Mapping[str, Any]:
+        """The arguments by name, with the defaults of those that were not given."""
+        known: dict[str, Any] = {}
+        for name, parameter in inspect.signature(self.factory).parameters.items():
+            if name in self.given or parameter.default is not parameter.empty:
+                known[name] = self.given.get(name, parameter.default)
+        return MappingProxyType({**known, **self.given})
+
+
+class Value:
+    """An object that an author makes; it never changes."""
+
+    __slots__ = ()
+
+    @property
+    def arguments(self) -> Mapping[str, Any]:
+        """The arguments by name, checked, in the declared order."""
+        raise NotImplementedError
+
+    def replace(self, **changes: Any) -> Self:
+        """Return the object with other arguments.
+
+        Args:
+            changes: The arguments that change, by name.
+
+        Raises:
+            SceneTypeError: An argument is unknown or of another type.
+            SceneValueError: A number is beyond its limit.
+        """
+        raise NotImplementedError
+
+    def __replace__(self, /, **changes: Any) -> Self:
+        return self.replace(**changes)
+
+    def _record(self, origin: Origin) -> None:
+        """Keep the call that made the object."""
+        raise NotImplementedError
+
+
+class CalledValue(Value):
+    """A value that holds calls of scene functions: a light, a camera, a material, a pattern.
+
+    Attributes:
+        noun: The word for such objects in messages.
+        alternatives: Groups of arguments of which at most one is given.
+    """
+
+    __slots__ = ()
+
+    noun: ClassVar[str]
+    alternatives: ClassVar[tuple[tuple[str, ...], ...]] = ()
+    _origin: Origin
+
+    @property
+    def arguments(self) -> Mapping[str, Any]:
+        """The arguments by name, checked: colors are linear; a slider comes back as itself."""
+        alternatives = {name for group in self.alternatives for name in group}
+        checked = {
+            name: value
+            for values in self._checked()
+            for name, value in values.items()
+            if name not in alternatives
+        }
+        given = self._origin.arguments
+        return MappingProxyType(
+            {n: value_of(checked[n]) if n in checked else v for n, v in given.items()}
+        )
+
+    def replace(self, **changes: Any) -> Self:
+        """Return the object with other arguments: ``light.replace(intensity=2)``.
+
+        Args:
+            changes: The arguments that change, by name. One that is instead of another, as ``fov``
+                of ``fov_deg``, displaces it.
+
+        Raises:
+            SceneTypeError: An argument is unknown or of another type.
+            SceneValueError: A number is beyond its limit.
+        """
+        groups = (set(group) for group in self.alternatives)
+        displaced = {name for group in groups if group & set(changes) for name in group}
+        given = {n: v for n, v in self._origin.given.items() if n not in displaced}
+        made: Self = self._origin.factory(**{**given, **changes})
+        return made
+
+    if not TYPE_CHECKING:  # a checker reports an unknown name itself
+
+        def __getattr__(self, name):
+            if not name.startswith("_"):
+                arguments = self.arguments
+                if name in arguments:
+                    return arguments[name]
+            raise AttributeError(f"a {self.noun} has no '{name}'", name=name, obj=self)
+
+        def __dir__(self):
+            return [*super().__dir__(), *self.arguments]
+
+    def _checked(self) -> Iterator[Mapping[str, Any]]:
+        """Yield the checked values of the calls that the object holds, by name."""
+        raise NotImplementedError
+
+    def _record(self, origin: Origin) -> None:
+        object.__setattr__(self, "_origin", origin)
+
+
+def recorded(made: Made) -> Made:
+    """Keep the arguments of a class, or of a function that returns an object, with the object.
+
+    Args:
+        made: A class of values, a function, or a class method.
+    """
+    if isinstance(made, type):
+        return cast("Made", _recorded_class(made))
+    if isinstance(made, classmethod):
+        return cast("Made", classmethod(_recorded_function(made.__func__, of_class=True)))
+    return cast("Made", _recorded_function(cast("Any", made), of_class=False))
+
+
+def argument(name: str) -> property:
+    """Return the attribute that shows one argument of an object."""
+    return property(lambda value: value.arguments[name], doc=f"The argument ``{name}``.")
+
+
+def _recorded_class(made: Any) -> Any:
+    initialise = made.__init__
+
+    @functools.wraps(initialise)
+    def initialise_recorded(self: Any, *args: Any, **kwargs: Any) -> None:
+        initialise(self, *args, **kwargs)
+        kind = type(self)
+        # A class with an own constructor calls this one with other arguments.
+        factory = kind if kind.__init__ is initialise_recorded else made
+        self._record(Origin(factory, args, kwargs, factory, state_of(self)))
+
+    made.__init__ = initialise_recorded
+    for name, parameter in list(inspect.signature(initialise).parameters.items())[1:]:
+        if parameter.kind not in _OF_MANY and not has(made, name):
+            setattr(made, name, argument(name))
+    return made
+
+
+_OF_MANY: Final = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+
+
+def has(kind: type[Any], name: str) -> bool:
+    """Return whether the objects of a class have an attribute of a name."""
+    return hasattr(kind, name) or any(
+        name in vars(base).get("__annotations__", ()) for base in kind.__mro__
+    )
+
+
+def _recorded_function(function: Callable[..., Any], *, of_class: bool) -> Callable[..., Any]:
+    @functools.wraps(function)
+    def call(*args: Any, **kwargs: Any) -> Any:
+        value = function(*args, **kwargs)
+        given = args[of_class:]
+        if not any(value is one for one in _each_of((*given, *kwargs.values()))):
+            factory = getattr(args[0], function.__name__) if of_class else call
+            value._record(Origin(factory, given, kwargs, type(value)))
+        return value
+
+    return call
+
+
+def _each_of(given: Iterable[Any]) -> Iterable[Any]:
+    """Yield arguments, and those in lists and dicts."""
+    for one in given:
+        if isinstance(one, Mapping):
+            yield from one.values()
+        elif isinstance(one, list | tuple):
+            yield from one
+        else:
+            yield one
+
+
+def state_of(value: Any) -> dict[str, Any]:
+    """Return the public attributes that a shape has besides its node."""
+    own = getattr(value, "__dict__", {})
+    return {n: v for n, v in own.items() if n != "node" and not n.startswith("_")}
+
+
+def value_of(checked: Any) -> Any:
+    """Return a checked value as an author gives it: a float, a tuple, a slider, an expression."""
+    if isinstance(checked, VaryingNumber):
+        return checked.expression
+    if not isinstance(checked, Number):
+        return checked
+    value = checked.value
+    if isinstance(value, Expression):
+        node = value.node.value if isinstance(value.node, Cast) else value.node
+        alone = isinstance(node, Uniform) and len(value.parameters) == 1
+        return value.parameters[0] if alone else value
+    if isinstance(value, tuple):
+        return tuple([_ended(component) for component in value])
+    return _ended(value)
+
+
+def _ended(number: float) -> float:
+    """Return a number; infinity for what is stored for it."""
+    return math.inf if number >= ENDLESS else number
