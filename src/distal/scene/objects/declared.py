@@ -28,7 +28,7 @@ from distal.scene.tree.arguments import Accept, FunctionParameter, arguments, sl
 from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import unwrapped
 from distal.scene.tree.errors import refuse_kind
-from distal.scene.tree.value import Origin, Value, argument, has
+from distal.scene.tree.value import Origin, Value, argument
 
 C = TypeVar("C")
 V = TypeVar("V", bound=Value)
@@ -248,7 +248,7 @@ def declared_class(declaration: Declaration, base: type[C]) -> type[C]:
         "__module__": base.__module__,
         "__signature__": signature_of(declaration),
         "declaration": declaration,
-        **{n: argument(n) for n in signature_of(declaration).parameters if not has(base, n)},
+        **{n: argument(n) for n in signature_of(declaration).parameters if not hasattr(base, n)},
     }
     return type(declaration.name, (base,), body)
 

@@ -177,8 +177,16 @@ def recorded(made: Made) -> Made:
 
 
 def argument(name: str) -> property:
-    """Return the attribute that shows one argument of an object."""
-    return property(lambda value: value.arguments[name], doc=f"The argument ``{name}``.")
+    """Return the attribute that shows one argument of an object.
+
+    A shape may have set it otherwise: a ``Gear`` its ``pressure_angle``, if none was given.
+    """
+
+    def read(value: Any) -> Any:
+        own = getattr(value, "__dict__", {})
+        return own[name] if name in own else value.arguments[name]
+
+    return property(read, doc=f"The argument ``{name}``.")
 
 
 def _recorded_class(made: Any) -> Any:
@@ -194,19 +202,12 @@ def _recorded_class(made: Any) -> Any:
 
     made.__init__ = initialise_recorded
     for name, parameter in list(inspect.signature(initialise).parameters.items())[1:]:
-        if parameter.kind not in _OF_MANY and not has(made, name):
+        if parameter.kind not in _OF_MANY and not hasattr(made, name):
             setattr(made, name, argument(name))
     return made
 
 
 _OF_MANY: Final = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
-
-
-def has(kind: type[Any], name: str) -> bool:
-    """Return whether the objects of a class have an attribute of a name."""
-    return hasattr(kind, name) or any(
-        name in vars(base).get("__annotations__", ()) for base in kind.__mro__
-    )
 
 
 def _recorded_function(function: Callable[..., Any], *, of_class: bool) -> Callable[..., Any]:
