@@ -253,7 +253,7 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     "dilate": lambda: Box(1.0).apply("dilate", 0.15),
     "erode": lambda: Box(1.4).apply("erode", 0.15),
     "shell inner": lambda: _open(Sphere(0.9).shell(0.1, "inner")),
-    "shell centre": lambda: _open(Sphere(0.9).shell(0.1)),
+    "shell center": lambda: _open(Sphere(0.9).shell(0.1)),
     "shell outer": lambda: _open(Sphere(0.9).shell(0.1, "outer")),
     "split below": lambda: _BODY.split((0.6, 0.8, 0))[0],
     "split above": lambda: _BODY.split((0.6, 0.8, 0))[1],

@@ -15,6 +15,7 @@ from distal.fields.flats.outlines import OUTLINE
 from distal.lang.lazy_module import LazyModule
 from distal.lang.source_places import author_place
 from distal.scene.objects.field import BaseShape
+from distal.scene.objects.keywords import checks_keywords
 from distal.scene.objects.shape import Shape2D
 from distal.scene.tree.node import Node
 
@@ -25,6 +26,7 @@ else:
     outlines = LazyModule("distal.scene.objects.outlines")  # needs NumPy
 
 
+@checks_keywords
 class Text(Shape2D):
     r"""Text in a font, as a flat shape; the middle of capital letters is at y = 0.
 
@@ -32,7 +34,7 @@ class Text(Shape2D):
         text: The text; "\n" starts a new line.
         font: The font's file, or the name of an installed font; None for a default font.
         size: Font size; capital letters are about 0.7 times as high.
-        align: Position of x = 0 in each line: "left", "center" or "right".
+        justify: Position of x = 0 in each line: "left", "center" or "right".
         line_spacing: Distance between lines, as a multiple of ``size``.
 
     Raises:
@@ -45,16 +47,17 @@ class Text(Shape2D):
         *,
         font: str | os.PathLike[str] | None = None,
         size: float = 1.0,
-        align: str = "center",
+        justify: str = "center",
         line_spacing: float = 1.2,
     ) -> None:
         place = author_place()
         outline = lettering.text_outline(
-            text, font=font, size=size, align=align, line_spacing=line_spacing, place=place
+            text, font=font, size=size, justify=justify, line_spacing=line_spacing, place=place
         )
         BaseShape.__init__(self, _node(outline, place, even_odd=False))
 
 
+@checks_keywords
 class SvgPath(Shape2D):
     """The area enclosed by an SVG path; y points up, and the middle is at the origin.
 
