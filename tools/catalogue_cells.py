@@ -102,7 +102,7 @@ GIVEN: Final[dict[str, Callable[[], dict[str, Any]]]] = {
     "SplinePath": lambda: {"points": OUTLINE},
     "ImageField": lambda: {"image": _disc_image()},
     "Heightfield": lambda: {"image": _hills(), "size": (2, 2), "height": 0.5},
-    "VolumeField": lambda: {"volume": _ball_volume(), "size": (1.5, 1.5, 1.5), "scale": 1.5},
+    "VolumeField": lambda: {"volume": _ball_volume(), "size": (1.5, 1.5, 1.5), "value_scale": 1.5},
     "BrickField": _ball_bricks,
     "PolylineTube": lambda: {"points": WAY},
     "CurveTube": lambda: {"points": np.r_[WAY, WAY[:1]]},

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Final
 
 import libcst as cst
+from libcst import matchers as m
 
 import distal
 from distal.scene.tree.former_names import FORMER_NAMES, FORMER_WORDS, Renamed
@@ -39,20 +40,27 @@ FORMER_ORDERS: Final[Mapping[str, tuple[str, ...]]] = {
 # Public objects under another spelling.
 FORMER_OBJECTS: Final = {"aluminium": "aluminum", "metre": "meter"}
 
-_FENCED: Final = re.compile(r"^(?P<head>```python[^\n]*\n)(?P<code>.*?)^```", re.MULTILINE | re.DOTALL)
+_FENCED: Final = re.compile(
+    r"^(?P<head>```python[^\n]*\n)(?P<code>.*?)^```", re.MULTILINE | re.DOTALL
+)
 _INLINE: Final = re.compile(r"(?<!`)`(?P<code>[^`\n]+)`(?!`)")
 _SIGN: Final = cst.AssignEqual(cst.SimpleWhitespace(""), cst.SimpleWhitespace(""))
 
 
 class Renames(cst.CSTTransformer):
-    """Rewrites the calls of a module."""
+    """Rewrites the calls of a module, but for those of what the module itself defines."""
+
+    def __init__(self, module: cst.Module) -> None:
+        super().__init__()
+        defined = m.findall(module, m.ClassDef() | m.FunctionDef())
+        self._own = {d.name.value for d in defined if isinstance(d, cst.ClassDef | cst.FunctionDef)}
 
     def leave_Call(self, original_node: cst.Call, updated_node: cst.Call) -> cst.Call:  # noqa: N802
         """Rename keywords, and pass by name what moved its place."""
         name = _callee(updated_node)
         if name == "shell":
             return updated_node.with_changes(args=[_with_word(a) for a in updated_node.args])
-        if name not in FORMER_NAMES and name not in FORMER_ORDERS:
+        if name in self._own or name not in {*FORMER_NAMES, *FORMER_ORDERS}:
             return updated_node
         args = _ordered(name, updated_node.args)
         return updated_node.with_changes(args=[_renamed(name, arg) for arg in args])
@@ -172,7 +180,8 @@ def _literal(number: float | int) -> cst.BaseExpression:
 
 def rewritten(code: str) -> str:
     """Return Python code with the names of now."""
-    return cst.parse_module(code).visit(Renames()).code
+    module = cst.parse_module(code)
+    return module.visit(Renames(module)).code
 
 
 def rewritten_document(text: str) -> str:
