@@ -14,7 +14,7 @@ STEEL = steel(roughness=0.3)
 CUT = matte("#c8553d")
 
 bolt = Bolt("M12", 34.0).paint(STEEL)
-nut = Nut("M12", clearance=gap)
+nut = Nut("M12", gap=gap)
 
 # Standing on its head, the nut halfway; the first turn is where the thread begins.
 whole = (bolt | nut.screwed(-down).paint(brass(roughness=0.25))).rotate(x=3.1415927)

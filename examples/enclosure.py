@@ -40,7 +40,12 @@ hole = Cylinder(0.07, 1.0) | Cylinder(0.13, 0.1).translate(y=0.46)
 lid = (body - below) - hole.translate(0.93, 0.0, 0.53).symmetry("xz")
 
 # The label stands on the lid: a sender and its waves.
-waves = Circle(0.06) | Ring(0.2, 0.8, 0.06) | Ring(0.34, 0.8, 0.06) | Ring(0.48, 0.8, 0.06)
+waves = (
+    Circle(0.06)
+    | Ring(0.2, thickness=0.06, opening=1.6)
+    | Ring(0.34, thickness=0.06, opening=1.6)
+    | Ring(0.48, thickness=0.06, opening=1.6)
+)
 label = waves.extrude(0.03).rotate(x=-QUARTER)
 label = label.on(body, gap=-0.005)
 

@@ -31,13 +31,13 @@ turn = speed * time + 0.12
 BRASS, STEEL = brass(roughness=0.3), glossy("#5d676f", 0.8, 0.15, 0.3)
 
 # Two helical gears of 20 and 32 teeth; their angles are opposite.
-small = Gear(2.0, 20, 12.0, backlash=play, helix=0.35, bore=14.0)
-large = Gear(2.0, 32, 12.0, backlash=play, helix=-0.35, bore=14.0)
+small = Gear(2.0, 20, 12.0, backlash=play, helix=0.35, bore_diameter=14.0)
+large = Gear(2.0, 32, 12.0, backlash=play, helix=-0.35, bore_diameter=14.0)
 small, large = mesh_gears(small, large, turn)
 
 # A ring around a pinion that is driven from behind, and a rack that slides below a third gear.
-ring = mesh_gears(Gear(1.5, 24, 8.0, bore=8.0), RingGear(1.5, 60, 8.0, rim=5.0), -turn)
-rack = mesh_gears(Gear(2.0, 24, 8.0, bore=10.0), Rack(2.0, 16, 8.0), 0.5 * turn)
+ring = mesh_gears(Gear(1.5, 24, 8.0, bore_diameter=8.0), RingGear(1.5, 60, 8.0, rim=5.0), -turn)
+rack = mesh_gears(Gear(2.0, 24, 8.0, bore_diameter=10.0), Rack(2.0, 16, 8.0), 0.5 * turn)
 
 shaft = Cylinder(6.9, 26.0).rotate(x=0.5 * math.pi)
 train = small.paint(BRASS) | large.paint("#35536e") | shaft.paint(STEEL)

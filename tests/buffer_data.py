@@ -53,7 +53,7 @@ def text_of(image: Any, target: str) -> Artifact:
     ``distal.compile`` leaves out the tables of fewer than 256 parts: another program, whose
     silhouettes may differ by a pixel.
     """
-    whole = image.text() if isinstance(image, Composed) else image
+    whole = image.emitted() if isinstance(image, Composed) else image
     description = get_target(target)
     table = {} if description.buffers else {"table_from": None}
     return emit(run_passes(lower(whole, **table), description), description)

@@ -183,17 +183,26 @@ def _shape_signatures(row: Primitive) -> list[list[str]]:
     hidden = RESERVED_OF_SHAPES | {*row.measured}
     slots = [s for s in slots_of(row.distance) if s.name not in hidden]
     vectors = [i for i, slot in enumerate(slots) if slot.is_vector]
-    found = [[_given(slot) for slot in slots]]
+    found = [[*_all_given(slots)]]
     if vectors:
         end = vectors[-1] + 1
         flat = [part for slot in slots[:end] for part in _parts(slot)]
-        found.append([*flat, "/", *(_given(slot) for slot in slots[end:])])
+        found.append([*flat, "/", *_all_given(slots[end:])])
     if len(vectors) == 1:
         at = vectors[0]
         parts = [f"{letter}: Number = ..." for letter in LETTERS[: _size(slots[at])]]
         before = [_given(slot) for slot in slots[:at]]
         found.append([*before, "*", *parts, *(_given(slot) for slot in slots[at + 1 :])])
     return found
+
+
+def _all_given(slots: Sequence[FunctionParameter]) -> Iterator[str]:
+    """Numbers as they are passed; those by name only after a star."""
+    first = next((slot for slot in slots if slot.by_name), None)
+    for slot in slots:
+        if slot is first:
+            yield "*"
+        yield _given(slot)
 
 
 def _given(slot: FunctionParameter) -> str:

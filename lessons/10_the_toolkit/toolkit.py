@@ -29,7 +29,7 @@ def painted(color: str) -> Material:
 cylinder = Cylinder(radius=0.5, height=1.0).translate(x=-2.1, y=0.5).paint(painted("#d8553d"))
 ring = Torus(0.5, 0.18).rotate(x=lean).translate(x=-0.7, y=0.55).paint(painted("#e2a63b"))
 cone = Cone(radius=0.55, height=1.2).translate(x=0.75, y=0.6).paint(painted("#3f9d6a"))
-pill = Capsule(radius=0.32, height=0.7).translate(x=2.1, y=0.67).paint(painted("#4471c9"))
+pill = Capsule(radius=0.32, length=0.7).translate(x=2.1, y=0.67).paint(painted("#4471c9"))
 floor = Plane(y=0.0).paint(checker("#c9c4bb", "#8d8a86", size=0.7))
 
 scene = Scene(

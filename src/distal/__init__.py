@@ -24,7 +24,7 @@ _HAND_WRITTEN = {
     "distal.images.picture": ("Picture",),
     "distal.lang.expressions": ("time",),
     "distal.lang.places": ("cell", "place", "random_by_cell"),
-    "distal.lang.units": ("cm", "foot", "inch", "metre", "mm"),
+    "distal.lang.units": ("cm", "foot", "inch", "meter", "mm"),
     "distal.example_files": ("gallery",),
     "distal.export.compiling": ("compile",),
     "distal.loading": ("load",),

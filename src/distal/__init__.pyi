@@ -15,7 +15,7 @@ from distal.lang.places import random_by_cell as random_by_cell
 from distal.lang.units import cm as cm
 from distal.lang.units import foot as foot
 from distal.lang.units import inch as inch
-from distal.lang.units import metre as metre
+from distal.lang.units import meter as meter
 from distal.lang.units import mm as mm
 from distal.example_files import gallery as gallery
 from distal.export.compiling import compile as compile
@@ -652,21 +652,8 @@ class SpotLight(_Light):
         radius: Number = 0.0,
     ) -> None: ...
 
-def aluminium(roughness: Number | Varying = 0.3) -> Material:
-    """Aluminium; also spelt ``aluminum``: a metal.
-
-    Args:
-        roughness: 0 mirrors sharply, 1 hardly mirrors.
-
-    Raises:
-        ValueError: A number is out of its range.
-        TypeError: An argument is of another kind.
-
-    Source: "Physically Based" (https://physicallybased.info).
-    """
-
 def aluminum(roughness: Number | Varying = 0.3) -> Material:
-    """Aluminum; also spelt ``aluminium``: a metal.
+    """Pure aluminum: a metal.
 
     Args:
         roughness: 0 mirrors sharply, 1 hardly mirrors.
@@ -1008,7 +995,7 @@ def ice(meter: Number | Varying = 1.0) -> Material:
     """Clear ice: it refracts light, and is blue where it is metres deep.
 
     Args:
-        meter: Length of a metre in scene units: 100 if a unit is a centimetre.
+        meter: Length of a meter in scene units: 100 if a unit is a centimeter.
 
     Raises:
         ValueError: A number is out of its range.
@@ -1396,7 +1383,7 @@ def water(meter: Number | Varying = 1.0) -> Material:
     """Clear water: it refracts light, and is blue where it is metres deep.
 
     Args:
-        meter: Length of a metre in scene units: 100 if a unit is a centimetre.
+        meter: Length of a meter in scene units: 100 if a unit is a centimeter.
 
     Raises:
         ValueError: A number is out of its range.
@@ -1695,8 +1682,9 @@ class Arc(Shape2D):
     def __init__(
         self,
         radius: Number = 0.75,
-        angle: Number = 1.6,
+        *,
         thickness: Number = 0.2,
+        opening: Number = 3.2,
     ) -> None: ...
 
 class ArcCam(Shape2D):
@@ -1817,7 +1805,7 @@ class BrickField(Shape):
         samples: Vector = ...,
         size: Vector | Number = ...,
         reach: Number = 0.0,
-        scale: Number = 1.0,
+        value_scale: Number = 1.0,
     ) -> None: ...
     @overload
     def __init__(
@@ -1831,7 +1819,7 @@ class BrickField(Shape):
         size_z: Number,
         /,
         reach: Number = 0.0,
-        scale: Number = 1.0,
+        value_scale: Number = 1.0,
     ) -> None: ...
 
 class CappedCone(Shape):
@@ -1867,12 +1855,18 @@ class CappedConeBetween(Shape):
 class CappedTorus(Shape):
     """Arc of a ring around the y axis, with round ends, symmetric about the x axis."""
 
-    def __init__(self, angle: Number = 2.0, major: Number = 0.75, minor: Number = 0.25) -> None: ...
+    def __init__(
+        self,
+        major: Number = 0.75,
+        minor: Number = 0.25,
+        *,
+        opening: Number = 4.0,
+    ) -> None: ...
 
 class Capsule(Shape):
     """Upright capsule: a cylinder with half balls at its ends."""
 
-    def __init__(self, radius: Number = 0.4, height: Number = 1.0) -> None: ...
+    def __init__(self, radius: Number = 0.4, length: Number = 1.0) -> None: ...
 
 class CapsuleBetween(Shape):
     """Capsule: a cylinder between two points, with half balls at its ends."""
@@ -1896,7 +1890,7 @@ class ChamferBox(Shape):
     """Box with edges chamfered at 45 degrees; outside a lower bound."""
 
     @overload
-    def __init__(self, size: Vector | Number = ..., chamfer: Number = 0.1) -> None: ...
+    def __init__(self, size: Vector | Number = ..., bevel: Number = 0.1) -> None: ...
     @overload
     def __init__(
         self,
@@ -1904,7 +1898,7 @@ class ChamferBox(Shape):
         size_y: Number,
         size_z: Number,
         /,
-        chamfer: Number = 0.1,
+        bevel: Number = 0.1,
     ) -> None: ...
     @overload
     def __init__(
@@ -1913,18 +1907,18 @@ class ChamferBox(Shape):
         x: Number = ...,
         y: Number = ...,
         z: Number = ...,
-        chamfer: Number = 0.1,
+        bevel: Number = 0.1,
     ) -> None: ...
 
 class ChamferedRectangle(Shape2D):
     """Rectangle with corners chamfered at 45 degrees."""
 
     @overload
-    def __init__(self, size: Vector | Number = ..., chamfer: Number = 0.2) -> None: ...
+    def __init__(self, size: Vector | Number = ..., bevel: Number = 0.2) -> None: ...
     @overload
-    def __init__(self, size_x: Number, size_y: Number, /, chamfer: Number = 0.2) -> None: ...
+    def __init__(self, size_x: Number, size_y: Number, /, bevel: Number = 0.2) -> None: ...
     @overload
-    def __init__(self, *, x: Number = ..., y: Number = ..., chamfer: Number = 0.2) -> None: ...
+    def __init__(self, *, x: Number = ..., y: Number = ..., bevel: Number = 0.2) -> None: ...
 
 class Circle(Shape2D):
     """Disc, centred at the origin."""
@@ -1947,8 +1941,9 @@ class CircleWave(Shape2D):
     def __init__(
         self,
         radius: Number = 0.25,
-        angle: Number = 1.8,
+        *,
         thickness: Number = 0.05,
+        opening: Number = 3.6,
     ) -> None: ...
 
 class Cone(Shape):
@@ -2152,7 +2147,7 @@ class Diamond(Shape):
         self,
         cell_size: Number = 1.0,
         thickness: Number = 0.1,
-        offset: Number = 0.0,
+        level: Number = 0.0,
         solid: bool = False,
     ) -> None: ...
 
@@ -2178,7 +2173,7 @@ class Egg(Shape2D):
         self,
         bottom: Number = 0.4,
         top: Number = 0.2,
-        height: Number = 0.4,
+        length: Number = 0.4,
         bulge: Number = 0.6,
     ) -> None: ...
 
@@ -2214,7 +2209,7 @@ class FRD(Shape):
         self,
         cell_size: Number = 1.0,
         thickness: Number = 0.1,
-        offset: Number = 0.0,
+        level: Number = 0.0,
         solid: bool = False,
     ) -> None: ...
 
@@ -2243,7 +2238,7 @@ class FischerKochS(Shape):
         self,
         cell_size: Number = 1.0,
         thickness: Number = 0.1,
-        offset: Number = 0.0,
+        level: Number = 0.0,
         solid: bool = False,
     ) -> None: ...
 
@@ -2272,7 +2267,7 @@ class Gyroid(Shape):
         self,
         cell_size: Number = 1.0,
         thickness: Number = 0.1,
-        offset: Number = 0.0,
+        level: Number = 0.0,
         solid: bool = False,
     ) -> None: ...
 
@@ -2280,17 +2275,17 @@ class HalfPlane(Shape2D):
     """Half plane on one side of a straight line."""
 
     @overload
-    def __init__(self, normal: Vector = ..., offset: Number = 0.0) -> None: ...
+    def __init__(self, normal: Vector = ..., distance: Number = 0.0) -> None: ...
     @overload
-    def __init__(self, normal_x: Number, normal_y: Number, /, offset: Number = 0.0) -> None: ...
+    def __init__(self, normal_x: Number, normal_y: Number, /, distance: Number = 0.0) -> None: ...
     @overload
-    def __init__(self, *, x: Number = ..., y: Number = ..., offset: Number = 0.0) -> None: ...
+    def __init__(self, *, x: Number = ..., y: Number = ..., distance: Number = 0.0) -> None: ...
 
 class HalfSpace(Shape):
     """Half space on one side of a plane."""
 
     @overload
-    def __init__(self, normal: Vector = ..., offset: Number = 0.0) -> None: ...
+    def __init__(self, normal: Vector = ..., distance: Number = 0.0) -> None: ...
     @overload
     def __init__(
         self,
@@ -2298,7 +2293,7 @@ class HalfSpace(Shape):
         normal_y: Number,
         normal_z: Number,
         /,
-        offset: Number = 0.0,
+        distance: Number = 0.0,
     ) -> None: ...
     @overload
     def __init__(
@@ -2307,7 +2302,7 @@ class HalfSpace(Shape):
         x: Number = ...,
         y: Number = ...,
         z: Number = ...,
-        offset: Number = 0.0,
+        distance: Number = 0.0,
     ) -> None: ...
 
 class Heart(Shape2D):
@@ -2352,7 +2347,7 @@ class Helix(Shape):
 class HexPrism(Shape):
     """Upright prism over a regular hexagon; two sides face along z."""
 
-    def __init__(self, apothem: Number = 0.5, height: Number = 1.0) -> None: ...
+    def __init__(self, inradius: Number = 0.5, height: Number = 1.0) -> None: ...
 
 class Hexagon(Shape2D):
     """Regular hexagon with a corner at the top."""
@@ -2385,9 +2380,10 @@ class Horseshoe(Shape2D):
     def __init__(
         self,
         radius: Number = 0.5,
-        angle: Number = 1.9,
+        *,
         legs: Number = 0.4,
         thickness: Number = 0.25,
+        opening: Number = 3.8,
     ) -> None: ...
 
 class Hyperbola(Shape2D):
@@ -2402,7 +2398,7 @@ class IWP(Shape):
         self,
         cell_size: Number = 1.0,
         thickness: Number = 0.1,
-        offset: Number = 0.0,
+        level: Number = 0.0,
         solid: bool = False,
     ) -> None: ...
 
@@ -2419,7 +2415,7 @@ class ImageField(Shape2D):
         self,
         image: Image = ...,
         size: Vector | Number = ...,
-        scale: Number = 1.0,
+        value_scale: Number = 1.0,
     ) -> None: ...
     @overload
     def __init__(
@@ -2428,7 +2424,7 @@ class ImageField(Shape2D):
         size_x: Number,
         size_y: Number,
         /,
-        scale: Number = 1.0,
+        value_scale: Number = 1.0,
     ) -> None: ...
     @overload
     def __init__(
@@ -2437,13 +2433,13 @@ class ImageField(Shape2D):
         *,
         x: Number = ...,
         y: Number = ...,
-        scale: Number = 1.0,
+        value_scale: Number = 1.0,
     ) -> None: ...
 
 class InfiniteCone(Shape):
     """Infinite cone that opens downwards from its tip at the origin."""
 
-    def __init__(self, angle: Number = 0.5) -> None: ...
+    def __init__(self, *, opening: Number = 1.0) -> None: ...
 
 class InfiniteCylinder(Shape):
     """Infinite cylinder around the y axis."""
@@ -2485,7 +2481,7 @@ class KnurledCylinder(Shape):
         height: Number = 1.0,
         depth: Number = 0.04,
         slant: Number = 0.5235987755982988,
-        chamfer: Number = 0.04,
+        bevel: Number = 0.04,
         count: int = 30,
         crossed: bool = True,
     ) -> None: ...
@@ -2497,14 +2493,20 @@ class Lidinoid(Shape):
         self,
         cell_size: Number = 1.0,
         thickness: Number = 0.1,
-        offset: Number = 0.0,
+        level: Number = 0.0,
         solid: bool = False,
     ) -> None: ...
 
 class Link(Shape):
     """Upright link of a chain; its hole faces the z axis."""
 
-    def __init__(self, height: Number = 0.5, major: Number = 0.4, minor: Number = 0.15) -> None: ...
+    def __init__(
+        self,
+        major: Number = 0.4,
+        minor: Number = 0.15,
+        *,
+        length: Number = 0.5,
+    ) -> None: ...
 
 class LogarithmicSpiral(Shape2D):
     """Spiral line whose radius grows by a constant factor per turn."""
@@ -2520,7 +2522,12 @@ class LogarithmicSpiral(Shape2D):
 class Mandelbox(Shape):
     """Mandelbox: points that stay bounded under folds at a cube and a ball."""
 
-    def __init__(self, size: Number = 1.5, scale: Number = 2.0, iterations: int = 8) -> None: ...
+    def __init__(
+        self,
+        size: Number = 1.5,
+        fold_scale: Number = 2.0,
+        iterations: int = 8,
+    ) -> None: ...
 
 class Mandelbulb(Shape):
     """Mandelbulb around the y axis: points whose powers in spherical coordinates stay bounded."""
@@ -2544,7 +2551,7 @@ class Moon(Shape2D):
         self,
         radius: Number = 0.7,
         cut_radius: Number = 0.6,
-        offset: Number = 0.4,
+        shift: Number = 0.4,
     ) -> None: ...
 
 class Neovius(Shape):
@@ -2554,7 +2561,7 @@ class Neovius(Shape):
         self,
         cell_size: Number = 1.0,
         thickness: Number = 0.1,
-        offset: Number = 0.0,
+        level: Number = 0.0,
         solid: bool = False,
     ) -> None: ...
 
@@ -2566,7 +2573,7 @@ class Octagon(Shape2D):
 class OctagonPrism(Shape):
     """Upright prism over a regular octagon; sides face along x and z."""
 
-    def __init__(self, apothem: Number = 0.5, height: Number = 1.0) -> None: ...
+    def __init__(self, inradius: Number = 0.5, height: Number = 1.0) -> None: ...
 
 class Octahedron(Shape):
     """Regular octahedron with its vertices on the axes."""
@@ -2648,7 +2655,7 @@ class Pentagram(Shape2D):
 class Pie(Shape2D):
     """Sector of a disc, symmetric about the y axis."""
 
-    def __init__(self, radius: Number = 1.0, angle: Number = 0.7) -> None: ...
+    def __init__(self, radius: Number = 1.0, *, opening: Number = 1.4) -> None: ...
 
 class Plane(Shape):
     """Ground: the half space below a horizontal plane."""
@@ -2683,7 +2690,7 @@ class PolylineTube(Shape):
 class Prism(Shape):
     """Upright prism over a regular polygon; one side faces +z."""
 
-    def __init__(self, count: int = 5, apothem: Number = 0.5, height: Number = 1.0) -> None: ...
+    def __init__(self, inradius: Number = 0.5, height: Number = 1.0, *, count: int = 5) -> None: ...
 
 class Pyramid(Shape):
     """Upright pyramid with a square base."""
@@ -2783,7 +2790,7 @@ class RackProfile(Shape2D):
         pressure_angle: Number = 0.3490658503988659,
         base: Number = 0.15,
         backlash: Number = 0.0,
-        clearance: Number = 0.25,
+        tip_gap: Number = 0.25,
         count: int = 8,
     ) -> None: ...
 
@@ -2852,8 +2859,9 @@ class Ring(Shape2D):
     def __init__(
         self,
         radius: Number = 0.75,
-        angle: Number = 1.6,
+        *,
         thickness: Number = 0.25,
+        opening: Number = 3.2,
     ) -> None: ...
 
 class RoundBox(Shape):
@@ -2883,7 +2891,7 @@ class RoundBox(Shape):
 class RoundCone(Shape):
     """Cone with rounded ends: two balls, one above the other, and the cone tangent to both."""
 
-    def __init__(self, bottom: Number = 0.5, top: Number = 0.25, height: Number = 1.0) -> None: ...
+    def __init__(self, bottom: Number = 0.5, top: Number = 0.25, length: Number = 1.0) -> None: ...
 
 class RoundConeBetween(Shape):
     """Cone with rounded ends: balls around two points, and the cone tangent to both."""
@@ -2990,7 +2998,7 @@ class SchwarzP(Shape):
         self,
         cell_size: Number = 1.0,
         thickness: Number = 0.1,
-        offset: Number = 0.0,
+        level: Number = 0.0,
         solid: bool = False,
     ) -> None: ...
 
@@ -3023,32 +3031,32 @@ class Slab(Shape):
 class SmoothDodecahedron(Shape):
     """Shape between a ball and a dodecahedron; a bound with slope 1."""
 
-    def __init__(self, radius: Number = 0.8, exponent: Number = 24.0) -> None: ...
+    def __init__(self, inradius: Number = 0.8, exponent: Number = 24.0) -> None: ...
 
 class SmoothIcosahedron(Shape):
     """Shape between a ball and an icosahedron; a bound with slope 1."""
 
-    def __init__(self, radius: Number = 0.8, exponent: Number = 24.0) -> None: ...
+    def __init__(self, inradius: Number = 0.8, exponent: Number = 24.0) -> None: ...
 
 class SmoothOctahedron(Shape):
     """Shape between a ball and an octahedron; a bound with slope 1."""
 
-    def __init__(self, radius: Number = 0.6, exponent: Number = 12.0) -> None: ...
+    def __init__(self, inradius: Number = 0.6, exponent: Number = 12.0) -> None: ...
 
 class SmoothTruncatedIcosahedron(Shape):
     """Shape between a ball and a football; a bound with slope 1."""
 
-    def __init__(self, radius: Number = 0.9, exponent: Number = 48.0) -> None: ...
+    def __init__(self, inradius: Number = 0.9, exponent: Number = 48.0) -> None: ...
 
 class SmoothTruncatedOctahedron(Shape):
     """Shape between a ball and a truncated octahedron; a bound with slope 1."""
 
-    def __init__(self, radius: Number = 0.8, exponent: Number = 24.0) -> None: ...
+    def __init__(self, inradius: Number = 0.8, exponent: Number = 24.0) -> None: ...
 
 class SolidAngle(Shape):
     """Sector of a ball: the part within an angle of the y axis, its tip at the origin."""
 
-    def __init__(self, angle: Number = 0.6, radius: Number = 1.0) -> None: ...
+    def __init__(self, radius: Number = 1.0, *, opening: Number = 1.2) -> None: ...
 
 class Sphere(Shape):
     """Ball, centred at the origin."""
@@ -3072,7 +3080,7 @@ class SplitP(Shape):
         self,
         cell_size: Number = 1.0,
         thickness: Number = 0.1,
-        offset: Number = 0.0,
+        level: Number = 0.0,
         solid: bool = False,
     ) -> None: ...
 
@@ -3177,8 +3185,8 @@ class TappedHole(Shape):
         diameter: Number = 0.6,
         pitch: Number = 0.1,
         length: Number = 1.0,
-        clearance: Number = 0.01,
-        chamfer: Number = 0.02,
+        gap: Number = 0.01,
+        countersink: Number = 0.02,
         left: bool = False,
         through: bool = True,
     ) -> None: ...
@@ -3196,7 +3204,7 @@ class Thread(Shape):
         diameter: Number = 0.6,
         pitch: Number = 0.1,
         length: Number = 1.0,
-        chamfer: Number = 0.06,
+        bevel: Number = 0.06,
         left: bool = False,
     ) -> None: ...
 
@@ -3208,7 +3216,7 @@ class Torus(Shape):
 class TriPrism(Shape):
     """Upright prism over an equilateral triangle; one side faces +z."""
 
-    def __init__(self, apothem: Number = 0.4, height: Number = 1.0) -> None: ...
+    def __init__(self, inradius: Number = 0.4, height: Number = 1.0) -> None: ...
 
 class Triangle(Shape):
     """Flat triangle without thickness."""
@@ -3265,7 +3273,7 @@ class Tunnel(Shape2D):
 class UnevenCapsule(Shape2D):
     """Two discs, one above the other, and the region between their common tangents."""
 
-    def __init__(self, bottom: Number = 0.4, top: Number = 0.2, height: Number = 0.6) -> None: ...
+    def __init__(self, bottom: Number = 0.4, top: Number = 0.2, length: Number = 0.6) -> None: ...
 
 class ValueNoiseSolid(Shape):
     """Infinite lumps of value noise, aligned with the axes."""
@@ -3298,7 +3306,7 @@ class VesicaBetween(Shape):
 class VesicaSolid(Shape):
     """Upright solid of an arc rotated about its chord, with two tips, like a grain of rice."""
 
-    def __init__(self, height: Number = 1.5, width: Number = 0.75) -> None: ...
+    def __init__(self, width: Number = 0.75, *, height: Number = 1.5) -> None: ...
 
 class VolumeField(Shape):
     """Shape from a grid of distance samples, in the first channel of a volume texture."""
@@ -3308,7 +3316,7 @@ class VolumeField(Shape):
         self,
         volume: Image = ...,
         size: Vector | Number = ...,
-        scale: Number = 1.0,
+        value_scale: Number = 1.0,
     ) -> None: ...
     @overload
     def __init__(
@@ -3318,7 +3326,7 @@ class VolumeField(Shape):
         size_y: Number,
         size_z: Number,
         /,
-        scale: Number = 1.0,
+        value_scale: Number = 1.0,
     ) -> None: ...
     @overload
     def __init__(
@@ -3328,7 +3336,7 @@ class VolumeField(Shape):
         x: Number = ...,
         y: Number = ...,
         z: Number = ...,
-        scale: Number = 1.0,
+        value_scale: Number = 1.0,
     ) -> None: ...
 
 class VoronoiCells(Shape):
@@ -3367,7 +3375,7 @@ class VoronoiWalls(Shape):
 class Wedge(Shape):
     """Infinite wedge between two planes that meet in the z axis; it opens downwards."""
 
-    def __init__(self, angle: Number = 1.0) -> None: ...
+    def __init__(self, *, opening: Number = 1.0) -> None: ...
 
 __all__ = [
     "FRD",
@@ -3570,7 +3578,6 @@ __all__ = [
     "VoronoiWalls",
     "Wedge",
     "__version__",
-    "aluminium",
     "aluminum",
     "amber",
     "blueprint",
@@ -3618,7 +3625,7 @@ __all__ = [
     "matte",
     "mesh_gears",
     "metal",
-    "metre",
+    "meter",
     "mirror",
     "mm",
     "nickel",

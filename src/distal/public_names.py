@@ -10,10 +10,10 @@ DECLARED_NAMES = {
         "AmbientLight DistantLight HemisphereLight PointLight SpotLight"
     ),
     "distal.scene.objects.materials": (
-        "aluminium aluminum amber bone brass brick bronze car_paint charcoal chocolate chrome clay "
-        "concrete copper diamond emerald emissive glossy gold granite honey ice iron jade leather "
-        "marble matte metal mirror nickel paper plaster plastic platinum porcelain rubber ruby "
-        "sand sapphire silver skin snow steel terracotta titanium water wax wood zinc"
+        "aluminum amber bone brass brick bronze car_paint charcoal chocolate chrome clay concrete "
+        "copper diamond emerald emissive glossy gold granite honey ice iron jade leather marble "
+        "matte metal mirror nickel paper plaster plastic platinum porcelain rubber ruby sand "
+        "sapphire silver skin snow steel terracotta titanium water wax wood zinc"
     ),
     "distal.scene.objects.patterns": (
         "by_cell checker facing gradient noise palette radial_gradient stripes waves"

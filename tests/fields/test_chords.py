@@ -33,7 +33,7 @@ EXTREME: Final[Mapping[str, list[dict[str, Any]]]] = {
     "Ellipsoid": [{"radii": (0.05, 1.0, 8.0)}],
     "Box": [{"size": (1e3, 1e-3, 5.0)}],
     "Cylinder": [{"radius": 1e-2, "height": 50.0}, {"radius": 50.0, "height": 1e-2}],
-    "Capsule": [{"radius": 0.3, "height": 0.0}, {"radius": 1e-2, "height": 100.0}],
+    "Capsule": [{"radius": 0.3, "length": 0.0}, {"radius": 1e-2, "length": 100.0}],
     "CapsuleBetween": [{"start": (1.0, 2.0, 3.0), "end": (1.0, 2.0, 3.0), "radius": 0.5}],
     "CappedCone": [
         {"bottom": 0.0, "top": 2.0, "height": 0.1},

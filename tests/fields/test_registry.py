@@ -64,7 +64,7 @@ WANTED_OPERATORS: Final = [
     *(f"{kind} {b}" for kind in ("union", "intersection", "difference") for b in BLENDS),
     *("pipe", "engrave", "groove", "tongue", "union power", "emboss", "carve", "displace"),
     *("transition linear", "transition radial", "split below", "split above"),
-    *("round", "offset", "dilate", "erode", "shell inner", "shell centre", "shell outer"),
+    *("round", "offset", "dilate", "erode", "shell inner", "shell center", "shell outer"),
     *("translate", "rotate", "rotate euler", "rotate quaternion", "rotate matrix", "orient"),
     *("scale", "scale axes", "shear", "mirror", "symmetry", "mirror diagonal", "mirror octant"),
     *("kaleidoscope", "repeat", "repeat neighbours", "repeat mirrored", "repeat limited"),

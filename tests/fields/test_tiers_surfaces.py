@@ -233,7 +233,7 @@ def test_the_sponge_loses_seven_of_27_parts_each_time():
         ("QuaternionJulia", {}),
         ("QuaternionJulia", {"c": (-1.0, 0.2, 0.0, 0.0)}),
         ("Mandelbox", {}),
-        ("Mandelbox", {"scale": -1.5}),
+        ("Mandelbox", {"fold_scale": -1.5}),
     ],
 )
 def test_a_marcher_hardly_ever_steps_through_a_fractal(name, numbers):

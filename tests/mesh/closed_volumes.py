@@ -121,10 +121,10 @@ def egg(d: Dice) -> tuple[Any, float, None]:
 
 
 def hexagon(d: Dice) -> tuple[Any, float, float]:
-    n, apothem, h = d.whole(3, 9), d(0.2, 1), d(0.3, 2)
-    side = 2 * apothem * math.tan(math.pi / n)
-    face = n * side * apothem / 2
-    return Prism(n, apothem, h), face * h, 2 * face + n * side * h
+    n, inradius, h = d.whole(3, 9), d(0.2, 1), d(0.3, 2)
+    side = 2 * inradius * math.tan(math.pi / n)
+    face = n * side * inradius / 2
+    return Prism(inradius, h, count=n), face * h, 2 * face + n * side * h
 
 
 def diamond(d: Dice) -> tuple[Any, float, float]:
@@ -205,7 +205,7 @@ def socket_screw(d: Dice) -> tuple[Any, float, None]:
     r, length = d(0.2, 0.5), d(1, 4)
     head, high = r * d(1.4, 2), r * d(1, 2)
     across, deep = head * d(0.3, 0.6), high * d(0.3, 0.7)
-    hexagon = Prism(6, across, 2 * deep)
+    hexagon = Prism(across, 2 * deep, count=6)
     # A prism stands along y or z: its own box says which.
     low, top = hexagon.bounds()
     axis = int(np.argmin([abs(t - b - 2 * deep) for b, t in zip(low, top, strict=True)]))

@@ -124,7 +124,7 @@ def stepped_shaft():
 
 
 def socket_screw():
-    socket = Prism(6, 3.0, 8).rotate(x=math.pi / 2).translate(y=8)
+    socket = Prism(3.0, 8, count=6).rotate(x=math.pi / 2).translate(y=8)
     screw = (Cylinder(6.5, 8).translate(y=4) - socket) | Cylinder(4, 30).translate(y=-15)
     volume = math.pi * (6.5**2 * 8 + 16 * 30) - 6 * 9 * math.tan(math.pi / 6) * 4
     return screw, volume

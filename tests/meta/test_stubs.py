@@ -115,7 +115,7 @@ WRONG = {
     "Sphere().paint(Sphere())": ("arg-type", "reportArgumentType"),
     'Shape.from_volume("a.npy", axes="xyw")': ("arg-type", "reportArgumentType"),
     "union(3)": ("arg-type", "reportArgumentType"),
-    'Nut("M6", clearance="wide")': ("arg-type", "reportArgumentType"),
+    'Nut("M6", gap="wide")': ("arg-type", "reportArgumentType"),
     "distal.Sphere().blend(2)": ("attr-defined", "reportAttributeAccessIssue"),
 }
 

@@ -237,7 +237,7 @@ def cpu_picture(name):
 
 def module_of(picture):
     """What every target is given: the picture in display values, and its textures' data."""
-    module = lower(picture.text())
+    module = lower(picture.emitted())
     data = {r.name: load(r.source, r.type) for r in module.resources}
     textures = {r.name for r in module.resources if isinstance(r.type, Texture)}
     return module, {

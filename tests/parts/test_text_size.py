@@ -30,7 +30,7 @@ def copies_in(module: Module) -> Counter[str]:
 
 def page_of(scene: Scene) -> Module:
     image = scene.view("color", steered=True, encoded=True, sampled=True)
-    return run_passes(lower(image.text()), get_target("glsl-es300"))
+    return run_passes(lower(image.emitted()), get_target("glsl-es300"))
 
 
 def test_the_distance_of_a_part_stands_at_few_places() -> None:

@@ -340,12 +340,12 @@ SOLIDS = [
             {"thickness": 0.3, "where": where},
             # A wall from so far inside to so far outside of the old surface.
             lambda a, b, p, thickness, where: np.maximum(
-                a(p) - thickness * {"inner": 0.0, "centre": 0.5, "outer": 1.0}[where],
-                -a(p) - thickness * {"inner": 1.0, "centre": 0.5, "outer": 0.0}[where],
+                a(p) - thickness * {"inner": 0.0, "center": 0.5, "outer": 1.0}[where],
+                -a(p) - thickness * {"inner": 1.0, "center": 0.5, "outer": 0.0}[where],
             ),
-            changed={"where": [w for w in ("inner", "centre", "outer") if w != where]},
+            changed={"where": [w for w in ("inner", "center", "outer") if w != where]},
         )
-        for where in ("inner", "centre", "outer")
+        for where in ("inner", "center", "outer")
     ),
     # Bent out of shape
     Case(

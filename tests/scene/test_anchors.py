@@ -24,7 +24,7 @@ RIM = 0.5 * math.cos(0.5) + math.sqrt(0.75) * math.sin(0.5)
         (distal.Box(1, 2, 3).rotate(z=QUARTER), (1.5 * math.sqrt(0.5), 1.5 * math.sqrt(0.5), 1.5)),
         (distal.Torus(1.0, 0.25).rotate(x=QUARTER), (1.25, math.sqrt(0.5) + 0.25, None)),
         (distal.Sphere(1) | distal.Box(1).translate(1, 0, 0), (1.5, 1.0, 1.0)),
-        (distal.Ring(1.0, 0.5, 0.2).rotate(0.0) | distal.Circle(1.5), (1.5, 1.5)),
+        (distal.Ring(1.0, thickness=0.2, opening=1.0).rotate(0.0) | distal.Circle(1.5), (1.5, 1.5)),
         # searched
         (distal.Box(2) - distal.Sphere(1.2).translate(0, 1, 0), (1.0, 1.0, 1.0)),
         ((distal.Sphere(1) - distal.Box(4).translate(0, 2.5, 0)).rotate(x=0.5), (1.0, RIM, 1.0)),

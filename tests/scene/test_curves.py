@@ -101,7 +101,7 @@ def test_each_copy_is_turned_further_by_the_roll():
 
 
 def test_copies_lie_along_the_curve():
-    beads = RING.copies(Capsule(radius=0.05, height=0.5), 6)
+    beads = RING.copies(Capsule(radius=0.05, length=0.5), 6)
     for i in range(6):
         a = tau * i / 6
         ahead = np.array([-sin(a), 0.0, cos(a)])

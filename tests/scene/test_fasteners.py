@@ -60,7 +60,7 @@ def test_sizes_are_those_of_the_standards():
 def test_a_nut_fits_on_its_bolt_at_every_height(size, left, clearance):
     row = METRIC[size]
     bolt = distal.Bolt(size, 3.0 * row.diameter, left=left)
-    nut = distal.Nut(size, clearance=clearance, left=left)
+    nut = distal.Nut(size, gap=clearance, left=left)
     rng = np.random.default_rng(3)
     for height in (-2.4 * row.diameter, -2.0 * row.diameter - 0.37 * row.pitch):
         angle, out = rng.uniform(0.0, math.tau, 20_000), rng.uniform(0.35, 0.6, 20_000)
@@ -113,7 +113,7 @@ def test_a_thread_up_to_the_head_has_its_full_depth():
 def test_holes_let_a_bolt_through_or_take_its_thread():
     plain = distal.MetricHole("M6", 8.0, threaded=False)
     assert values(plain, [[3.2, 4.1, 0.0], [3.4, 0.0, 0.0]]) == pytest.approx([-0.1, 0.1], abs=1e-6)
-    tapped = distal.MetricHole("M6", 8.0, clearance=0.1, through=False)
+    tapped = distal.MetricHole("M6", 8.0, gap=0.1, through=False)
     ends = radii_where_it_ends(tapped, 0.0, [0.0, 0.5])
     assert ends == pytest.approx([3.1, 3.1 - 0.541266], abs=2e-6)
     assert values(tapped, [[0.0, -5.0, 0.0], [0.0, -3.5, 0.0]]) == pytest.approx(
@@ -122,7 +122,7 @@ def test_holes_let_a_bolt_through_or_take_its_thread():
 
 
 def test_lengths_have_units():
-    assert (distal.mm, distal.cm, distal.metre) == (1.0, 10.0, 1000.0)
+    assert (distal.mm, distal.cm, distal.meter) == (1.0, 10.0, 1000.0)
     assert (distal.inch, distal.foot) == (25.4, pytest.approx(12.0 * 25.4))
 
 

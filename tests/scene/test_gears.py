@@ -48,7 +48,7 @@ def test_flanks_are_involutes(teeth, module, backlash):
 
 
 def test_a_gear_has_its_radii():
-    gear = distal.Gear(2.0, 20, 6.0, bore=8.0)
+    gear = distal.Gear(2.0, 20, 6.0, bore_diameter=8.0)
     # On the axis of a tooth, of a gap, in the bore; and the two ends.
     gap = np.array([math.sin(math.pi / 20), math.cos(math.pi / 20), 0.0])
     points = [[0.0, 23.0, 0.0], 18.0 * gap, [0.0, 3.0, 0.0], [0.0, 15.0, 4.0]]

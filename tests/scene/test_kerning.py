@@ -55,7 +55,7 @@ def kerning(made: FontBuilder, folder, text: str) -> int:
     """By how many units the second letter stands farther than the first one's width."""
     path = folder / "made.ttf"
     made.save(path)
-    outline = text_outline(text, font=path, align="left")
+    outline = text_outline(text, font=path, justify="left")
     across = outline.high[0] - outline.low[0]
     return round(1000 * across - (WIDTH + RIGHT - LEFT))
 

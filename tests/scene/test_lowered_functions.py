@@ -10,7 +10,7 @@ from distal.ir.walk import names_read
 
 
 def functions(scene: Scene) -> tuple[Function, ...]:
-    return lower(scene.text()).functions
+    return lower(scene.emitted()).functions
 
 
 @pytest.mark.parametrize(

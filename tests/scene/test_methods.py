@@ -229,7 +229,7 @@ DEFAULTS = {
     "where": {"blend": 0.0},
     "mirror": {"offset": 0.0},
     "split": {"offset": 0.0},
-    "shell": {"where": "centre"},
+    "shell": {"where": "center"},
     "orient": {"target": None},
     "repeat": {"count": None, "neighbours": 0, "mirrored": False},
     "repeat_polar": {"neighbours": 0},

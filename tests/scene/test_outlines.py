@@ -135,9 +135,9 @@ def test_parabolas_stay_near_their_cubic():
 
 
 def test_text_is_laid_out():
-    both, first, second = (text_outline(t, align="left") for t in ("AV", "A", "V"))
+    both, first, second = (text_outline(t, justify="left") for t in ("AV", "A", "V"))
     assert both.high[0] < first.high[0] + second.high[0]  # the pair is kerned
-    centred, right = text_outline("AV"), text_outline("AV", align="right")
+    centred, right = text_outline("AV"), text_outline("AV", justify="right")
     width = both.high[0] - both.low[0]
     assert centred.high[0] - centred.low[0] == pytest.approx(width)
     assert right.high[0] < 0.1 and both.low[0] > -0.1

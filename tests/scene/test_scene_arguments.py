@@ -79,7 +79,7 @@ def as_it_is():
 
 def program(**changed):
     """What does not depend on numbers, as a text."""
-    return print_identity(lower(Scene(**SAID | changed).text()))
+    return print_identity(lower(Scene(**SAID | changed).emitted()))
 
 
 def test_every_argument_is_changed_here():

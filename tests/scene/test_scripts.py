@@ -76,7 +76,7 @@ def test_line_ends_are_one_line_end_and_invisible_characters_nothing():
 def test_marks_of_direction_are_nothing():
     low, high = Text("abc").bounds()
     for text in ("\u200fabc\u200f", "abc \u200f", "abc\u202e"):
-        found = Text(text, align="left").bounds()
+        found = Text(text, justify="left").bounds()
         assert found[1][1] - found[0][1] == pytest.approx(high[1] - low[1]), repr(text)
     assert Text("A\n\u200f").bounds() == Text("A\n ").bounds()
 

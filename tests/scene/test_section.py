@@ -69,7 +69,7 @@ def test_the_whole_picture_is_not_changed_by_the_cut_program():
     before = seen.render(OPTIONS).array
     assert seen.sectioned is not None
     assert np.array_equal(seen.render(OPTIONS).array, before)
-    program = seen.image(encoded=True, steered=True).text()
+    program = seen.image(encoded=True, steered=True).emitted()
     assert "CutPlane" not in str(program)
 
 

@@ -86,7 +86,7 @@ def test_a_relief_stands_out_of_a_cylinder():
 MISTAKES = [
     (lambda: distal.Sphere(1).fillet(0.1), "the last operation of this shape is 'Sphere'"),
     (lambda: distal.Box(1).fillet(0.1), "RoundBox(size, rounding)"),
-    (lambda: distal.Box(1).chamfer(0.1), "ChamferBox(size, chamfer)"),
+    (lambda: distal.Box(1).chamfer(0.1), "ChamferBox(size, bevel)"),
     (
         lambda: (distal.Box(1) | distal.Sphere(0.6)).translate(1, 0, 0).chamfer(0.1),
         "call chamfer right after the operator: (a - b).chamfer(0.1).translate(…)",

@@ -166,4 +166,4 @@ def test_the_frame_part_computes_the_camera_once():
 
 def module_of(view):
     image = scene_of(front()).view(view, steered=True, encoded=True, sampled=True)
-    return run_passes(lower(image.text()), get_target("glsl-es300"))
+    return run_passes(lower(image.emitted()), get_target("glsl-es300"))

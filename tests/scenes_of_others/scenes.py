@@ -27,7 +27,7 @@ from distal import (
     Slab,
     Sphere,
     Torus,
-    aluminium,
+    aluminum,
     brass,
     concrete,
     copper,
@@ -123,7 +123,7 @@ def shreddered_torus() -> Shape:
 
 def robot() -> Shape:
     """A robot of 33 parts."""
-    shell, joint, dark = porcelain(), aluminium(), rubber()
+    shell, joint, dark = porcelain(), aluminum(), rubber()
     body = RoundBox((1.0, 1.1, 0.7), 0.15).translate(y=1.75).paint(shell)
     belt = RoundBox((0.8, 0.25, 0.55), 0.1).translate(y=1.1).paint(dark)
     plate = RoundBox((0.55, 0.4, 0.08), 0.03).translate(0.0, 1.9, 0.35).paint(joint)
@@ -193,7 +193,7 @@ def castle() -> Shape:
     gatehouse = Box(1.1, 1.5, 0.5).translate(y=0.75)
     front = ((wall | gatehouse) - arch).translate(0.0, 0.0, 1.6)
     bars = Cylinder(0.02, 0.9).repeat(0.12, 1.0, 1.0, count=(5, 1, 1)).translate(0.0, 0.45, 1.6)
-    keep = Prism(6, 0.6, 2.4).translate(y=1.2) | Cone(0.75, 0.9).translate(y=2.85).paint(roof)
+    keep = Prism(0.6, 2.4, count=6).translate(y=1.2) | Cone(0.75, 0.9).translate(y=2.85).paint(roof)
     flag = Polygon([(0.0, 0.0), (0.5, 0.14), (0.0, 0.28)]).extrude(0.03).translate(0.0, 3.5, 0.0)
     pole = Cylinder(0.02, 0.7).translate(y=3.45)
     walls = sides.union(back, front).paint(stone)

@@ -129,7 +129,7 @@ def compiled(
         kind = type(obj).__name__
         raise TypeError(f"only a scene, an @image or a @func can be compiled, not {kind}")
     if isinstance(obj, Composed):
-        obj = obj.text()
+        obj = obj.emitted()
     if after is not None and after not in ("lower", *PASS_NAMES):
         raise ValueError(f"there is no pass '{after}'; passes: lower, {', '.join(PASS_NAMES)}")
     if after is not None and target != IR_TARGET:

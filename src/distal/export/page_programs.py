@@ -251,7 +251,7 @@ def compiled(image: Func | Composed) -> tuple[Artifact, Module]:
 
 def lowered(image: Func | Composed) -> Module:
     """Return the IR of a picture for a page, before the passes."""
-    return framed(lower(image.text() if isinstance(image, Composed) else image))
+    return framed(lower(image.emitted() if isinstance(image, Composed) else image))
 
 
 def framed(module: Module) -> Module:

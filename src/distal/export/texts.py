@@ -174,7 +174,7 @@ def text_files(seen: Viewable, target: str, options: TextOptions, stem: str) -> 
     values = checked_values(seen.parameters, options.params)
     image = seen.image(options.view, encoded=True)
     description = TEXT_TARGETS[target]
-    of_text = image.text() if isinstance(image, Composed) else image
+    of_text = image.emitted() if isinstance(image, Composed) else image
     module = lower(of_text, table_from=TEXT_TABLE_FROM if description.buffers else None)
     refuse_passes(module)
     artifact = with_data(text_of(with_values(module, values), description), module)

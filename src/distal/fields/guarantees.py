@@ -98,8 +98,9 @@ class Limit(Enum):
 # Limits of numbers by name; these names have the same meaning in the whole library.
 USUAL_LIMITS: Final[Mapping[str, Limit]] = {
     **dict.fromkeys(("radius", "radii", "size", "width", "height", "thickness"), Limit.POSITIVE),
-    **dict.fromkeys(("cell_size", "apothem", "major", "minor", "pitch", "angle"), Limit.POSITIVE),
-    **dict.fromkeys(("rounding", "chamfer"), Limit.NOT_NEGATIVE),
+    **dict.fromkeys(("cell_size", "inradius", "major", "minor", "pitch", "angle"), Limit.POSITIVE),
+    **dict.fromkeys(("length", "opening"), Limit.POSITIVE),
+    **dict.fromkeys(("rounding", "chamfer", "bevel", "countersink"), Limit.NOT_NEGATIVE),
     "jitter": Limit.FRACTION,
     "normal": Limit.UNIT,
 }
@@ -188,7 +189,8 @@ class Primitive:
     Attributes:
         name: Name of the class in the object model: "CappedTorus".
         distance: ``(p, *numbers) -> float``; p is a vec3 for a solid, a vec2 for a flat shape. The
-            defaults of its parameters are the shape's defaults; its docstring is the shape's.
+            defaults of its parameters are the shape's defaults; its docstring is the shape's. What
+            follows ``*`` is passed by name only, also to the shape.
         claims: The guarantees besides the bound on the slope.
         slope: Lipschitz bound (slope): a bound on |gradient| everywhere; a number, or a function of
             the shape's numbers.

@@ -132,9 +132,9 @@ def cylinder_width(radius: float, height: float) -> float:
 
 
 @func
-def prism_width(apothem: float, height: float) -> float:
+def prism_width(inradius: float, height: float) -> float:
     """Return the width of a prism over a regular polygon."""
-    return both_widths(ROD * apothem, height)
+    return both_widths(ROD * inradius, height)
 
 
 @func
@@ -183,6 +183,12 @@ def ends_width(bottom: float, top: float) -> float:
 
 
 # Polyhedra and polygons, by the largest ball inside
+
+
+@func
+def inradius_width(inradius: float) -> float:
+    """Return the width of a solid by the largest ball inside."""
+    return ROD * inradius
 
 
 @func
@@ -278,17 +284,17 @@ def parallelogram_width(width: float, height: float, skew: float) -> float:
 
 
 @func
-def chamfered_width(size: vec2, chamfer: float) -> float:
+def chamfered_width(size: vec2, bevel: float) -> float:
     """Return the width of a rectangle whose corners are cut."""
-    across = (0.5 * (size.x + size.y) - chamfer) * HALF_ROOT
+    across = (0.5 * (size.x + size.y) - bevel) * HALF_ROOT
     return min(rectangle_width(size), ROD * across)
 
 
 @func
-def chamfered_box_width(size: vec3, chamfer: float) -> float:
+def chamfered_box_width(size: vec3, bevel: float) -> float:
     """Return the width of a box whose edges are cut."""
     low = min(min(size.x, size.y), size.z)
-    return min(box_width(size), ROD * max(low - chamfer, 0.5 * low) * HALF_ROOT)
+    return min(box_width(size), ROD * max(low - bevel, 0.5 * low) * HALF_ROOT)
 
 
 @func
@@ -340,9 +346,9 @@ def gap_width(radius: float) -> float:
 
 
 @func
-def moon_width(radius: float, cut_radius: float, offset: float) -> float:
+def moon_width(radius: float, cut_radius: float, shift: float) -> float:
     """Return the width of a crescent: of half of its thickness, since its tips are thin."""
-    return 0.5 * SHEET * (radius + offset - cut_radius)
+    return 0.5 * SHEET * (radius + shift - cut_radius)
 
 
 @func
@@ -358,9 +364,9 @@ def annulus_width(radius: float, thickness: float) -> float:
 
 
 @func
-def sector_width(radius: float, angle: float) -> float:
-    """Return the width of a sector of a disc or a ball, with half of its angle."""
-    s = sin(min(angle, 0.5 * PI))
+def sector_width(radius: float, opening: float) -> float:
+    """Return the width of a sector of a disc or a ball."""
+    s = sin(0.5 * min(opening, PI))
     return ROD * radius * s / (1.0 + s)
 
 

@@ -59,7 +59,7 @@ class Composed(Immutable, ABC):
             CompileError: The object cannot be expressed in scene code.
         """
 
-    def text(self) -> Composed:
+    def emitted(self) -> Composed:
         """Return the object to emit as text: for a picture, one with display values."""
         return self
 

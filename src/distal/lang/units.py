@@ -21,7 +21,7 @@ MILLIMETER: Final = UNITS["mm"]
 
 mm: Final = UNITS["mm"] / MILLIMETER
 cm: Final = UNITS["cm"] / MILLIMETER
-metre: Final = UNITS["m"] / MILLIMETER
+meter: Final = UNITS["m"] / MILLIMETER
 inch: Final = UNITS["inch"] / MILLIMETER
 foot: Final = UNITS["ft"] / MILLIMETER
 

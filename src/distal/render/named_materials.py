@@ -6,7 +6,7 @@ on lights or shapes.
 
 Sources of the numbers. *PB*: "Physically Based", Anton Palmqvist (https://physicallybased.info,
 CC0), whose metals are computed from measured n and k (refractiveindex.info: gold and silver after
-Babar and Weaver, copper and nickel after Johnson and Christy, aluminium after Cheng, chromium after
+Babar and Weaver, copper and nickel after Johnson and Christy, aluminum after Cheng, chromium after
 Sytchkova, titanium after Palm, platinum and zinc after Werner) and converted to linear sRGB. Gold's
 red would be 1.059, out of sRGB's gamut: all three are divided by it, which keeps the hue. Most of
 its other colors are measured with a spectrophotometer. *By eye*: no measurement is known to us; the
@@ -65,8 +65,7 @@ METALS: Final[Mapping[str, Row]] = {
     "copper": Row("Pure copper", (0.932, 0.623, 0.522), 0.2),
     "brass": Row("Brass, an alloy of copper and zinc", (0.91, 0.778, 0.423), 0.2),
     "bronze": Row("Bronze, an alloy of copper and tin", (0.71, 0.47, 0.3), 0.3, EYE),
-    "aluminium": Row("Aluminium; also spelt ``aluminum``", (0.916, 0.923, 0.924), 0.3),
-    "aluminum": Row("Aluminum; also spelt ``aluminium``", (0.916, 0.923, 0.924), 0.3),
+    "aluminum": Row("Pure aluminum", (0.916, 0.923, 0.924), 0.3),
     "iron": Row("Pure iron, without rust", (0.53, 0.513, 0.494), 0.4),
     "steel": Row("Stainless steel", (0.669, 0.639, 0.598), 0.25),
     "chrome": Row("Polished chromium", (0.654, 0.685, 0.701), 0.0),
@@ -168,7 +167,7 @@ for _name, _row in CLEAR.items():
     _declare_clear(_name, _row)
 
 
-# Absorption coefficients per metre, in linear sRGB.
+# Absorption coefficients per meter, in linear sRGB.
 IN_WATER: Final = vec3(0.297, 0.045, 0.017)
 IN_ICE: Final = vec3(0.2075, 0.0416, 0.0)
 
@@ -179,7 +178,7 @@ def water(meter: float = 1.0) -> Surface:
     """Clear water: it refracts light, and is blue where it is metres deep.
 
     Args:
-        meter: Length of a metre in scene units: 100 if a unit is a centimetre.
+        meter: Length of a meter in scene units: 100 if a unit is a centimeter.
 
     Source: refraction: Daimon and Masumura (2007); absorption: Physically Based
         (https://physicallybased.info).
@@ -193,7 +192,7 @@ def ice(meter: float = 1.0) -> Surface:
     """Clear ice: it refracts light, and is blue where it is metres deep.
 
     Args:
-        meter: Length of a metre in scene units: 100 if a unit is a centimetre.
+        meter: Length of a meter in scene units: 100 if a unit is a centimeter.
 
     Source: refraction and absorption: Warren and Brandt (2008), by Physically Based
         (https://physicallybased.info).

@@ -615,7 +615,7 @@ class Scene(SceneValue, Composed, Presentable):
         copy_loaded_from(self, made)
         return made
 
-    def text(self) -> Composed:
+    def emitted(self) -> Composed:
         """Return the object that text targets compile: the scene, encoded for display."""
         return self.view("color", encoded=True)
 

@@ -35,9 +35,9 @@ def _corners_fit(size: tuple[float, ...], radii: tuple[float, ...]) -> str | Non
     return None
 
 
-def _chamfer_fits(size: tuple[float, ...], chamfer: float) -> str | None:
-    if any(2.0 * chamfer > side for side in tuple(size)):
-        return "chamfer may be at most half of the shorter side"
+def _chamfer_fits(size: tuple[float, ...], bevel: float) -> str | None:
+    if any(2.0 * bevel > side for side in tuple(size)):
+        return "bevel may be at most half of the shorter side"
     return None
 
 
@@ -57,13 +57,13 @@ def _arms_fit(span: float, thickness: float) -> str | None:
     width=UNBOUNDED,
 )
 @func
-def half_plane(p: vec2, normal: vec2 = UP, offset: float = 0.0) -> float:
+def half_plane(p: vec2, normal: vec2 = UP, distance: float = 0.0) -> float:
     """Half plane on one side of a straight line.
 
     Args:
         p: Point.
         normal: Normal of the line that points outwards, of length 1.
-        offset: Distance of the line from the origin along the normal.
+        distance: Distance of the line from the origin along the normal.
 
     Source: the point's projection on the normal.
 
@@ -72,7 +72,7 @@ def half_plane(p: vec2, normal: vec2 = UP, offset: float = 0.0) -> float:
         half_plane((1.0, 2.0), (0.6, 0.8), 1.0) = 1.2
         half_plane((-4.0, 0.0), (1.0, 0.0), -1.0) = -3.0
     """
-    return dot(p, normal) - offset
+    return dot(p, normal) - distance
 
 
 @func
@@ -149,13 +149,13 @@ def rounded_rectangle(p: vec2, size: vec2 = UNIT_SQUARE, radii: vec4 = EQUAL_RAD
     width=chamfered_width,
 )
 @func
-def chamfered_rectangle(p: vec2, size: vec2 = UNIT_SQUARE, chamfer: float = 0.2) -> float:
+def chamfered_rectangle(p: vec2, size: vec2 = UNIT_SQUARE, bevel: float = 0.2) -> float:
     """Rectangle with corners chamfered at 45 degrees.
 
     Args:
         p: Point.
         size: Full width and height.
-        chamfer: Length that a chamfer removes from each side.
+        bevel: Length that the bevel removes from each side.
 
     Source: its three edges in one quarter, folded again at the diagonal of the corner.
 
@@ -165,7 +165,7 @@ def chamfered_rectangle(p: vec2, size: vec2 = UNIT_SQUARE, chamfer: float = 0.2)
         chamfered_rectangle((5.0, 5.0), (4.0, 4.0), 1.0) = 4.949747468305833
     """
     q = larger_first(abs(p) - 0.5 * size)
-    from_corner = vec2(q.x, q.y + chamfer)
+    from_corner = vec2(q.x, q.y + bevel)
     cut = HALF_ROOT * (from_corner.x + from_corner.y)
     beyond_side = select(from_corner.y > from_corner.x, cut, length(from_corner))
     outside = select(from_corner.y > 0.0, beyond_side, q.x)

@@ -9,7 +9,7 @@ import math
 from typing import Final
 
 from distal.fields.constants import HALF_ROOT, TINY
-from distal.fields.flats.edges import LEFT, RIGHT, centred_bounds, nearer, turned_from
+from distal.fields.flats.edges import LEFT, RIGHT, centred_bounds, length_of, nearer, turned_from
 from distal.fields.guarantees import EXACT, Bounds2, Limit, primitive
 from distal.fields.widths import (
     cross_width,
@@ -40,22 +40,22 @@ def _lens_is_long(start: tuple[float, ...], end: tuple[float, ...], width: float
     return "width may be at most the way from start to end" if width**2 > square else None
 
 
-def _circles_cross(radius: float, cut_radius: float, offset: float) -> str | None:
-    if not math.fabs(radius - cut_radius) < offset < radius + cut_radius:
+def _circles_cross(radius: float, cut_radius: float, shift: float) -> str | None:
+    if not math.fabs(radius - cut_radius) < shift < radius + cut_radius:
         return "the two circles must cross"
     return None
 
 
-def _sides_touch_both(bottom: float, top: float, height: float) -> str | None:
-    if height <= math.fabs(bottom - top):
-        return "height must be more than the difference of the radii"
+def _sides_touch_both(bottom: float, top: float, length: float) -> str | None:
+    if length <= math.fabs(bottom - top):
+        return "length must be more than the difference of the radii"
     return None
 
 
-def _egg_is_convex(bottom: float, top: float, height: float, bulge: float) -> str | None:
+def _egg_is_convex(bottom: float, top: float, length: float, bulge: float) -> str | None:
     if bulge == 0.0:
         return "bulge must be above 0 (UnevenCapsule has straight sides)"
-    return _sides_touch_both(bottom, top, height)
+    return _sides_touch_both(bottom, top, length)
 
 
 def _bars_are_thin(span: float, thickness: float) -> str | None:
@@ -145,31 +145,31 @@ def oriented_vesica(p: vec2, start: vec2 = LEFT, end: vec2 = RIGHT, width: float
 
 
 @func
-def moon_bounds(radius: float, cut_radius: float, offset: float) -> Bounds2:
+def moon_bounds(radius: float, cut_radius: float, shift: float) -> Bounds2:
     """Return the rectangle around the left side and as far right as the shape extends."""
-    across = (radius * radius - cut_radius * cut_radius + offset * offset) / (2.0 * offset)
+    across = (radius * radius - cut_radius * cut_radius + shift * shift) / (2.0 * shift)
     corner = sqrt(max(radius * radius - across * across, 0.0))
     high = select(across > 0.0, radius, corner)
-    return Bounds2(vec2(-radius, -high), vec2(max(across, offset - cut_radius), high))
+    return Bounds2(vec2(-radius, -high), vec2(max(across, shift - cut_radius), high))
 
 
 @primitive(
     "Moon",
     EXACT,
     bounds=moon_bounds,
-    limits={"cut_radius": Limit.POSITIVE, "offset": Limit.POSITIVE},
+    limits={"cut_radius": Limit.POSITIVE, "shift": Limit.POSITIVE},
     requires=_circles_cross,
     width=moon_width,
 )
 @func
-def moon(p: vec2, radius: float = 0.7, cut_radius: float = 0.6, offset: float = 0.4) -> float:
+def moon(p: vec2, radius: float = 0.7, cut_radius: float = 0.6, shift: float = 0.4) -> float:
     """Moon: a disc around the origin minus a second disc to its right.
 
     Args:
         p: Point.
         radius: Radius of the disc.
         cut_radius: Radius of the disc that is subtracted.
-        offset: Distance of the second centre to the right; the circles must intersect.
+        shift: Distance of the second centre to the right; the circles must intersect.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -179,9 +179,9 @@ def moon(p: vec2, radius: float = 0.7, cut_radius: float = 0.6, offset: float = 
         moon((2.0, 0.0), 5.0, 5.0, 6.0) = 1.0
         moon((6.0, 8.0), 5.0, 5.0, 6.0) = 5.0
     """
-    across = (radius * radius - cut_radius * cut_radius + offset * offset) / (2.0 * offset)
+    across = (radius * radius - cut_radius * cut_radius + shift * shift) / (2.0 * shift)
     corner = vec2(across, sqrt(max(radius * radius - across * across, 0.0)))
-    centre = vec2(offset, 0.0)
+    centre = vec2(shift, 0.0)
     q = vec2(p.x, abs(p.y))
     past_circle = length(q) - radius
     past_cut = cut_radius - length(q - centre)
@@ -264,10 +264,10 @@ def heart(p: vec2, height: float = 1.0) -> float:
 
 
 @func
-def uneven_capsule_bounds(bottom: float, top: float, height: float) -> Bounds2:
+def uneven_capsule_bounds(bottom: float, top: float, length: float) -> Bounds2:
     """Return the rectangle around both circles."""
     reach = max(bottom, top)
-    return Bounds2(vec2(-reach, -bottom), vec2(reach, height + top))
+    return Bounds2(vec2(-reach, -bottom), vec2(reach, length + top))
 
 
 @primitive(
@@ -279,14 +279,14 @@ def uneven_capsule_bounds(bottom: float, top: float, height: float) -> Bounds2:
     width=ends_width,
 )
 @func
-def uneven_capsule(p: vec2, bottom: float = 0.4, top: float = 0.2, height: float = 0.6) -> float:
+def uneven_capsule(p: vec2, bottom: float = 0.4, top: float = 0.2, length: float = 0.6) -> float:
     """Two discs, one above the other, and the region between their common tangents.
 
     Args:
         p: Point.
         bottom: Radius of the lower disc, around the origin.
         top: Radius of the upper disc.
-        height: Distance between the centres, more than the difference of the radii.
+        length: Distance between the centres, more than the difference of the radii.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
@@ -298,31 +298,31 @@ def uneven_capsule(p: vec2, bottom: float = 0.4, top: float = 0.2, height: float
     """
     q = vec2(abs(p.x), p.y)
     # The tangent's normal is (rise, lean).
-    lean = (bottom - top) / height
+    lean = (bottom - top) / length
     rise = sqrt(max(1.0 - lean * lean, 0.0))
     along = q.y * rise - q.x * lean
-    past_top = length(vec2(q.x, q.y - height)) - top
+    past_top = length_of(vec2(q.x, q.y - length)) - top
     past_side = q.x * rise + q.y * lean - bottom
-    upper = select(along > height * rise, past_top, past_side)
-    return select(along < 0.0, length(q) - bottom, upper)
+    upper = select(along > length * rise, past_top, past_side)
+    return select(along < 0.0, length_of(q) - bottom, upper)
 
 
 @func
-def egg_side(bottom: float, top: float, height: float, bulge: float) -> vec3:
+def egg_side(bottom: float, top: float, length: float, bulge: float) -> vec3:
     """Return centre (x, y) and radius (z) of the circle of the right side."""
-    radius = 0.5 * (height + bottom + top) / bulge
+    radius = 0.5 * (length + bottom + top) / bulge
     to_bottom = radius - bottom
     to_top = radius - top
-    below = (to_top * to_top - to_bottom * to_bottom - height * height) / (2.0 * height)
+    below = (to_top * to_top - to_bottom * to_bottom - length * length) / (2.0 * length)
     return vec3(-sqrt(max(to_bottom * to_bottom - below * below, 0.0)), -below, radius)
 
 
 @func
-def egg_bounds(bottom: float, top: float, height: float, bulge: float) -> Bounds2:
+def egg_bounds(bottom: float, top: float, length: float, bulge: float) -> Bounds2:
     """Return the rectangle around both circles and the sides."""
-    side = egg_side(bottom, top, height, bulge)
-    reach = select(side.y > 0.0 and side.y < height, side.x + side.z, max(bottom, top))
-    return Bounds2(vec2(-reach, -bottom), vec2(reach, height + top))
+    side = egg_side(bottom, top, length, bulge)
+    reach = select(side.y > 0.0 and side.y < length, side.x + side.z, max(bottom, top))
+    return Bounds2(vec2(-reach, -bottom), vec2(reach, length + top))
 
 
 @primitive(
@@ -335,7 +335,7 @@ def egg_bounds(bottom: float, top: float, height: float, bulge: float) -> Bounds
 )
 @func
 def egg(
-    p: vec2, bottom: float = 0.4, top: float = 0.2, height: float = 0.4, bulge: float = 0.6
+    p: vec2, bottom: float = 0.4, top: float = 0.2, length: float = 0.4, bulge: float = 0.6
 ) -> float:
     """Egg: two discs, one above the other, with convex sides tangent to both.
 
@@ -343,7 +343,7 @@ def egg(
         p: Point.
         bottom: Radius of the lower disc, around the origin.
         top: Radius of the upper disc.
-        height: Distance between the centres, more than the difference of the radii.
+        length: Distance between the centres, more than the difference of the radii.
         bulge: From 0 (exclusive) for nearly straight sides to 1 for sides with the radius of half
             the egg's height.
 
@@ -355,15 +355,15 @@ def egg(
         egg((3.0, 5.0), 1.0, 1.0, 2.0, 1.0) = 3.0
         egg((0.0, -5.0), 2.0, 1.0, 2.0, 0.5) = 3.0
     """
-    side = egg_side(bottom, top, height, bulge)
+    side = egg_side(bottom, top, length, bulge)
     q = vec2(abs(p.x), p.y)
     # The lines from the side's centre through the discs' centres separate the three circles.
     below = turned_from(side.xy, q) > 0.0
-    upper = vec2(0.0, height)
+    upper = vec2(0.0, length)
     above = turned_from(side.xy - upper, q - upper) < 0.0
     centre = select(below, vec2(0.0), select(above, upper, side.xy))
     radius = select(below, bottom, select(above, top, side.z))
-    return length(q - centre) - radius
+    return length_of(q - centre) - radius
 
 
 @func

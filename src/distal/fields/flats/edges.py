@@ -39,6 +39,12 @@ RIGHT: Final = vec2(0.5, 0.0)
 
 
 @func
+def length_of(v: Vectors) -> float:
+    """Return the length of a vector, where a number is called ``length``."""
+    return length(v)
+
+
+@func
 def nearer(a: Vectors, b: Vectors) -> Vectors:
     """Return the shorter of two vectors."""
     return select(dot(b, b) < dot(a, a), b, a)

@@ -42,16 +42,16 @@ from distal.lang import (
 
 # Number of pieces per turn of a spiral; each piece is two parabolas.
 SPIRAL_PIECES: Final = 12
-STEEPEST_WAVE: Final = 5.0 / 6.0 * math.pi
+STEEPEST_WAVE: Final = 5.0 / 3.0 * math.pi
 # Of the S with half height 1: the distance of its vertical lines, and the height of their ends.
 COOL_S_STEP: Final = 0.4
 COOL_S_LOW: Final = 0.2
 COOL_S_HIGH: Final = 0.6
 
 
-def _arcs_are_apart(radius: float, angle: float, thickness: float) -> str | None:
-    if angle > STEEPEST_WAVE:
-        return "angle may be at most 5/6 pi: there neighbouring arcs touch"
+def _arcs_are_apart(opening: float) -> str | None:
+    if opening > STEEPEST_WAVE:
+        return "opening may be at most 5/3 pi: there neighbouring arcs touch"
     return None
 
 
@@ -62,9 +62,9 @@ def _turns_once(inner: float, outer: float, turns: int) -> str | None:
 
 
 @func
-def circle_wave_bounds(radius: float, angle: float, thickness: float) -> Bounds2:
+def circle_wave_bounds(radius: float, thickness: float, opening: float) -> Bounds2:
     """Return the bounds of the arcs' height; infinite to the left and right."""
-    high = radius * (1.0 - cos(angle)) + 0.5 * thickness
+    high = radius * (1.0 - cos(0.5 * opening)) + 0.5 * thickness
     return Bounds2(vec2(-UNBOUNDED, -high), vec2(UNBOUNDED, high))
 
 
@@ -77,31 +77,32 @@ def circle_wave_bounds(radius: float, angle: float, thickness: float) -> Bounds2
 )
 @func
 def circle_wave(
-    p: vec2, radius: float = 0.25, angle: float = 1.8, thickness: float = 0.05
+    p: vec2, radius: float = 0.25, *, thickness: float = 0.05, opening: float = 3.6
 ) -> float:
     """Infinite wave of circular arcs along the x axis, with a crest at x = 0.
 
     Args:
         p: Point.
         radius: Radius of the arcs' middle line.
-        angle: Angle, at the arc's centre, from a crest to the next crossing of the axis, in
-            radians; at most 5/6 pi, where adjacent arcs touch.
         thickness: Full width of the line.
+        opening: Whole angle of an arc in radians, at its centre, from one crossing of the axis to
+            the next; at most 5/3 pi, where adjacent arcs touch.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
 
     Measured:
-        circle_wave((0.0, 4.0), 1.0, 1.5707963267948966, 1.0) = 2.5
-        circle_wave((2.0, -4.0), 1.0, 1.5707963267948966, 1.0) = 2.5
-        circle_wave((4.0, 0.0), 1.0, 1.5707963267948966, 0.5) = 0.75
+        circle_wave((0.0, 4.0), 1.0, thickness=1.0, opening=3.141592653589793) = 2.5
+        circle_wave((2.0, -4.0), 1.0, thickness=1.0, opening=3.141592653589793) = 2.5
+        circle_wave((4.0, 0.0), 1.0, thickness=0.5, opening=3.141592653589793) = 0.75
     """
-    quarter = radius * sin(angle)
-    depth = radius * cos(angle)
+    half = 0.5 * opening
+    quarter = radius * sin(half)
+    depth = radius * cos(half)
     # Mirror the point to between a crest's centre and the next trough's; measure from both centres.
     x = abs(mod(p.x + 2.0 * quarter, 4.0 * quarter) - 2.0 * quarter)
-    crest = from_arc(vec2(x, p.y + depth), radius, angle)
-    trough = from_arc(vec2(2.0 * quarter - x, depth - p.y), radius, angle)
+    crest = from_arc(vec2(x, p.y + depth), radius, half)
+    trough = from_arc(vec2(2.0 * quarter - x, depth - p.y), radius, half)
     return min(crest, trough) - 0.5 * thickness
 
 

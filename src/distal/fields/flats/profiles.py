@@ -263,7 +263,9 @@ def interpolated(image: Texture2D, place: vec2) -> float:
 
 @primitive("ImageField", NOTHING, slope=IMAGE_SLOPE, bounds=rectangle_bounds, growth=1.0)
 @func
-def image_field(p: vec2, image: Texture2D, size: vec2 = UNIT_SQUARE, scale: float = 1.0) -> float:
+def image_field(
+    p: vec2, image: Texture2D, size: vec2 = UNIT_SQUARE, value_scale: float = 1.0
+) -> float:
     """Shape from distances stored in the first channel of an image.
 
     Neighbouring texels must differ by at most the distance between their centres, and the outermost
@@ -273,7 +275,7 @@ def image_field(p: vec2, image: Texture2D, size: vec2 = UNIT_SQUARE, scale: floa
         p: Point.
         image: The distances, negative inside.
         size: Width and height of the image, which is centred at the origin.
-        scale: Distance of a texel of value 1.
+        value_scale: Distance of a texel of value 1.
 
     Source: bilinear interpolation; outside the image the way to it is added.
 
@@ -286,4 +288,6 @@ def image_field(p: vec2, image: Texture2D, size: vec2 = UNIT_SQUARE, scale: floa
     # The centres of the outermost texels bound the interpolated region.
     reach = 0.5 * size * (1.0 - 1.0 / texels)
     inside = clamp(p, -reach, reach)
-    return scale * interpolated(image, (inside / size + 0.5) * texels - 0.5) + length(p - inside)
+    return value_scale * interpolated(image, (inside / size + 0.5) * texels - 0.5) + length(
+        p - inside
+    )

@@ -1,7 +1,7 @@
 """Discs, rings and their parts.
 
-Input: a point and the numbers of a shape. Output: the distance, negative inside. An ``angle`` is
-measured from the y axis to either side, in radians.
+Input: a point and the numbers of a shape. Output: the distance, negative inside. An ``opening`` is
+a whole angle in radians, half of it on either side of the y axis.
 """
 
 from __future__ import annotations
@@ -25,25 +25,27 @@ def _hole_is_left(radius: float, thickness: float) -> str | None:
     return "thickness may be at most twice the radius" if thickness > 2.0 * radius else None
 
 
-def _less_than_a_turn(angle: float) -> str | None:
-    return "angle must be below pi" if angle >= math.pi else None
+def _less_than_a_turn(opening: float) -> str | None:
+    return "opening must be below a whole turn, 2 pi" if opening >= math.tau else None
 
 
-def _ends_are_apart(radius: float, angle: float, thickness: float) -> str | None:
-    if angle > 0.5 * math.pi and (angle >= math.pi or 2.0 * radius * math.sin(angle) < thickness):
-        return "the round ends must not meet: take a smaller angle, or Annulus"
+def _ends_are_apart(radius: float, thickness: float, opening: float) -> str | None:
+    half = 0.5 * opening
+    if half > 0.5 * math.pi and (half >= math.pi or 2.0 * radius * math.sin(half) < thickness):
+        return "the round ends must not meet: take a smaller opening, or Annulus"
     return _hole_is_left(radius, thickness)
 
 
-def _ring_is_open(radius: float, angle: float, thickness: float) -> str | None:
-    return _less_than_a_turn(angle) or _hole_is_left(radius, thickness)
+def _ring_is_open(radius: float, thickness: float, opening: float) -> str | None:
+    return _less_than_a_turn(opening) or _hole_is_left(radius, thickness)
 
 
-def _legs_are_apart(radius: float, angle: float, legs: float, thickness: float) -> str | None:
-    inner = (radius - 0.5 * thickness) * math.sin(angle)
-    if angle > 0.5 * math.pi and inner + legs * math.cos(angle) < 0.0:
-        return "the legs must not meet: take a smaller angle or shorter legs"
-    return _ring_is_open(radius, angle, thickness)
+def _legs_are_apart(radius: float, legs: float, thickness: float, opening: float) -> str | None:
+    half = 0.5 * opening
+    inner = (radius - 0.5 * thickness) * math.sin(half)
+    if half > 0.5 * math.pi and inner + legs * math.cos(half) < 0.0:
+        return "the legs must not meet: take a smaller opening or shorter legs"
+    return _ring_is_open(radius, thickness, opening)
 
 
 def _cuts_the_disc(radius: float, height: float) -> str | None:
@@ -109,10 +111,11 @@ def annulus(p: vec2, radius: float = 0.75, thickness: float = 0.25) -> float:
 
 
 @func
-def pie_bounds(radius: float, angle: float) -> Bounds2:
+def pie_bounds(radius: float, opening: float) -> Bounds2:
     """Return the rectangle around the origin, the ends of the arc and its extreme points."""
-    end = radius * vec2(sin(angle), cos(angle))
-    reach = select(angle > 0.5 * PI, radius, end.x)
+    half = 0.5 * opening
+    end = radius * vec2(sin(half), cos(half))
+    reach = select(half > 0.5 * PI, radius, end.x)
     return Bounds2(vec2(-reach, min(end.y, 0.0)), vec2(reach, radius))
 
 
@@ -124,23 +127,24 @@ def pie_bounds(radius: float, angle: float) -> Bounds2:
     width=sector_width,
 )
 @func
-def pie(p: vec2, radius: float = 1.0, angle: float = 0.7) -> float:
+def pie(p: vec2, radius: float = 1.0, *, opening: float = 1.4) -> float:
     """Sector of a disc, symmetric about the y axis.
 
     Args:
         p: Point.
         radius: Radius of the disc.
-        angle: Angle from the y axis to either side in radians, below pi.
+        opening: Whole angle of the sector in radians, below 2 pi.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
 
     Measured:
-        pie((0.0, 3.0), 2.0, 1.0) = 1.0
-        pie((0.0, -1.0), 2.0, 0.75) = 1.0
-        pie((0.0, 0.5), 2.0, 0.5235987755982988) = -0.25
+        pie((0.0, 3.0), 2.0, opening=2.0) = 1.0
+        pie((0.0, -1.0), 2.0, opening=1.5) = 1.0
+        pie((0.0, 0.5), 2.0, opening=1.0471975511965976) = -0.25
     """
-    side = vec2(sin(angle), cos(angle))
+    half = 0.5 * opening
+    side = vec2(sin(half), cos(half))
     q = vec2(abs(p.x), p.y)
     past_circle = length(q) - radius
     past_side = length(q - side * clamp(dot(q, side), 0.0, radius))
@@ -191,18 +195,22 @@ def cut_disk(p: vec2, radius: float = 1.0, height: float = -0.3) -> float:
 
 @func
 def from_arc(q: vec2, radius: float, angle: float) -> float:
-    """Return the distance to an arc without thickness around the y axis, for q.x >= 0."""
+    """Return the distance to an arc without thickness around the y axis, for q.x >= 0.
+
+    ``angle`` is half of the arc's: from the y axis to either end.
+    """
     side = vec2(sin(angle), cos(angle))
     from_end = length(q - radius * side)
     return select(turned_from(q, side) > 0.0, from_end, abs(length(q) - radius))
 
 
 @func
-def arc_bounds(radius: float, angle: float, thickness: float) -> Bounds2:
+def arc_bounds(radius: float, thickness: float, opening: float) -> Bounds2:
     """Return the rectangle around the middle line, enlarged by half of the thickness."""
-    reach = select(angle > 0.5 * PI, radius, radius * sin(angle))
+    half = 0.5 * opening
+    reach = select(half > 0.5 * PI, radius, radius * sin(half))
     wide = 0.5 * thickness
-    low = radius * cos(angle)
+    low = radius * cos(half)
     return Bounds2(vec2(-reach, low) - wide, vec2(reach, radius) + wide)
 
 
@@ -210,38 +218,39 @@ def arc_bounds(radius: float, angle: float, thickness: float) -> Bounds2:
     "Arc",
     EXACT,
     bounds=arc_bounds,
-    limits={"angle": Limit.NOT_NEGATIVE},
+    limits={"opening": Limit.NOT_NEGATIVE},
     requires=_ends_are_apart,
     width=thickness_width,
 )
 @func
-def arc(p: vec2, radius: float = 0.75, angle: float = 1.6, thickness: float = 0.2) -> float:
+def arc(p: vec2, radius: float = 0.75, *, thickness: float = 0.2, opening: float = 3.2) -> float:
     """Arc of a ring with round ends, symmetric about the y axis.
 
     Args:
         p: Point.
         radius: Radius of the middle line.
-        angle: Angle from the y axis to the middle of either end, in radians.
         thickness: Distance from the inner to the outer side.
+        opening: Whole angle in radians, between the middles of the two ends.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
 
     Measured:
-        arc((0.0, 4.0), 2.0, 1.0, 1.0) = 1.5
-        arc((0.0, 0.0), 2.0, 3.0, 1.0) = 1.5
-        arc((5.0, -4.0), 2.0, 1.5707963267948966, 1.0) = 4.5
+        arc((0.0, 4.0), 2.0, thickness=1.0, opening=2.0) = 1.5
+        arc((0.0, 0.0), 2.0, thickness=1.0, opening=6.0) = 1.5
+        arc((5.0, -4.0), 2.0, thickness=1.0, opening=3.141592653589793) = 4.5
     """
-    return from_arc(vec2(abs(p.x), p.y), radius, angle) - 0.5 * thickness
+    return from_arc(vec2(abs(p.x), p.y), radius, 0.5 * opening) - 0.5 * thickness
 
 
 @func
-def ring_bounds(radius: float, angle: float, thickness: float) -> Bounds2:
+def ring_bounds(radius: float, thickness: float, opening: float) -> Bounds2:
     """Return the rectangle around both ends and the outer circle between them."""
+    half = 0.5 * opening
     outer = radius + 0.5 * thickness
     inner = radius - 0.5 * thickness
-    reach = select(angle > 0.5 * PI, outer, outer * sin(angle))
-    low = min(inner * cos(angle), outer * cos(angle))
+    reach = select(half > 0.5 * PI, outer, outer * sin(half))
+    low = min(inner * cos(half), outer * cos(half))
     return Bounds2(vec2(-reach, low), vec2(reach, outer))
 
 
@@ -253,24 +262,25 @@ def ring_bounds(radius: float, angle: float, thickness: float) -> Bounds2:
     width=thickness_width,
 )
 @func
-def ring(p: vec2, radius: float = 0.75, angle: float = 1.6, thickness: float = 0.25) -> float:
+def ring(p: vec2, radius: float = 0.75, *, thickness: float = 0.25, opening: float = 3.2) -> float:
     """Arc of a ring with straight ends, symmetric about the y axis.
 
     Args:
         p: Point.
         radius: Radius of the middle line.
-        angle: Angle from the y axis to either side in radians, below pi.
         thickness: Distance from the inner to the outer side.
+        opening: Whole angle between the two ends in radians, below 2 pi.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
 
     Measured:
-        ring((0.0, 4.0), 2.0, 1.0, 1.0) = 1.5
-        ring((5.5, -4.0), 2.0, 1.5707963267948966, 1.0) = 5.0
-        ring((1.75, 0.125), 2.0, 1.5707963267948966, 1.0) = -0.125
+        ring((0.0, 4.0), 2.0, thickness=1.0, opening=2.0) = 1.5
+        ring((5.5, -4.0), 2.0, thickness=1.0, opening=3.141592653589793) = 5.0
+        ring((1.75, 0.125), 2.0, thickness=1.0, opening=3.141592653589793) = -0.125
     """
-    side = vec2(sin(angle), cos(angle))
+    half = 0.5 * opening
+    side = vec2(sin(half), cos(half))
     q = vec2(abs(p.x), p.y)
     wide = 0.5 * thickness
     past_side = turned_from(q, side)
@@ -280,11 +290,12 @@ def ring(p: vec2, radius: float = 0.75, angle: float = 1.6, thickness: float = 0
 
 
 @func
-def horseshoe_bounds(radius: float, angle: float, legs: float, thickness: float) -> Bounds2:
+def horseshoe_bounds(radius: float, legs: float, thickness: float, opening: float) -> Bounds2:
     """Return the rectangle around the ring and the ends of the legs."""
-    side = vec2(sin(angle), cos(angle))
+    half = 0.5 * opening
+    side = vec2(sin(half), cos(half))
     ahead = legs * vec2(side.y, -side.x)
-    box = ring_bounds(radius, angle, thickness)
+    box = ring_bounds(radius, thickness, opening)
     inner = (radius - 0.5 * thickness) * side + ahead
     outer = (radius + 0.5 * thickness) * side + ahead
     reach = max(box.high.x, max(inner.x, outer.x))
@@ -302,26 +313,32 @@ def horseshoe_bounds(radius: float, angle: float, legs: float, thickness: float)
 )
 @func
 def horseshoe(
-    p: vec2, radius: float = 0.5, angle: float = 1.9, legs: float = 0.4, thickness: float = 0.25
+    p: vec2,
+    radius: float = 0.5,
+    *,
+    legs: float = 0.4,
+    thickness: float = 0.25,
+    opening: float = 3.8,
 ) -> float:
     """Arc of a ring, symmetric about the y axis, with a straight leg at each end.
 
     Args:
         p: Point.
         radius: Radius of the ring's middle line.
-        angle: Angle from the y axis to either end of the ring, in radians.
         legs: Length of the straight parts.
         thickness: Distance from the inner to the outer side.
+        opening: Whole angle of the ring in radians, from one leg to the other.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
 
     Measured:
-        horseshoe((0.0, 4.0), 2.0, 3.0, 1.0, 1.0) = 1.5
-        horseshoe((2.0, -5.0), 2.0, 1.5707963267948966, 3.0, 1.0) = 2.0
-        horseshoe((2.25, -1.0), 2.0, 1.5707963267948966, 3.0, 1.0) = -0.25
+        horseshoe((0.0, 4.0), 2.0, legs=1.0, thickness=1.0, opening=6.0) = 1.5
+        horseshoe((2.0, -5.0), 2.0, legs=3.0, thickness=1.0, opening=3.141592653589793) = 2.0
+        horseshoe((2.25, -1.0), 2.0, legs=3.0, thickness=1.0, opening=3.141592653589793) = -0.25
     """
-    side = vec2(sin(angle), cos(angle))
+    half = 0.5 * opening
+    side = vec2(sin(half), cos(half))
     q = vec2(abs(p.x), p.y)
     # Coordinates at the ring's end: along the leg, and the distance from the ring's centre.
     ahead = -turned_from(side, q)

@@ -40,7 +40,7 @@ def below_teeth(p: vec2, half_crest: float, half_root: float, pitch: float, dept
 
 
 def _rack_is_whole(
-    module: float, pressure_angle: float, base: float, backlash: float, clearance: float, count: int
+    module: float, pressure_angle: float, base: float, backlash: float, tip_gap: float, count: int
 ) -> str | None:
     if count < 1:
         return "count must be 1 or more"
@@ -49,16 +49,16 @@ def _rack_is_whole(
     lean = math.tan(pressure_angle)
     if 0.25 * math.pi * module - 0.5 * backlash <= lean * module:
         return "the teeth come to points: take less pressure_angle or backlash"
-    if 0.25 * math.pi * module <= (1.0 + clearance) * lean * module - 0.5 * backlash:
-        return "the gaps come to points: take less pressure_angle or clearance"
+    if 0.25 * math.pi * module <= (1.0 + tip_gap) * lean * module - 0.5 * backlash:
+        return "the gaps come to points: take less pressure_angle or tip_gap"
     return None
 
 
 @func
-def rack_bounds(module: float, base: float, clearance: float, count: int) -> Bounds2:
+def rack_bounds(module: float, base: float, tip_gap: float, count: int) -> Bounds2:
     """Return the rectangle from the bottom of the base to the tips of the teeth."""
     half = 0.5 * PI * module * float(count)
-    return Bounds2(vec2(-half, -(1.0 + clearance) * module - base), vec2(half, module))
+    return Bounds2(vec2(-half, -(1.0 + tip_gap) * module - base), vec2(half, module))
 
 
 @primitive(
@@ -72,7 +72,7 @@ def rack_bounds(module: float, base: float, clearance: float, count: int) -> Bou
         "pressure_angle": Limit.POSITIVE,
         "base": Limit.POSITIVE,
         "backlash": Limit.NOT_NEGATIVE,
-        "clearance": Limit.NOT_NEGATIVE,
+        "tip_gap": Limit.NOT_NEGATIVE,
     },
     requires=_rack_is_whole,
     width=rack_width,
@@ -84,7 +84,7 @@ def rack_profile(
     pressure_angle: float = 0.3490658503988659,
     base: float = 0.15,
     backlash: float = 0.0,
-    clearance: float = 0.25,
+    tip_gap: float = 0.25,
     count: int = 8,
 ) -> float:
     """Toothed rack along x, teeth upwards, its pitch line at y = 0; gears of equal module mesh.
@@ -98,7 +98,7 @@ def rack_profile(
         pressure_angle: Angle of the flanks from the y axis, in radians.
         base: Thickness of the bar below the teeth.
         backlash: By how much a tooth is narrower on the pitch line than half of the tooth distance.
-        clearance: Depth of the gaps beyond the teeth of the other part, in modules.
+        tip_gap: Depth of the gaps beyond the teeth of the other part, in modules.
         count: Number of teeth.
 
     Source: the basic rack of ISO 53, with sharp corners.
@@ -112,10 +112,10 @@ def rack_profile(
     lean = tan(pressure_angle)
     half = 0.25 * distance - 0.5 * backlash
     half_crest = half - lean * module
-    half_root = 0.5 * distance - half - lean * (1.0 + clearance) * module
-    depth = (2.0 + clearance) * module
+    half_root = 0.5 * distance - half - lean * (1.0 + tip_gap) * module
+    depth = (2.0 + tip_gap) * module
     # An even number of teeth has a gap in the middle.
     middle = 0.5 * distance * float((count + 1) % 2)
     teeth = below_teeth(vec2(p.x + middle, p.y - module), half_crest, half_root, distance, depth)
-    bottom = -(1.0 + clearance) * module - base - p.y
+    bottom = -(1.0 + tip_gap) * module - base - p.y
     return max(max(teeth, bottom), abs(p.x) - 0.5 * distance * float(count))

@@ -100,6 +100,6 @@ def apart(start: vec3, end: vec3) -> str | None:
     return None
 
 
-def below_pi(angle: float) -> str | None:
-    """Return why an angle is invalid if it is not below pi."""
-    return None if angle < math.pi else "angle must be below pi"
+def below_a_turn(opening: float) -> str | None:
+    """Return why an opening is invalid if it is not below a whole turn."""
+    return None if opening < math.tau else "opening must be below a whole turn, 2 pi"

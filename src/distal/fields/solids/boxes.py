@@ -157,9 +157,9 @@ def round_box(p: vec3, size: vec3 = UNIT_CUBE, rounding: float = 0.1) -> float:
     return box(p, size - 2.0 * rounding) - rounding
 
 
-def chamfer_box_requires(size: vec3, chamfer: float) -> str | None:
-    """Return why the chamfer is too large, or None."""
-    return _fits_every_side("chamfer", chamfer, size)
+def chamfer_box_requires(size: vec3, bevel: float) -> str | None:
+    """Return why the bevel is too large, or None."""
+    return _fits_every_side("bevel", bevel, size)
 
 
 @primitive(
@@ -171,13 +171,13 @@ def chamfer_box_requires(size: vec3, chamfer: float) -> str | None:
     width=chamfered_box_width,
 )
 @func
-def chamfer_box(p: vec3, size: vec3 = UNIT_CUBE, chamfer: float = 0.1) -> float:
+def chamfer_box(p: vec3, size: vec3 = UNIT_CUBE, bevel: float = 0.1) -> float:
     """Box with edges chamfered at 45 degrees; outside a lower bound.
 
     Args:
         p: Point.
         size: Full size along x, y and z.
-        chamfer: Width that is cut off each face, at most half of the smallest size.
+        bevel: Width that is cut off each face, at most half of the smallest size.
 
     Source: the box and twelve planes; Inigo Quilez, "Distance functions"
         (https://iquilezles.org/articles/distfunctions/), for the box.
@@ -189,7 +189,7 @@ def chamfer_box(p: vec3, size: vec3 = UNIT_CUBE, chamfer: float = 0.1) -> float:
     """
     q = abs(p) - 0.5 * size
     two_largest = q.x + q.y + q.z - min(q.x, q.y, q.z)
-    return max(corner(q), (two_largest + chamfer) * HALF_ROOT)
+    return max(corner(q), (two_largest + bevel) * HALF_ROOT)
 
 
 def box_frame_requires(size: vec3, thickness: float) -> str | None:

@@ -85,7 +85,7 @@ def brick_field(
     samples: vec3 = BRICK,
     size: vec3 = BOX_SIZE,
     reach: float = 0.0,
-    scale: float = 1.0,
+    value_scale: float = 1.0,
 ) -> float:
     """Shape from distance samples that are stored only near the surface.
 
@@ -103,7 +103,7 @@ def brick_field(
         size: Size of the box, which is centred at the origin; samples are at the centres of equal
             cells.
         reach: The least distance in bricks that are not stored.
-        scale: Distance of a sample of value 1.
+        value_scale: Distance of a sample of value 1.
 
     Source: trilinear interpolation.
 
@@ -112,5 +112,5 @@ def brick_field(
         brick_field((0, 0, 0), Buffer([-1, 1, 1, 1, 1, 1, 1, 1, 1]), (9, 9, 9), (9, 9, 9), 3) = -3.0
         brick_field((0, 0, 8.5), Buffer([0, 1, 1, 1, 1, 1, 1, 1, 1]), (9, 9, 9), (9, 9, 9), 3) = 5.0
     """
-    inside = stored(values, place_among(p, size, samples), samples, reach) * scale
+    inside = stored(values, place_among(p, size, samples), samples, reach) * value_scale
     return within_box(p, size, inside)

@@ -18,7 +18,7 @@ from distal.fields.solids.axes import (
     around_y,
     axis_direction,
     balls_bounds,
-    below_pi,
+    below_a_turn,
     discs_bounds,
     upright_bounds,
 )
@@ -34,7 +34,7 @@ from distal.lang import abs, clamp, cos, dot, func, length, max, min, select, si
 
 
 @func
-def opening(q: vec2, angle: float) -> float:
+def inside_cone(q: vec2, angle: float) -> float:
     """Return the distance to the region within ``angle`` of the downward axis, for q.x >= 0."""
     s = sin(angle)
     c = cos(angle)
@@ -47,25 +47,25 @@ def opening(q: vec2, angle: float) -> float:
 @primitive(
     "InfiniteCone",
     EXACT,
-    requires=below_pi,
+    requires=below_a_turn,
     width=UNBOUNDED,
 )
 @func
-def infinite_cone(p: vec3, angle: float = 0.5) -> float:
+def infinite_cone(p: vec3, *, opening: float = 1.0) -> float:
     """Infinite cone that opens downwards from its tip at the origin.
 
     Args:
         p: Point.
-        angle: Angle between the axis and the side in radians, below pi.
+        opening: Whole angle between opposite sides in radians, below 2 pi.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
     Measured:
-        infinite_cone((0.0, 5.0, 0.0), 0.5) = 5.0
-        infinite_cone((0.0, -2.0, 0.0), 0.5235987755982988) = -1.0
-        infinite_cone((3.0, -1.0, 0.0), 0.7853981633974483) = 1.4142135623730951
+        infinite_cone((0.0, 5.0, 0.0), opening=1.0) = 5.0
+        infinite_cone((0.0, -2.0, 0.0), opening=1.0471975511965976) = -1.0
+        infinite_cone((3.0, -1.0, 0.0), opening=1.5707963267948966) = 1.4142135623730951
     """
-    return opening(around_y(p), angle)
+    return inside_cone(around_y(p), 0.5 * opening)
 
 
 @func
@@ -221,7 +221,7 @@ def cone(p: vec3, radius: float = 0.5, height: float = 1.0) -> float:
 
     Args:
         p: Point.
-        radius: Radius of the base; ``height * tan(angle)`` for an angle between axis and side.
+        radius: Radius of the base; ``height * tan(0.5 * opening)`` for an opening at the tip.
         height: Full height; the origin is at half of it.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
@@ -339,9 +339,9 @@ def round_cone_profile(q: vec2, bottom: float, top: float, height: float) -> flo
 
 
 @func
-def round_cone_bounds(bottom: float, top: float, height: float) -> Bounds:
+def round_cone_bounds(bottom: float, top: float, length: float) -> Bounds:
     """Return the box around two balls, one above the other."""
-    half = 0.5 * height
+    half = 0.5 * length
     return upright_bounds(
         max(bottom, top), min(-half - bottom, half - top), max(half + top, bottom - half)
     )
@@ -351,18 +351,18 @@ def round_cone_bounds(bottom: float, top: float, height: float) -> Bounds:
     "RoundCone",
     EXACT,
     bounds=round_cone_bounds,
-    limits={"bottom": Limit.POSITIVE, "top": Limit.POSITIVE, "height": Limit.NOT_NEGATIVE},
+    limits={"bottom": Limit.POSITIVE, "top": Limit.POSITIVE, "length": Limit.NOT_NEGATIVE},
     width=ends_width,
 )
 @func
-def round_cone(p: vec3, bottom: float = 0.5, top: float = 0.25, height: float = 1.0) -> float:
+def round_cone(p: vec3, bottom: float = 0.5, top: float = 0.25, length: float = 1.0) -> float:
     """Cone with rounded ends: two balls, one above the other, and the cone tangent to both.
 
     Args:
         p: Point.
         bottom: Radius of the lower ball.
         top: Radius of the upper ball.
-        height: Distance between the balls' centres.
+        length: Distance between the balls' centres.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -371,7 +371,7 @@ def round_cone(p: vec3, bottom: float = 0.5, top: float = 0.25, height: float = 
         round_cone((0.0, -5.0, 3.0), 1.0, 0.5, 2.0) = 4.0
         round_cone((2.0, 0.0, 0.0), 0.5, 0.5, 2.0) = 1.5
     """
-    return round_cone_profile(around_y(p), bottom, top, height)
+    return round_cone_profile(around_y(p), bottom, top, length)
 
 
 @func

@@ -17,7 +17,7 @@ from distal.fields.solids.axes import (
     apart,
     around_axis,
     around_y,
-    below_pi,
+    below_a_turn,
     discs_bounds,
     sphere_bounds,
     upright_bounds,
@@ -176,10 +176,11 @@ def death_star(
 
 
 @func
-def solid_angle_bounds(angle: float, radius: float) -> Bounds:
+def solid_angle_bounds(radius: float, opening: float) -> Bounds:
     """Return the box of a cone with a spherical base above it."""
+    half = 0.5 * opening
     return upright_bounds(
-        radius * select(angle > 0.5 * PI, 1.0, sin(angle)), min(radius * cos(angle), 0.0), radius
+        radius * select(half > 0.5 * PI, 1.0, sin(half)), min(radius * cos(half), 0.0), radius
     )
 
 
@@ -187,34 +188,35 @@ def solid_angle_bounds(angle: float, radius: float) -> Bounds:
     "SolidAngle",
     EXACT,
     bounds=solid_angle_bounds,
-    requires=below_pi,
+    requires=below_a_turn,
     width=sector_width,
 )
 @func
-def solid_angle(p: vec3, angle: float = 0.6, radius: float = 1.0) -> float:
+def solid_angle(p: vec3, radius: float = 1.0, *, opening: float = 1.2) -> float:
     """Sector of a ball: the part within an angle of the y axis, its tip at the origin.
 
     Args:
         p: Point.
-        angle: Angle between the y axis and the side in radians, below pi.
         radius: Radius of the ball.
+        opening: Whole angle of the cone at the tip in radians, below 2 pi.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
     Measured:
-        solid_angle((0.0, 3.0, 0.0), 0.5, 1.0) = 2.0
-        solid_angle((0.0, -3.0, 4.0), 0.5, 1.0) = 5.0
-        solid_angle((3.0, -4.0, 0.0), 1.5707963267948966, 2.0) = 4.123105625617661
+        solid_angle((0.0, 3.0, 0.0), 1.0, opening=1.0) = 2.0
+        solid_angle((0.0, -3.0, 4.0), 1.0, opening=1.0) = 5.0
+        solid_angle((3.0, -4.0, 0.0), 2.0, opening=3.141592653589793) = 4.123105625617661
     """
     q = around_y(p)
-    side = vec2(sin(angle), cos(angle))
+    half = 0.5 * opening
+    side = vec2(sin(half), cos(half))
     to_side = length(q - side * clamp(dot(q, side), 0.0, radius))
     outside = q.x * side.y > q.y * side.x
     return max(length(q) - radius, select(outside, to_side, -to_side))
 
 
 @func
-def two_arcs(q: vec2, height: float, width: float) -> float:
+def two_arcs(q: vec2, width: float, height: float) -> float:
     """Return the distance to the solid between two arcs that meet on the axis.
 
     They meet at half of ``height`` above and below the middle.
@@ -231,12 +233,12 @@ def two_arcs(q: vec2, height: float, width: float) -> float:
 
 
 @func
-def vesica_solid_bounds(height: float, width: float) -> Bounds:
+def vesica_solid_bounds(width: float, height: float) -> Bounds:
     """Return the box of an upright vesica."""
     return upright_bounds(0.5 * width, -0.5 * height, 0.5 * height)
 
 
-def vesica_solid_requires(height: float, width: float) -> str | None:
+def vesica_solid_requires(width: float, height: float) -> str | None:
     """Return why the width is too large (the arcs would exceed half circles), or None."""
     return "width must be at most height" if width > height else None
 
@@ -249,22 +251,22 @@ def vesica_solid_requires(height: float, width: float) -> str | None:
     width=half_width,
 )
 @func
-def vesica_solid(p: vec3, height: float = 1.5, width: float = 0.75) -> float:
+def vesica_solid(p: vec3, width: float = 0.75, *, height: float = 1.5) -> float:
     """Upright solid of an arc rotated about its chord, with two tips, like a grain of rice.
 
     Args:
         p: Point.
-        height: Distance between the tips.
         width: Width in the middle, at most ``height``.
+        height: Distance between the tips.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
     Measured:
-        vesica_solid((0.0, 0.0, 0.0), 2.0, 1.0) = -0.5
-        vesica_solid((0.0, 3.0, 0.0), 2.0, 1.0) = 2.0
-        vesica_solid((2.0, 0.0, 0.0), 2.0, 1.0) = 1.5
+        vesica_solid((0.0, 0.0, 0.0), 1.0, height=2.0) = -0.5
+        vesica_solid((0.0, 3.0, 0.0), 1.0, height=2.0) = 2.0
+        vesica_solid((2.0, 0.0, 0.0), 1.0, height=2.0) = 1.5
     """
-    return two_arcs(around_y(p), height, width)
+    return two_arcs(around_y(p), width, height)
 
 
 @func
@@ -306,4 +308,4 @@ def vesica_between(
         vesica_between((14.0, 5.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), 1.0) = 13.0
         vesica_between((1.0, 0.0, 2.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0), 1.0) = 1.5
     """
-    return two_arcs(around_axis(p, start, end), length(end - start), width)
+    return two_arcs(around_axis(p, start, end), width, length(end - start))

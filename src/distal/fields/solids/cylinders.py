@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from distal.fields.chords import in_capsule, in_cylinder, in_round
 from distal.fields.constants import TINY
-from distal.fields.flats.edges import inside_both
+from distal.fields.flats.edges import inside_both, length_of
 from distal.fields.guarantees import EXACT, UNBOUNDED, Bounds, Limit, primitive
 from distal.fields.solids.axes import (
     HIGH_END,
@@ -199,33 +199,33 @@ def rounded_cylinder(
 
 
 @func
-def capsule_bounds(radius: float, height: float) -> Bounds:
+def capsule_bounds(radius: float, length: float) -> Bounds:
     """Return the box of an upright capsule."""
-    return upright_bounds(radius, -0.5 * height - radius, 0.5 * height + radius)
+    return upright_bounds(radius, -0.5 * length - radius, 0.5 * length + radius)
 
 
 @func
-def capsule_chord(p: vec3, direction: vec3, radius: float, height: float) -> vec2:
+def capsule_chord(p: vec3, direction: vec3, radius: float, length: float) -> vec2:
     """Return the part of a line inside."""
-    return in_capsule(p, direction, UPWARD, 0.5 * height, radius)
+    return in_capsule(p, direction, UPWARD, 0.5 * length, radius)
 
 
 @primitive(
     "Capsule",
     EXACT,
     bounds=capsule_bounds,
-    limits={"height": Limit.NOT_NEGATIVE},
+    limits={"length": Limit.NOT_NEGATIVE},
     chord=capsule_chord,
     width=radius_width,
 )
 @func
-def capsule(p: vec3, radius: float = 0.4, height: float = 1.0) -> float:
+def capsule(p: vec3, radius: float = 0.4, length: float = 1.0) -> float:
     """Upright capsule: a cylinder with half balls at its ends.
 
     Args:
         p: Point.
         radius: Radius.
-        height: Height of the straight part: the distance between the centres of the half balls.
+        length: Length of the straight part: the distance between the centres of the half balls.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -234,8 +234,8 @@ def capsule(p: vec3, radius: float = 0.4, height: float = 1.0) -> float:
         capsule((0.0, 0.0, 0.0), 0.5, 2.0) = -0.5
         capsule((0.0, 4.0, 4.0), 0.5, 2.0) = 4.5
     """
-    half = 0.5 * height
-    return length(vec3(p.x, p.y - clamp(p.y, -half, half), p.z)) - radius
+    half = 0.5 * length
+    return length_of(vec3(p.x, p.y - clamp(p.y, -half, half), p.z)) - radius
 
 
 @func

@@ -294,22 +294,22 @@ def quaternion_julia(p: vec3, c: vec4 = JULIA, iterations: int = 10) -> float:
 
 
 @func
-def mandelbox_reach(scale: float) -> float:
+def mandelbox_reach(fold_scale: float) -> float:
     """Return half of the edge length of the cube that contains the set."""
-    return select(scale > 0.0, 2.0 * (scale + 1.0) / max(scale - 1.0, TINY), 2.0)
+    return select(fold_scale > 0.0, 2.0 * (fold_scale + 1.0) / max(fold_scale - 1.0, TINY), 2.0)
 
 
 @func
-def mandelbox_estimate(c: vec3, scale: float, iterations: int) -> float:
+def mandelbox_estimate(c: vec3, fold_scale: float, iterations: int) -> float:
     """Return the estimate from the orbit of box fold, ball fold, scaling and adding c."""
-    reach = mandelbox_reach(scale)
+    reach = mandelbox_reach(fold_scale)
     z = c
     spread = 1.0
     for _ in range(iterations):
         z = 2.0 * clamp(z, -1.0, 1.0) - z
         square = dot(z, z)
         # Points near the middle are inverted in the ball of radius 1, by a factor of at most 4.
-        grow = scale * clamp(1.0 / max(square, TINY), 1.0, 4.0)
+        grow = fold_scale * clamp(1.0 / max(square, TINY), 1.0, 4.0)
         z = grow * z + c
         spread = abs(grow) * spread + 1.0
         if dot(z, z) > ESCAPED * ESCAPED or spread > FINEST:
@@ -318,9 +318,9 @@ def mandelbox_estimate(c: vec3, scale: float, iterations: int) -> float:
     return (length(max(q, 0.0)) + min(max(max(q.x, q.y), q.z), 0.0)) / spread
 
 
-def _scale_folds(scale: float, iterations: int) -> str | None:
-    if -1.0 <= scale <= 1.0:
-        return "scale must be above 1 or below -1"
+def _scale_folds(fold_scale: float, iterations: int) -> str | None:
+    if -1.0 <= fold_scale <= 1.0:
+        return "fold_scale must be above 1 or below -1"
     return _repeats_are_few(iterations)
 
 
@@ -335,13 +335,13 @@ def _scale_folds(scale: float, iterations: int) -> str | None:
     growth=1.0,
 )
 @func
-def mandelbox(p: vec3, size: float = 1.5, scale: float = 2.0, iterations: int = 8) -> float:
+def mandelbox(p: vec3, size: float = 1.5, fold_scale: float = 2.0, iterations: int = 8) -> float:
     """Mandelbox: points that stay bounded under folds at a cube and a ball.
 
     Args:
         p: Point.
         size: Edge length of the cube that contains the set.
-        scale: Scale factor of the map, above 1 or below -1.
+        fold_scale: Scale factor of the map, above 1 or below -1.
         iterations: Number of iterations; more show finer detail.
 
     Source: Tom Lowe (2010); the folds' spread as a running derivative, after "Rrrola" on
@@ -353,8 +353,8 @@ def mandelbox(p: vec3, size: float = 1.5, scale: float = 2.0, iterations: int = 
         mandelbox((0.0, 0.5, 0.0), 4.0, -1.5, 1) = 0.0714286
     """
     half = 0.5 * size
-    shrink = mandelbox_reach(scale) / half
+    shrink = mandelbox_reach(fold_scale) / half
     held = clamp(p, -half, half)
-    estimate = mandelbox_estimate(held * shrink, scale, iterations) / shrink
+    estimate = mandelbox_estimate(held * shrink, fold_scale, iterations) / shrink
     beyond = length(p - held)
     return select(beyond > 0.0, length(vec2(beyond, max(estimate, 0.0))), estimate)

@@ -13,7 +13,7 @@ from distal.lang import abs, atan2, cos, func, length, max, sin, sqrt, vec2, vec
 
 
 def _grooves_fit(
-    radius: float, height: float, depth: float, slant: float, chamfer: float, count: int
+    radius: float, height: float, depth: float, slant: float, bevel: float, count: int
 ) -> str | None:
     if count < 3:
         return "count must be 3 or more"
@@ -21,8 +21,8 @@ def _grooves_fit(
         return "depth may be at most a quarter of radius"
     if not -1.2 <= slant <= 1.2:
         return "slant must lie between -1.2 and 1.2"
-    if 2.0 * chamfer >= height or chamfer >= radius:
-        return "chamfer must be below half of height and below radius"
+    if 2.0 * bevel >= height or bevel >= radius:
+        return "bevel must be below half of height and below radius"
     return None
 
 
@@ -94,7 +94,7 @@ def knurled_cylinder(
     height: float = 1.0,
     depth: float = 0.04,
     slant: float = 0.5235987755982988,
-    chamfer: float = 0.04,
+    bevel: float = 0.04,
     count: int = 30,
     crossed: bool = True,
 ) -> float:
@@ -106,7 +106,7 @@ def knurled_cylinder(
         height: Full height.
         depth: Depth of the grooves.
         slant: Angle between the grooves and the axis in radians; 0 for straight ones.
-        chamfer: Size of the chamfers at 45 degrees at both ends.
+        bevel: Size of the chamfers at 45 degrees at both ends.
         count: Number of grooves around the cylinder, in one direction.
         crossed: Whether there are grooves in both directions, which leave diamonds.
 
@@ -119,8 +119,8 @@ def knurled_cylinder(
         knurled_cylinder((0.0, 0.0, -1.875), 2.0, 4.0, 0.125, 0.0, 0.25, 25, False) = 0.0
     """
     past = abs(p.y) - 0.5 * height
-    bevel = HALF_ROOT * (length(p.xz) - radius + past + chamfer)
+    edge = HALF_ROOT * (length(p.xz) - radius + past + bevel)
     ridges = one_knurl(p, radius, depth, slant, count)
     if crossed:
         ridges = max(ridges, one_knurl(p, radius, depth, -slant, count))
-    return max(ridges / knurl_steepest(radius, depth, slant, count), max(past, bevel))
+    return max(ridges / knurl_steepest(radius, depth, slant, count), max(past, edge))

@@ -28,9 +28,9 @@ OCTAGON_HALF_SIDE: Final = math.tan(math.pi / 8.0)
 
 
 @func
-def prism_side(q: vec2, y: float, half_side: float, apothem: float, height: float) -> float:
+def prism_side(q: vec2, y: float, half_side: float, inradius: float, height: float) -> float:
     """Return the distance to a prism whose nearest side faces q's y axis."""
-    beyond = vec3(abs(q.x) - half_side, q.y - apothem, abs(y) - 0.5 * height)
+    beyond = vec3(abs(q.x) - half_side, q.y - inradius, abs(y) - 0.5 * height)
     inside = max(beyond.y, beyond.z)
     # Past the outline's corner the upright edge is nearest. Inside, q.x is always within the side,
     # except by rounding: then its distance must not be added to that of the side.
@@ -38,10 +38,10 @@ def prism_side(q: vec2, y: float, half_side: float, apothem: float, height: floa
 
 
 @func
-def tri_prism_bounds(apothem: float, height: float) -> Bounds:
+def tri_prism_bounds(inradius: float, height: float) -> Bounds:
     """Return the box of a prism over a triangle with a side perpendicular to z."""
-    half = TRIANGLE_HALF_SIDE * apothem
-    return Bounds(vec3(-half, -0.5 * height, -2.0 * apothem), vec3(half, 0.5 * height, apothem))
+    half = TRIANGLE_HALF_SIDE * inradius
+    return Bounds(vec3(-half, -0.5 * height, -2.0 * inradius), vec3(half, 0.5 * height, inradius))
 
 
 @primitive(
@@ -52,12 +52,12 @@ def tri_prism_bounds(apothem: float, height: float) -> Bounds:
     along="y",
 )
 @func
-def tri_prism(p: vec3, apothem: float = 0.4, height: float = 1.0) -> float:
+def tri_prism(p: vec3, inradius: float = 0.4, height: float = 1.0) -> float:
     """Upright prism over an equilateral triangle; one side faces +z.
 
     Args:
         p: Point.
-        apothem: Distance from the axis to the middle of a side; a corner is twice as far away.
+        inradius: Distance from the axis to the middle of a side; a corner is twice as far away.
         height: Full height.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/);
@@ -69,29 +69,29 @@ def tri_prism(p: vec3, apothem: float = 0.4, height: float = 1.0) -> float:
         tri_prism((0.0, 0.0, 0.0), 1.0, 4.0) = -1.0
     """
     q = fold_past(vec2(abs(p.x), p.z), PI / 3.0)
-    return prism_side(q, p.y, TRIANGLE_HALF_SIDE * apothem, apothem, height)
+    return prism_side(q, p.y, TRIANGLE_HALF_SIDE * inradius, inradius, height)
 
 
 @func
-def hex_prism_bounds(apothem: float, height: float) -> Bounds:
+def hex_prism_bounds(inradius: float, height: float) -> Bounds:
     """Return the box of a prism over a hexagon with two sides perpendicular to z."""
-    reach = vec3(HEXAGON_REACH * apothem, 0.5 * height, apothem)
+    reach = vec3(HEXAGON_REACH * inradius, 0.5 * height, inradius)
     return Bounds(-reach, reach)
 
 
 @func
-def hex_prism_chord(p: vec3, direction: vec3, apothem: float, height: float) -> vec2:
+def hex_prism_chord(p: vec3, direction: vec3, inradius: float, height: float) -> vec2:
     """Return the part of a line inside: between four pairs of faces."""
     aslant = HEXAGON_SIDE * p.x
     turned = HEXAGON_SIDE * direction.x
     return in_both(
         in_both(
             between_faces(p.y, direction.y, 0.5 * height),
-            between_faces(p.z, direction.z, apothem),
+            between_faces(p.z, direction.z, inradius),
         ),
         in_both(
-            between_faces(aslant + 0.5 * p.z, turned + 0.5 * direction.z, apothem),
-            between_faces(aslant - 0.5 * p.z, turned - 0.5 * direction.z, apothem),
+            between_faces(aslant + 0.5 * p.z, turned + 0.5 * direction.z, inradius),
+            between_faces(aslant - 0.5 * p.z, turned - 0.5 * direction.z, inradius),
         ),
     )
 
@@ -105,12 +105,12 @@ def hex_prism_chord(p: vec3, direction: vec3, apothem: float, height: float) -> 
     along="y",
 )
 @func
-def hex_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
+def hex_prism(p: vec3, inradius: float = 0.5, height: float = 1.0) -> float:
     """Upright prism over a regular hexagon; two sides face along z.
 
     Args:
         p: Point.
-        apothem: Distance from the axis to the middle of a side.
+        inradius: Distance from the axis to the middle of a side.
         height: Full height.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
@@ -121,13 +121,13 @@ def hex_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
         hex_prism((0.0, 1.5, 0.0), 1.0, 4.0) = -0.5
     """
     q = fold_past(abs(p.xz), PI / 6.0)
-    return prism_side(q, p.y, HEXAGON_HALF_SIDE * apothem, apothem, height)
+    return prism_side(q, p.y, HEXAGON_HALF_SIDE * inradius, inradius, height)
 
 
 @func
-def octagon_prism_bounds(apothem: float, height: float) -> Bounds:
+def octagon_prism_bounds(inradius: float, height: float) -> Bounds:
     """Return the box of a prism over an octagon with sides perpendicular to x and z."""
-    reach = vec3(apothem, 0.5 * height, apothem)
+    reach = vec3(inradius, 0.5 * height, inradius)
     return Bounds(-reach, reach)
 
 
@@ -139,12 +139,12 @@ def octagon_prism_bounds(apothem: float, height: float) -> Bounds:
     along="y",
 )
 @func
-def octagon_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
+def octagon_prism(p: vec3, inradius: float = 0.5, height: float = 1.0) -> float:
     """Upright prism over a regular octagon; sides face along x and z.
 
     Args:
         p: Point.
-        apothem: Distance from the axis to the middle of a side.
+        inradius: Distance from the axis to the middle of a side.
         height: Full height.
 
     Source: Inigo Quilez, "2D distance functions"
@@ -156,13 +156,15 @@ def octagon_prism(p: vec3, apothem: float = 0.5, height: float = 1.0) -> float:
         octagon_prism((2.0, 0.0, 2.0), 1.0, 4.0) = 1.8284271247461903
     """
     q = larger_first(abs(p.xz))
-    return prism_side(fold_past(q.yx, PI / 8.0), p.y, OCTAGON_HALF_SIDE * apothem, apothem, height)
+    return prism_side(
+        fold_past(q.yx, PI / 8.0), p.y, OCTAGON_HALF_SIDE * inradius, inradius, height
+    )
 
 
 @func
-def prism_bounds(count: int, apothem: float, height: float) -> Bounds:
+def prism_bounds(inradius: float, height: float, count: int) -> Bounds:
     """Return the box of the circle through the corners."""
-    reach = apothem / cos(PI / float(count))
+    reach = inradius / cos(PI / float(count))
     return Bounds(vec3(-reach, -0.5 * height, -reach), vec3(reach, 0.5 * height, reach))
 
 
@@ -180,25 +182,25 @@ def prism_requires(count: int) -> str | None:
     along="y",
 )
 @func
-def prism(p: vec3, count: int = 5, apothem: float = 0.5, height: float = 1.0) -> float:
+def prism(p: vec3, inradius: float = 0.5, height: float = 1.0, *, count: int = 5) -> float:
     """Upright prism over a regular polygon; one side faces +z.
 
     Args:
         p: Point.
-        count: Number of sides, 3 or more.
-        apothem: Distance from the axis to the middle of a side.
+        inradius: Distance from the axis to the middle of a side.
         height: Full height.
+        count: Number of sides, 3 or more.
 
     Source: the sector that the angle names, turned to z; Inigo Quilez, "2D distance functions"
         (https://iquilezles.org/articles/distfunctions2d/), for the polygons.
 
     Measured:
-        prism((0.0, 0.0, 3.0), 5, 1.0, 4.0) = 2.0
-        prism((0.0, 6.0, 4.0), 7, 1.0, 4.0) = 5.0
-        prism((0.0, 0.0, 0.0), 9, 1.0, 4.0) = -1.0
+        prism((0.0, 0.0, 3.0), 1.0, 4.0, count=5) = 2.0
+        prism((0.0, 6.0, 4.0), 1.0, 4.0, count=7) = 5.0
+        prism((0.0, 0.0, 0.0), 1.0, 4.0, count=9) = -1.0
     """
-    half_side = sin(PI / float(count)) / cos(PI / float(count)) * apothem
-    return prism_side(fold_sectors(p.xz, count), p.y, half_side, apothem, height)
+    half_side = sin(PI / float(count)) / cos(PI / float(count)) * inradius
+    return prism_side(fold_sectors(p.xz, count), p.y, half_side, inradius, height)
 
 
 @func

@@ -110,24 +110,26 @@ def torus(p: vec3, major: float = 0.75, minor: float = 0.25) -> float:
 
 
 @func
-def capped_torus_bounds(angle: float, major: float, minor: float) -> Bounds:
+def capped_torus_bounds(major: float, minor: float, opening: float) -> Bounds:
     """Return the box of an arc that is symmetric about x."""
-    wide = major * select(angle > 0.5 * PI, 1.0, sin(angle))
+    half = 0.5 * opening
+    wide = major * select(half > 0.5 * PI, 1.0, sin(half))
     return Bounds(
-        vec3(major * cos(angle) - minor, -minor, -wide - minor),
+        vec3(major * cos(half) - minor, -minor, -wide - minor),
         vec3(major + minor, minor, wide + minor),
     )
 
 
-def capped_torus_requires(angle: float, major: float, minor: float) -> str | None:
+def capped_torus_requires(major: float, minor: float, opening: float) -> str | None:
     """Return why the tube would intersect itself, or None."""
-    if angle > PI + 1e-6:
-        return "angle must be at most pi"
+    half = 0.5 * opening
+    if half > PI + 1e-6:
+        return "opening must be at most a whole turn, 2 pi"
     if minor > major:
         return "minor must be at most major"
-    gap = major * math.sin(angle)
-    if 0.5 * PI < angle < PI - 1e-6 and minor > gap:
-        return "the two ends must not meet: minor must be at most major * sin(angle)"
+    gap = major * math.sin(half)
+    if 0.5 * PI < half < PI - 1e-6 and minor > gap:
+        return "the two ends must not meet: minor must be at most major * sin(opening / 2)"
     return None
 
 
@@ -139,34 +141,37 @@ def capped_torus_requires(angle: float, major: float, minor: float) -> str | Non
     width=minor_width,
 )
 @func
-def capped_torus(p: vec3, angle: float = 2.0, major: float = 0.75, minor: float = 0.25) -> float:
+def capped_torus(
+    p: vec3, major: float = 0.75, minor: float = 0.25, *, opening: float = 4.0
+) -> float:
     """Arc of a ring around the y axis, with round ends, symmetric about the x axis.
 
     Args:
         p: Point.
-        angle: Angle from the middle of the arc, on the x axis, to either end; at most pi.
         major: Radius of the arc.
         minor: Radius of the tube.
+        opening: Whole angle of the arc in radians, from one end to the other; at most 2 pi.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
     Measured:
-        capped_torus((3.0, 0.0, 0.0), 1.5707963267948966, 1.0, 0.25) = 1.75
-        capped_torus((-4.0, 3.0, 1.0), 1.5707963267948966, 1.0, 0.25) = 4.75
-        capped_torus((0.0, 0.0, -1.0), 1.5707963267948966, 1.0, 0.25) = -0.25
+        capped_torus((3.0, 0.0, 0.0), 1.0, 0.25, opening=3.141592653589793) = 1.75
+        capped_torus((-4.0, 3.0, 1.0), 1.0, 0.25, opening=3.141592653589793) = 4.75
+        capped_torus((0.0, 0.0, -1.0), 1.0, 0.25, opening=3.141592653589793) = -0.25
     """
     side = abs(p.z)
+    half = 0.5 * opening
     # In 32 bits the sine of pi is below 0, which would leave a gap in the ring.
-    end = vec2(cos(angle), max(sin(angle), 0.0))
+    end = vec2(cos(half), max(sin(half), 0.0))
     to_end = length(vec3(p.x - major * end.x, p.y, side - major * end.y))
     beside_arc = p.x * end.y >= side * end.x
     return select(beside_arc, circle_line(p, major), to_end) - minor
 
 
 @func
-def link_bounds(height: float, major: float, minor: float) -> Bounds:
+def link_bounds(major: float, minor: float, length: float) -> Bounds:
     """Return the box of an upright link."""
-    reach = vec3(major + minor, 0.5 * height + major + minor, minor)
+    reach = vec3(major + minor, 0.5 * length + major + minor, minor)
     return Bounds(-reach, reach)
 
 
@@ -179,26 +184,27 @@ def link_requires(major: float, minor: float) -> str | None:
     "Link",
     EXACT,
     bounds=link_bounds,
-    limits={"height": Limit.NOT_NEGATIVE},
+    limits={"length": Limit.NOT_NEGATIVE},
     requires=link_requires,
     width=ring_width,
 )
 @func
-def link(p: vec3, height: float = 0.5, major: float = 0.4, minor: float = 0.15) -> float:
+def link(p: vec3, major: float = 0.4, minor: float = 0.15, *, length: float = 0.5) -> float:
     """Upright link of a chain; its hole faces the z axis.
 
     Args:
         p: Point.
-        height: Length of the two straight parts.
         major: Radius of the two half rings' centre lines.
         minor: Radius of the tube, at most ``major``.
+        length: Length of the two straight parts: the distance between the centres of the half
+            rings.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
     Measured:
-        link((0.0, 0.0, 0.0), 1.0, 0.5, 0.25) = 0.25
-        link((0.5, 0.25, 0.0), 1.0, 0.5, 0.25) = -0.25
-        link((0.0, 5.0, 3.0), 1.0, 0.5, 0.25) = 4.75
+        link((0.0, 0.0, 0.0), 0.5, 0.25, length=1.0) = 0.25
+        link((0.5, 0.25, 0.0), 0.5, 0.25, length=1.0) = -0.25
+        link((0.0, 5.0, 3.0), 0.5, 0.25, length=1.0) = 4.75
     """
-    bent = vec2(p.x, max(abs(p.y) - 0.5 * height, 0.0))
-    return length(vec2(length(bent) - major, p.z)) - minor
+    # The half rings together are a ring that lies in the plane of x and y.
+    return circle_line(vec3(p.x, p.z, max(abs(p.y) - 0.5 * length, 0.0)), major) - minor

@@ -39,7 +39,7 @@ from distal.fields.solids.regular import (
     along_faces,
     along_vertices,
 )
-from distal.fields.widths import radius_width
+from distal.fields.widths import inradius_width
 from distal.lang import abs, func, max, pow, vec3
 from distal.lang.functions import Func
 
@@ -102,12 +102,12 @@ def cube_around(side: float) -> Bounds:
 
 
 @func
-def smoothed(total: float, scale: float, radius: float, exponent: float, weight: float) -> float:
+def smoothed(total: float, scale: float, inradius: float, exponent: float, weight: float) -> float:
     """Return the field from the sum of the powers of p / scale.
 
     The scale is the largest projection: then the largest power is 1, whatever the exponent is.
     """
-    return scale * pow(total * (3.0 / weight), 1.0 / exponent) - radius
+    return scale * pow(total * (3.0 / weight), 1.0 / exponent) - inradius
 
 
 def smooth_requires(exponent: float) -> str | None:
@@ -133,8 +133,8 @@ def smooth_body(name: str, weight: float, face: float, reach: float) -> Callable
         def side_growth(exponent: float) -> float:
             return smooth_growth(exponent, weight, along_axis)
 
-        def bounds(radius: float, exponent: float) -> Bounds:
-            return cube_around(radius * growth_of_sides(exponent))
+        def bounds(inradius: float, exponent: float) -> Bounds:
+            return cube_around(inradius * growth_of_sides(exponent))
 
         growth_of_sides = named(f"{distance.name}_side_growth", side_growth)
         make = primitive(
@@ -144,7 +144,7 @@ def smooth_body(name: str, weight: float, face: float, reach: float) -> Callable
             requires=smooth_requires,
             growth=named(f"{distance.name}_growth", growth),
             side_growth=growth_of_sides,
-            width=radius_width,
+            width=inradius_width,
         )
         return make(distance)
 
@@ -153,13 +153,13 @@ def smooth_body(name: str, weight: float, face: float, reach: float) -> Callable
 
 @smooth_body("SmoothOctahedron", OCTAHEDRON_WEIGHT, OCTAHEDRON_FACE, 1.0)
 @func
-def smooth_octahedron(p: vec3, radius: float = 0.6, exponent: float = 12.0) -> float:
+def smooth_octahedron(p: vec3, inradius: float = 0.6, exponent: float = 12.0) -> float:
     """Shape between a ball and an octahedron; a bound with slope 1.
 
     Args:
         p: Point.
-        radius: Radius of the ball for exponent 2, and of the largest ball inside the octahedron for
-            a large exponent.
+        inradius: Radius of the ball for exponent 2, and of the largest ball inside the octahedron
+            for a large exponent.
         exponent: 2 or more; a larger exponent gives sharper edges.
 
     Source: Akleman and Chen, "Generalized Distance Functions", 1999, scaled to slope 1.
@@ -171,17 +171,17 @@ def smooth_octahedron(p: vec3, radius: float = 0.6, exponent: float = 12.0) -> f
     """
     scale = max(along_diagonals(abs(p)), TINY)
     total = powers_of_diagonals(p / scale, exponent)
-    return smoothed(total, scale, radius, exponent, OCTAHEDRON_WEIGHT)
+    return smoothed(total, scale, inradius, exponent, OCTAHEDRON_WEIGHT)
 
 
 @smooth_body("SmoothDodecahedron", DODECAHEDRON_WEIGHT, DODECAHEDRON_FACE, DODECAHEDRON_REACH)
 @func
-def smooth_dodecahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> float:
+def smooth_dodecahedron(p: vec3, inradius: float = 0.8, exponent: float = 24.0) -> float:
     """Shape between a ball and a dodecahedron; a bound with slope 1.
 
     Args:
         p: Point.
-        radius: Radius of the ball for exponent 2, and of the largest ball inside the dodecahedron
+        inradius: Radius of the ball for exponent 2, and of the largest ball inside the dodecahedron
             for a large exponent.
         exponent: 2 or more; a larger exponent gives sharper edges.
 
@@ -194,17 +194,17 @@ def smooth_dodecahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) ->
     """
     scale = max(along_vertices(abs(p)), TINY)
     total = powers_of_pairs(p / scale, VERTEX_SHORT, VERTEX_LONG, exponent)
-    return smoothed(total, scale, radius, exponent, DODECAHEDRON_WEIGHT)
+    return smoothed(total, scale, inradius, exponent, DODECAHEDRON_WEIGHT)
 
 
 @smooth_body("SmoothIcosahedron", ICOSAHEDRON_WEIGHT, ICOSAHEDRON_FACE, ICOSAHEDRON_REACH)
 @func
-def smooth_icosahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> float:
+def smooth_icosahedron(p: vec3, inradius: float = 0.8, exponent: float = 24.0) -> float:
     """Shape between a ball and an icosahedron; a bound with slope 1.
 
     Args:
         p: Point.
-        radius: Radius of the ball for exponent 2, and of the largest ball inside the icosahedron
+        inradius: Radius of the ball for exponent 2, and of the largest ball inside the icosahedron
             for a large exponent.
         exponent: 2 or more; a larger exponent gives sharper edges.
 
@@ -217,7 +217,7 @@ def smooth_icosahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> 
     """
     scale = max(along_faces(abs(p)), TINY)
     total = powers_of_faces(p / scale, exponent)
-    return smoothed(total, scale, radius, exponent, ICOSAHEDRON_WEIGHT)
+    return smoothed(total, scale, inradius, exponent, ICOSAHEDRON_WEIGHT)
 
 
 @smooth_body(
@@ -227,12 +227,12 @@ def smooth_icosahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> 
     TRUNCATED_OCTAHEDRON_SQUARE,
 )
 @func
-def smooth_truncated_octahedron(p: vec3, radius: float = 0.8, exponent: float = 24.0) -> float:
+def smooth_truncated_octahedron(p: vec3, inradius: float = 0.8, exponent: float = 24.0) -> float:
     """Shape between a ball and a truncated octahedron; a bound with slope 1.
 
     Args:
         p: Point.
-        radius: Radius of the ball for exponent 2, and of the largest ball inside the solid for a
+        inradius: Radius of the ball for exponent 2, and of the largest ball inside the solid for a
             large exponent.
         exponent: 2 or more; a larger exponent gives sharper edges.
 
@@ -249,17 +249,17 @@ def smooth_truncated_octahedron(p: vec3, radius: float = 0.8, exponent: float = 
     sides = abs(q) / SQUARE_RATIO
     squares = pow(sides.x, exponent) + pow(sides.y, exponent) + pow(sides.z, exponent)
     total = powers_of_diagonals(q, exponent) + squares
-    return smoothed(total, scale, radius, exponent, TRUNCATED_OCTAHEDRON_WEIGHT)
+    return smoothed(total, scale, inradius, exponent, TRUNCATED_OCTAHEDRON_WEIGHT)
 
 
 @smooth_body("SmoothTruncatedIcosahedron", FOOTBALL_WEIGHT, FOOTBALL_HEXAGON, FOOTBALL_REACH)
 @func
-def smooth_truncated_icosahedron(p: vec3, radius: float = 0.9, exponent: float = 48.0) -> float:
+def smooth_truncated_icosahedron(p: vec3, inradius: float = 0.9, exponent: float = 48.0) -> float:
     """Shape between a ball and a football; a bound with slope 1.
 
     Args:
         p: Point.
-        radius: Radius of the ball for exponent 2, and of the largest ball inside the solid for a
+        inradius: Radius of the ball for exponent 2, and of the largest ball inside the solid for a
             large exponent.
         exponent: 2 or more; a larger exponent gives sharper edges.
 
@@ -275,4 +275,4 @@ def smooth_truncated_icosahedron(p: vec3, radius: float = 0.9, exponent: float =
     q = p / scale
     pentagons = powers_of_pairs(q / PENTAGON_RATIO, VERTEX_SHORT, VERTEX_LONG, exponent)
     total = powers_of_faces(q, exponent) + pentagons
-    return smoothed(total, scale, radius, exponent, FOOTBALL_WEIGHT)
+    return smoothed(total, scale, inradius, exponent, FOOTBALL_WEIGHT)

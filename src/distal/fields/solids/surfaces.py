@@ -6,19 +6,18 @@ inside, the unsigned distance.
 
 from __future__ import annotations
 
-import math
 from typing import Final
 
 from distal.fields.chords import below_face, between_faces
 from distal.fields.constants import TINY
 from distal.fields.guarantees import EXACT, EXACT_OUTSIDE, UNBOUNDED, Bounds, primitive
-from distal.fields.solids.cones import opening
+from distal.fields.solids.axes import below_a_turn
+from distal.fields.solids.cones import inside_cone
 from distal.fields.solids.cylinders import to_segment
 from distal.fields.widths import thickness_width
 from distal.lang import abs, cross, dot, func, length, max, min, select, vec2, vec3
 
 UP: Final = vec3(0.0, 1.0, 0.0)
-TURN: Final = math.tau
 CORNER_A: Final = vec3(-0.5, 0.0, 0.5)
 CORNER_B: Final = vec3(0.5, 0.0, 0.5)
 CORNER_C: Final = vec3(0.5, 0.0, -0.5)
@@ -65,18 +64,18 @@ def plane(p: vec3, y: float = 0.0) -> float:
 
 
 @func
-def half_space_chord(p: vec3, direction: vec3, normal: vec3, offset: float) -> vec2:
+def half_space_chord(p: vec3, direction: vec3, normal: vec3, distance: float) -> vec2:
     """Return the part of a line below the plane."""
-    return below_face(dot(p, normal) - offset, dot(direction, normal))
+    return below_face(dot(p, normal) - distance, dot(direction, normal))
 
 
 @func
-def half_space_bounds(normal: vec3, offset: float) -> Bounds:
+def half_space_bounds(normal: vec3, distance: float) -> Bounds:
     """Return the box of the half space, which ends on one side if its normal is along an axis."""
     far = vec3(UNBOUNDED)
     return Bounds(
-        select(normal < vec3(-1.0 + TINY), vec3(-offset), -far),
-        select(normal > vec3(1.0 - TINY), vec3(offset), far),
+        select(normal < vec3(-1.0 + TINY), vec3(-distance), -far),
+        select(normal > vec3(1.0 - TINY), vec3(distance), far),
     )
 
 
@@ -89,13 +88,13 @@ def half_space_bounds(normal: vec3, offset: float) -> Bounds:
     width=UNBOUNDED,
 )
 @func
-def half_space(p: vec3, normal: vec3 = UP, offset: float = 0.0) -> float:
+def half_space(p: vec3, normal: vec3 = UP, distance: float = 0.0) -> float:
     """Half space on one side of a plane.
 
     Args:
         p: Point.
         normal: Normal of the plane that points outwards, of length 1.
-        offset: Distance of the plane from the origin along the normal.
+        distance: Distance of the plane from the origin along the normal.
 
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
@@ -104,7 +103,7 @@ def half_space(p: vec3, normal: vec3 = UP, offset: float = 0.0) -> float:
         half_space((0.0, 0.0, 7.0), (0.6, 0.8, 0.0), 1.0) = -1.0
         half_space((0.6, 0.8, 3.0), (0.6, 0.8, 0.0), 1.0) = 0.0
     """
-    return dot(p, normal) - offset
+    return dot(p, normal) - distance
 
 
 @func
@@ -146,34 +145,29 @@ def slab(p: vec3, thickness: float = 0.5) -> float:
     return abs(p.y) - 0.5 * thickness
 
 
-def wedge_requires(angle: float) -> str | None:
-    """Return why the angle is too large, or None."""
-    return None if angle < TURN else "angle must be below a whole turn, 2 pi"
-
-
 @primitive(
     "Wedge",
     EXACT,
-    requires=wedge_requires,
+    requires=below_a_turn,
     width=UNBOUNDED,
 )
 @func
-def wedge(p: vec3, angle: float = 1.0) -> float:
+def wedge(p: vec3, *, opening: float = 1.0) -> float:
     """Infinite wedge between two planes that meet in the z axis; it opens downwards.
 
     Args:
         p: Point.
-        angle: Angle between the planes in radians, below 2 pi.
+        opening: Whole angle between the planes in radians, below 2 pi.
 
     Source: the infinite cone of Inigo Quilez, "Distance functions"
         (https://iquilezles.org/articles/distfunctions/), in the plane.
 
     Measured:
-        wedge((0.0, 5.0, 9.0), 1.0) = 5.0
-        wedge((0.0, -2.0, 3.0), 1.0471975511965976) = -1.0
-        wedge((-3.0, -1.0, 0.0), 1.5707963267948966) = 1.4142135623730951
+        wedge((0.0, 5.0, 9.0), opening=1.0) = 5.0
+        wedge((0.0, -2.0, 3.0), opening=1.0471975511965976) = -1.0
+        wedge((-3.0, -1.0, 0.0), opening=1.5707963267948966) = 1.4142135623730951
     """
-    return opening(vec2(abs(p.x), p.y), 0.5 * angle)
+    return inside_cone(vec2(abs(p.x), p.y), 0.5 * opening)
 
 
 @func

@@ -11,6 +11,7 @@ import math
 from typing import Final
 
 from distal.fields.constants import HALF_ROOT, PI, TAU
+from distal.fields.flats.edges import length_of
 from distal.fields.flats.teeth import below_teeth
 from distal.fields.guarantees import LOWER_BOUND, Bounds, Limit, primitive
 from distal.fields.widths import thread_width
@@ -25,11 +26,11 @@ HALF_ROOT_WIDTH: Final = 0.125
 ALONG: Final = 0.75
 
 
-def _pitch_fits(diameter: float, pitch: float, length: float, chamfer: float) -> str | None:
+def _pitch_fits(diameter: float, pitch: float, length: float, bevel: float) -> str | None:
     if 2.0 * pitch > diameter:
         return "pitch may be at most half of diameter"
-    if 2.0 * chamfer >= min_of(diameter, length):
-        return "chamfer must be below half of diameter and half of length"
+    if 2.0 * bevel >= min_of(diameter, length):
+        return "bevel must be below half of diameter and half of length"
     return None
 
 
@@ -108,7 +109,7 @@ def thread(
     diameter: float = 0.6,
     pitch: float = 0.1,
     length: float = 1.0,
-    chamfer: float = 0.06,
+    bevel: float = 0.06,
     left: bool = False,
 ) -> float:
     """Rod around the y axis with an external screw thread of the ISO metric outline.
@@ -120,7 +121,7 @@ def thread(
         diameter: Outer (nominal) diameter, over the crests.
         pitch: Distance from crest to crest, at most half of ``diameter``.
         length: Full length of the rod.
-        chamfer: Size of the chamfers at 45 degrees at both ends.
+        bevel: Size of the chamfers at 45 degrees at both ends.
         left: Whether the thread is left-handed.
 
     Source: ISO 68-1 (basic profile); the distance to it in the half plane through the axis, divided
@@ -133,15 +134,9 @@ def thread(
     """
     outward = length_of(p.xz)
     past = abs(p.y) - 0.5 * length
-    bevel = HALF_ROOT * (outward - 0.5 * diameter + past + chamfer)
+    edge = HALF_ROOT * (outward - 0.5 * diameter + past + bevel)
     turned = wound(p, diameter, pitch, left) / thread_steepest(diameter, pitch)
-    return max(turned, max(past, bevel))
-
-
-@func
-def length_of(v: vec2) -> float:
-    """Return the length of a vector, where a number is called ``length``."""
-    return length(v)
+    return max(turned, max(past, edge))
 
 
 @func
@@ -149,12 +144,12 @@ def tapped_hole_bounds(
     diameter: float,
     pitch: float,
     length: float,
-    clearance: float,
-    chamfer: float,
+    gap: float,
+    countersink: float,
     through: bool,
 ) -> Bounds:
     """Return the box of the cylinder around the hole with its mouths."""
-    radius = 0.5 * diameter + clearance + chamfer
+    radius = 0.5 * diameter + gap + countersink
     high = 0.5 * length + pitch
     low = select(through, high, 0.5 * length)
     return Bounds(vec3(-radius, -low, -radius), vec3(radius, high, radius))
@@ -169,7 +164,7 @@ def tapped_hole_bounds(
     limits={
         "diameter": Limit.POSITIVE,
         "length": Limit.POSITIVE,
-        "clearance": Limit.NOT_NEGATIVE,
+        "gap": Limit.NOT_NEGATIVE,
     },
     requires=_hole_fits,
     width=thread_width,
@@ -180,14 +175,14 @@ def tapped_hole(
     diameter: float = 0.6,
     pitch: float = 0.1,
     length: float = 1.0,
-    clearance: float = 0.01,
-    chamfer: float = 0.02,
+    gap: float = 0.01,
+    countersink: float = 0.02,
     left: bool = False,
     through: bool = True,
 ) -> float:
     """Internal screw thread around the y axis, to subtract from a part ``length`` thick.
 
-    It is the ``Thread`` of the same numbers, moved outwards by the clearance. The mouth widens at
+    It is the ``Thread`` of the same numbers, moved outwards by the gap. The mouth widens at
     45 degrees. Beyond the mouth the hole goes on for one pitch, so that it cuts the face cleanly.
 
     Args:
@@ -195,8 +190,8 @@ def tapped_hole(
         diameter: Nominal diameter: that of the ``Thread`` that fits.
         pitch: Distance from crest to crest, at most half of ``diameter``.
         length: Full length of the thread; the faces of the part are at half of it.
-        clearance: Gap between the two threads, in a half plane through the axis.
-        chamfer: How much wider than the thread the mouth is, on each side.
+        gap: Gap between the two threads, in a half plane through the axis.
+        countersink: How much wider than the thread the mouth is, on each side.
         left: Whether the thread is left-handed.
         through: Whether the hole has two mouths; otherwise it ends flat at its lower end.
 
@@ -208,10 +203,10 @@ def tapped_hole(
         tapped_hole((0.0, -10.0, 0.0), 6.0, 1.0, 16.0, 0.2, 0.5, False, False) = 2.0
     """
     outward = length_of(p.xz)
-    turned = (wound(p, diameter, pitch, left) - clearance) / thread_steepest(diameter, pitch)
+    turned = (wound(p, diameter, pitch, left) - gap) / thread_steepest(diameter, pitch)
     half = 0.5 * length
     height = select(through, abs(p.y), p.y)
-    radius = 0.5 * diameter + clearance + chamfer
+    radius = 0.5 * diameter + gap + countersink
     mouth = max(outward - radius, HALF_ROOT * (outward - radius + half - height))
     ends = max(height - half - pitch, select(through, -half, -half - p.y))
     return max(min(turned, mouth), ends)

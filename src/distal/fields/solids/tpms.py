@@ -1,6 +1,6 @@
 """Triply periodic minimal surfaces, as sheets or as the solid on one side.
 
-Input: a point, the edge length of the repeated cell, an offset and, for sheets, a thickness.
+Input: a point, the edge length of the repeated cell, a level and, for sheets, a thickness.
 Output: the value of the surface's equation divided by its typical gradient, which is about the
 distance near the surface, and the bound on its slope. ``THICKEN_BY`` sets the thickness of a sheet
 from another shape's distance.
@@ -47,24 +47,24 @@ FRD_STEEPEST: Final = 7.0406904
 FRD_TYPICAL: Final = 3.62
 
 
-def _sheet_fits(cell_size: float, thickness: float, offset: float) -> str | None:
-    """Return why a sheet is too thick or an offset is too large, or None."""
+def _sheet_fits(cell_size: float, thickness: float, level: float) -> str | None:
+    """Return why a sheet is too thick or a level is too large, or None."""
     if 4.0 * thickness > cell_size:
         return "thickness must be at most a quarter of cell_size"
-    if 10.0 * math.fabs(offset) > cell_size:
-        return "offset must be at most a tenth of cell_size, either way"
+    if 10.0 * math.fabs(level) > cell_size:
+        return "level must be at most a tenth of cell_size, either way"
     return None
 
 
 @func
 def layered(
-    value: float, cell_size: float, typical: float, thickness: float, offset: float, solid: bool
+    value: float, cell_size: float, typical: float, thickness: float, level: float, solid: bool
 ) -> float:
     """Return the solid where ``value`` is below 0, or a sheet around its surface.
 
-    ``offset`` moves the solid's surface outwards.
+    ``level`` moves the solid's surface outwards.
     """
-    d = value * cell_size / (TAU * typical) - offset
+    d = value * cell_size / (TAU * typical) - level
     return d if solid else abs(d) - 0.5 * thickness
 
 
@@ -79,7 +79,7 @@ def gyroid(
     p: vec3,
     cell_size: float = 1.0,
     thickness: float = 0.1,
-    offset: float = 0.0,
+    level: float = 0.0,
     solid: bool = False,
 ) -> float:
     """Gyroid (Schoen): a minimal surface without straight lines or mirror planes.
@@ -90,7 +90,7 @@ def gyroid(
         p: Point.
         cell_size: Edge length of the repeated cube.
         thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
-        offset: How far the surface is moved outwards, in scene units.
+        level: How far the surface is moved outwards, in scene units.
         solid: Whether to return the solid inside the surface instead of a sheet.
 
     Source: Alan Schoen, "Infinite periodic minimal surfaces" (1970).
@@ -102,7 +102,7 @@ def gyroid(
     """
     q = p * (TAU / cell_size)
     value = dot(sin(q), cos(q.yzx))
-    return layered(value, cell_size, GYROID_TYPICAL, thickness, offset, solid)
+    return layered(value, cell_size, GYROID_TYPICAL, thickness, level, solid)
 
 
 @minimal_surface("SchwarzP", SCHWARZ_P_STEEPEST / SCHWARZ_P_TYPICAL)
@@ -111,7 +111,7 @@ def schwarz_p(
     p: vec3,
     cell_size: float = 1.0,
     thickness: float = 0.1,
-    offset: float = 0.0,
+    level: float = 0.0,
     solid: bool = False,
 ) -> float:
     """Schwarz P (primitive) surface: tubes along the axes that meet in the middle of each cell.
@@ -120,7 +120,7 @@ def schwarz_p(
         p: Point.
         cell_size: Edge length of the repeated cube.
         thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
-        offset: How far the surface is moved outwards, in scene units.
+        level: How far the surface is moved outwards, in scene units.
         solid: Whether to return the solid inside the surface instead of a sheet.
 
     Source: Hermann Schwarz (1865), for the surface; its nodal equation.
@@ -132,7 +132,7 @@ def schwarz_p(
     """
     q = cos(p * (TAU / cell_size))
     value = q.x + q.y + q.z
-    return layered(value, cell_size, SCHWARZ_P_TYPICAL, thickness, offset, solid)
+    return layered(value, cell_size, SCHWARZ_P_TYPICAL, thickness, level, solid)
 
 
 @minimal_surface("Diamond", DIAMOND_STEEPEST / DIAMOND_TYPICAL)
@@ -141,7 +141,7 @@ def diamond(
     p: vec3,
     cell_size: float = 1.0,
     thickness: float = 0.1,
-    offset: float = 0.0,
+    level: float = 0.0,
     solid: bool = False,
 ) -> float:
     """Schwarz D (diamond) surface: tubes along the bonds of the atoms in a diamond.
@@ -150,7 +150,7 @@ def diamond(
         p: Point.
         cell_size: Edge length of the repeated cube.
         thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
-        offset: How far the surface is moved outwards, in scene units.
+        level: How far the surface is moved outwards, in scene units.
         solid: Whether to return the solid inside the surface instead of a sheet.
 
     Source: Hermann Schwarz (1865), for the surface; its nodal equation.
@@ -164,7 +164,7 @@ def diamond(
     c = cos(q)
     s = sin(q)
     value = c.x * c.y * c.z - s.x * s.y * s.z
-    return layered(value, cell_size, DIAMOND_TYPICAL, thickness, offset, solid)
+    return layered(value, cell_size, DIAMOND_TYPICAL, thickness, level, solid)
 
 
 @minimal_surface("Neovius", NEOVIUS_STEEPEST / NEOVIUS_TYPICAL)
@@ -173,7 +173,7 @@ def neovius(
     p: vec3,
     cell_size: float = 1.0,
     thickness: float = 0.1,
-    offset: float = 0.0,
+    level: float = 0.0,
     solid: bool = False,
 ) -> float:
     """Neovius surface: like Schwarz P, with additional tubes along the cell's edges.
@@ -182,7 +182,7 @@ def neovius(
         p: Point.
         cell_size: Edge length of the repeated cube.
         thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
-        offset: How far the surface is moved outwards, in scene units.
+        level: How far the surface is moved outwards, in scene units.
         solid: Whether to return the solid inside the surface instead of a sheet.
 
     Source: Edvard Neovius (1883), for the surface; its nodal equation.
@@ -194,7 +194,7 @@ def neovius(
     """
     c = cos(p * (TAU / cell_size))
     value = 3.0 * (c.x + c.y + c.z) + 4.0 * c.x * c.y * c.z
-    return layered(value, cell_size, NEOVIUS_TYPICAL, thickness, offset, solid)
+    return layered(value, cell_size, NEOVIUS_TYPICAL, thickness, level, solid)
 
 
 @minimal_surface("Lidinoid", LIDINOID_STEEPEST / LIDINOID_TYPICAL)
@@ -203,7 +203,7 @@ def lidinoid(
     p: vec3,
     cell_size: float = 1.0,
     thickness: float = 0.1,
-    offset: float = 0.0,
+    level: float = 0.0,
     solid: bool = False,
 ) -> float:
     """Lidinoid: a surface related to the gyroid, with more twisted labyrinths.
@@ -212,7 +212,7 @@ def lidinoid(
         p: Point.
         cell_size: Edge length of the repeated cube.
         thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
-        offset: How far the surface is moved outwards, in scene units.
+        level: How far the surface is moved outwards, in scene units.
         solid: Whether to return the solid inside the surface instead of a sheet.
 
     Source: Sven Lidin and Stefan Larsson (1990), for the surface; its nodal equation.
@@ -229,7 +229,7 @@ def lidinoid(
     double_cosine = 2.0 * c * c - 1.0
     woven = dot(double_sine, c.yzx * s.zxy)
     value = 0.5 * woven - 0.5 * dot(double_cosine, double_cosine.yzx) + 0.15
-    return layered(value, cell_size, LIDINOID_TYPICAL, thickness, offset, solid)
+    return layered(value, cell_size, LIDINOID_TYPICAL, thickness, level, solid)
 
 
 @minimal_surface("SplitP", SPLIT_P_STEEPEST / SPLIT_P_TYPICAL)
@@ -238,7 +238,7 @@ def split_p(
     p: vec3,
     cell_size: float = 1.0,
     thickness: float = 0.1,
-    offset: float = 0.0,
+    level: float = 0.0,
     solid: bool = False,
 ) -> float:
     """Split P surface: between the gyroid and Schwarz P.
@@ -247,7 +247,7 @@ def split_p(
         p: Point.
         cell_size: Edge length of the repeated cube.
         thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
-        offset: How far the surface is moved outwards, in scene units.
+        level: How far the surface is moved outwards, in scene units.
         solid: Whether to return the solid inside the surface instead of a sheet.
 
     Source: the nodal equation in use among makers of lattices.
@@ -265,7 +265,7 @@ def split_p(
     woven = 1.1 * dot(double_sine, s.zxy * c.yzx)
     pairs = 0.2 * dot(double_cosine, double_cosine.yzx)
     value = woven - pairs - 0.4 * (double_cosine.x + double_cosine.y + double_cosine.z)
-    return layered(value, cell_size, SPLIT_P_TYPICAL, thickness, offset, solid)
+    return layered(value, cell_size, SPLIT_P_TYPICAL, thickness, level, solid)
 
 
 @minimal_surface("IWP", IWP_STEEPEST / IWP_TYPICAL)
@@ -274,7 +274,7 @@ def iwp(
     p: vec3,
     cell_size: float = 1.0,
     thickness: float = 0.1,
-    offset: float = 0.0,
+    level: float = 0.0,
     solid: bool = False,
 ) -> float:
     """I-WP surface (Schoen): tubes along the diagonals of a cube.
@@ -283,7 +283,7 @@ def iwp(
         p: Point.
         cell_size: Edge length of the repeated cube.
         thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
-        offset: How far the surface is moved outwards, in scene units.
+        level: How far the surface is moved outwards, in scene units.
         solid: Whether to return the solid inside the surface instead of a sheet.
 
     Source: Alan Schoen, "Infinite periodic minimal surfaces" (1970).
@@ -296,7 +296,7 @@ def iwp(
     c = cos(p * (TAU / cell_size))
     double_cosine = 2.0 * c * c - 1.0
     value = 2.0 * dot(c, c.yzx) - (double_cosine.x + double_cosine.y + double_cosine.z)
-    return layered(value, cell_size, IWP_TYPICAL, thickness, offset, solid)
+    return layered(value, cell_size, IWP_TYPICAL, thickness, level, solid)
 
 
 @minimal_surface("FischerKochS", FISCHER_KOCH_S_STEEPEST / FISCHER_KOCH_S_TYPICAL)
@@ -305,7 +305,7 @@ def fischer_koch_s(
     p: vec3,
     cell_size: float = 1.0,
     thickness: float = 0.1,
-    offset: float = 0.0,
+    level: float = 0.0,
     solid: bool = False,
 ) -> float:
     """Fischer-Koch S surface: two labyrinths of the same form, with many crossings in each cell.
@@ -314,7 +314,7 @@ def fischer_koch_s(
         p: Point.
         cell_size: Edge length of the repeated cube.
         thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
-        offset: How far the surface is moved outwards, in scene units.
+        level: How far the surface is moved outwards, in scene units.
         solid: Whether to return the solid inside the surface instead of a sheet.
 
     Source: Werner Fischer and Elke Koch (1987), for the surface; its nodal equation.
@@ -328,7 +328,7 @@ def fischer_koch_s(
     s = sin(q)
     c = cos(q)
     value = dot(2.0 * c * c - 1.0, s.yzx * c.zxy)
-    return layered(value, cell_size, FISCHER_KOCH_S_TYPICAL, thickness, offset, solid)
+    return layered(value, cell_size, FISCHER_KOCH_S_TYPICAL, thickness, level, solid)
 
 
 @minimal_surface("FRD", FRD_STEEPEST / FRD_TYPICAL)
@@ -337,7 +337,7 @@ def frd(
     p: vec3,
     cell_size: float = 1.0,
     thickness: float = 0.1,
-    offset: float = 0.0,
+    level: float = 0.0,
     solid: bool = False,
 ) -> float:
     """F-RD surface (Schoen): tubes from the corners of a cube to the middles of its faces.
@@ -346,7 +346,7 @@ def frd(
         p: Point.
         cell_size: Edge length of the repeated cube.
         thickness: Thickness of the sheet, at most a quarter of ``cell_size``.
-        offset: How far the surface is moved outwards, in scene units.
+        level: How far the surface is moved outwards, in scene units.
         solid: Whether to return the solid inside the surface instead of a sheet.
 
     Source: Alan Schoen, "Infinite periodic minimal surfaces" (1970).
@@ -359,7 +359,7 @@ def frd(
     c = cos(p * (TAU / cell_size))
     double_cosine = 2.0 * c * c - 1.0
     value = 4.0 * c.x * c.y * c.z - dot(double_cosine, double_cosine.yzx)
-    return layered(value, cell_size, FRD_TYPICAL, thickness, offset, solid)
+    return layered(value, cell_size, FRD_TYPICAL, thickness, level, solid)
 
 
 @func

@@ -118,13 +118,15 @@ def within_box(p: vec3, size: vec3, inside: float) -> float:
 
 @primitive("VolumeField", NOTHING, slope=GRID_SLOPE, bounds=box_bounds, tier=2, growth=1.0)
 @func
-def volume_field(p: vec3, volume: Texture3D, size: vec3 = BOX_SIZE, scale: float = 1.0) -> float:
+def volume_field(
+    p: vec3, volume: Texture3D, size: vec3 = BOX_SIZE, value_scale: float = 1.0
+) -> float:
     """Shape from a grid of distance samples, in the first channel of a volume texture.
 
     Neighbouring samples must differ by at most the distance between them, as true distances do;
-    ``scale`` is applied first. Then the surface is at most 0.87 of the samples' spacing from the
-    sampled one, and much closer where that is smooth. A shape that extends beyond the box is cut
-    off there.
+    ``value_scale`` is applied first. Then the surface is at most 0.87 of the samples' spacing from
+    the sampled one, and much closer where that is smooth. A shape that extends beyond the box is
+    cut off there.
 
     Args:
         p: Point.
@@ -132,7 +134,7 @@ def volume_field(p: vec3, volume: Texture3D, size: vec3 = BOX_SIZE, scale: float
             ``Texture3D(array, axes=...)`` says.
         size: Size of the box, which is centred at the origin; samples are at the centres of equal
             cells.
-        scale: Distance of a sample of value 1.
+        value_scale: Distance of a sample of value 1.
 
     Source: trilinear interpolation.
 
@@ -141,5 +143,5 @@ def volume_field(p: vec3, volume: Texture3D, size: vec3 = BOX_SIZE, scale: float
         volume_field((0.0, 5.0, 0.0), Texture3D([[[4.0, 4.0]]]), (4.0, 4.0, 4.0)) = 5.0
         volume_field((0.5, 0.0, 0.0), Texture3D([[[0.0, 1.0]]]), (4.0, 4.0, 4.0), 2.0) = 1.5
     """
-    inside = interpolated(volume, place_among(p, size, vec3(size_of(volume)))) * scale
+    inside = interpolated(volume, place_among(p, size, vec3(size_of(volume)))) * value_scale
     return within_box(p, size, inside)

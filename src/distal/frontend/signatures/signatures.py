@@ -162,8 +162,12 @@ class FunctionSignature:
     def text(self) -> str:
         """Return ``name(p: vec3, r: float) -> float`` as the author wrote it, for hints."""
         written = {a.arg: a.annotation for a in all_parameters(self.node.args)}
-        parts = []
+        parts: list[str] = []
+        collects = False
         for parameter in self.parameters:
+            collects = collects or parameter.collects
+            if not parameter.positional and not collects and "*" not in parts:
+                parts.append("*")
             annotation = written.get(parameter.name)
             suffix = "" if annotation is None else f": {ast.unparse(annotation)}"
             parts.append(f"{'*' if parameter.collects else ''}{parameter.name}{suffix}")

@@ -28,6 +28,7 @@ from distal.scene.tree.arguments import Accept, FunctionParameter, arguments, sl
 from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import unwrapped
 from distal.scene.tree.errors import refuse_kind
+from distal.scene.tree.former_names import renamed
 from distal.scene.tree.value import Origin, Value, argument
 
 C = TypeVar("C")
@@ -142,7 +143,7 @@ def given_arguments(
     parameters = signature_of(declaration).parameters
     for name in kwargs:
         if name not in parameters:
-            hint = did_you_mean(name, parameters) or _takes(declaration)
+            hint = renamed(what, name) or did_you_mean(name, parameters) or _takes(declaration)
             refuse_kind(f"{what} has no '{name}'", hint, place)
     try:
         bound = signature_of(declaration).bind_partial(*args, **kwargs).arguments

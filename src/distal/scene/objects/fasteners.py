@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _CHAMFER: Final = 0.6
 # The corners of hexagons are cut off by a cone, 30 degrees to the face, of this share of the width.
 _BEVEL: Final = 0.95
-_BEVEL_ANGLE: Final = math.pi / 3.0
+_BEVEL_OPENING: Final = math.tau / 3.0
 _SINK: Final = 0.05  # the countersink of a nut, in diameters
 
 
@@ -60,7 +60,7 @@ class MetricHole(Shape):
     Args:
         size: "M2" to "M20".
         length: Thickness of the part in millimetres; the hole is centred at the origin.
-        clearance: Gap between the threads in millimetres; about .1 to .2 for printed parts.
+        gap: Gap between the threads in millimetres; about .1 to .2 for printed parts.
         threaded: Whether it has a thread; otherwise a bolt passes through it (ISO 273, medium).
         pitch: Another pitch, for fine threads; None for the coarse one.
         left: Whether the thread is left-handed.
@@ -75,7 +75,7 @@ class MetricHole(Shape):
         size: str,
         length: Amount = 10.0,
         *,
-        clearance: Amount = 0.1,
+        gap: Amount = 0.1,
         threaded: bool = True,
         pitch: float | None = None,
         left: bool = False,
@@ -85,7 +85,7 @@ class MetricHole(Shape):
         pitch = row.pitch if pitch is None else pitch
         if threaded:
             sink = _SINK * row.diameter
-            numbers = (row.diameter, pitch, length, clearance, sink)
+            numbers = (row.diameter, pitch, length, gap, sink)
             made = made_of("TappedHole", *numbers, left=left, through=through)
         else:
             beyond = 2.0 * pitch if through else pitch
@@ -140,7 +140,7 @@ class Nut(Shape):
 
     Args:
         size: "M2" to "M20"; the sizes are those of ISO 4032.
-        clearance: Gap to the thread of the bolt in millimetres; about .1 to .2 for printed parts.
+        gap: Gap to the thread of the bolt in millimetres; about .1 to .2 for printed parts.
         left: Whether the thread is left-handed.
 
     Raises:
@@ -150,11 +150,11 @@ class Nut(Shape):
     pitch: float
     left: bool
 
-    def __init__(self, size: str, *, clearance: Amount = 0.1, left: bool = False) -> None:
+    def __init__(self, size: str, *, gap: Amount = 0.1, left: bool = False) -> None:
         row = metric_size(size, "Nut", author_place())
         sink = _SINK * row.diameter
         self.__dict__.update(pitch=row.pitch, left=left)
-        hole = made_of("TappedHole", row.diameter, row.pitch, row.nut, clearance, sink, left=left)
+        hole = made_of("TappedHole", row.diameter, row.pitch, row.nut, gap, sink, left=left)
         made = _hexagon(row, row.nut, both=True) - hole
         BaseShape.__init__(self, made.named("Nut").node)
 
@@ -193,7 +193,7 @@ def _threaded_length(row: MetricSize, length: Any, thread: Any, place: Any) -> A
 def _hexagon(row: MetricSize, height: float, *, both: bool) -> Any:
     """Return a hexagon whose corners are cut off by a cone, on top or on both ends."""
     body = made_of("HexPrism", 0.5 * row.across, height)
-    cone = made_of("InfiniteCone", _BEVEL_ANGLE)
-    rise = 0.5 * height + 0.5 * _BEVEL * row.across / math.tan(_BEVEL_ANGLE)
+    cone = made_of("InfiniteCone", opening=_BEVEL_OPENING)
+    rise = 0.5 * height + 0.5 * _BEVEL * row.across / math.tan(0.5 * _BEVEL_OPENING)
     cut = body & cone.translate(0.0, rise, 0.0)
     return cut & cone.rotate(x=math.pi).translate(0.0, -rise, 0.0) if both else cut

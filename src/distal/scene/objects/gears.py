@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 # 20 degrees, as ISO 53.
 PRESSURE_ANGLE: Final = math.radians(20.0)
-_CLEARANCE: Final = 0.25
+_TIP_GAP: Final = 0.25
 # A ring has at least so many teeth more than the gear inside (of 20 degrees, as is usual).
 _LEAST_DIFFERENCE: Final = 10
 # How much, as a share of the radius, tips may reach beyond the last point of contact.
@@ -61,12 +61,12 @@ class Gear(Toothed):
         teeth: Amount of teeth.
         width: Length along the axis.
         pressure_angle: Pressure angle in radians; None for 20 degrees.
-        clearance: Gap between a tip and the bottom of the other gear's gap, in modules.
+        tip_gap: Gap between a tip and the bottom of the other gear's gap, in modules.
         backlash: By how much each tooth is narrower than half of the distance from tooth to tooth,
             along the pitch circle, in scene units.
         helix: Angle of the teeth to the axis in radians, positive for a right-handed gear; two
             gears that mesh need opposite angles.
-        bore: Diameter of the hole for the shaft; 0 for none.
+        bore_diameter: Diameter of the hole for the shaft; 0 for none.
 
     Raises:
         CompileError: At the author's line: a number is beyond its limit.
@@ -79,19 +79,19 @@ class Gear(Toothed):
         width: Amount = 6.0,
         *,
         pressure_angle: float | None = None,
-        clearance: float = _CLEARANCE,
+        tip_gap: float = _TIP_GAP,
         backlash: Amount = 0.0,
         helix: float = 0.0,
-        bore: Amount = 0.0,
+        bore_diameter: Amount = 0.0,
     ) -> None:
         place = author_place()
         angle = _checked(module, teeth, pressure_angle, helix, "Gear", place)
         radius = 0.5 * module * teeth
-        numbers = {"addendum": 1.0, "dedendum": 1.0 + clearance, "backlash": backlash}
+        numbers = {"addendum": 1.0, "dedendum": 1.0 + tip_gap, "backlash": backlash}
         profile = made_of("GearProfile", radius, angle, teeth, **numbers)
         made = _wide(profile, width, radius, helix)
-        if not isinstance(bore, float | int) or bore > 0.0:
-            made = made - made_of("Circle", 0.5 * bore).extrude(None)
+        if not isinstance(bore_diameter, float | int) or bore_diameter > 0.0:
+            made = made - made_of("Circle", 0.5 * bore_diameter).extrude(None)
         self._set(
             made, module=module, teeth=teeth, pressure_angle=angle, helix=helix, pitch_radius=radius
         )
@@ -107,7 +107,7 @@ class RingGear(Toothed):
         width: Length along the axis.
         rim: Thickness of the ring outside of the gaps, in scene units; None for two modules.
         pressure_angle: Pressure angle in radians; None for 20 degrees.
-        clearance: As for ``Gear``.
+        tip_gap: As for ``Gear``.
         backlash: As for ``Gear``.
         helix: Angle of the teeth to the axis, that of the gear inside.
 
@@ -123,7 +123,7 @@ class RingGear(Toothed):
         *,
         rim: Amount | None = None,
         pressure_angle: float | None = None,
-        clearance: float = _CLEARANCE,
+        tip_gap: float = _TIP_GAP,
         backlash: float = 0.0,
         helix: float = 0.0,
     ) -> None:
@@ -131,9 +131,9 @@ class RingGear(Toothed):
         angle = _checked(module, teeth, pressure_angle, helix, "RingGear", place)
         radius = 0.5 * module * teeth
         # The hole has the outline of a gear whose tips reach as far as the ring's gaps.
-        numbers = {"addendum": 1.0 + clearance, "dedendum": 1.0, "backlash": -backlash}
+        numbers = {"addendum": 1.0 + tip_gap, "dedendum": 1.0, "backlash": -backlash}
         hole = made_of("GearProfile", radius, angle, teeth, **numbers)
-        outer = radius + (1.0 + clearance) * module + (2.0 * module if rim is None else rim)
+        outer = radius + (1.0 + tip_gap) * module + (2.0 * module if rim is None else rim)
         if helix == 0.0:
             made = (made_of("Circle", outer) - hole).extrude(width)
         else:
@@ -154,7 +154,7 @@ class Rack(Toothed):
         width: Length along z.
         base: Thickness of the bar below the teeth; None for two modules.
         pressure_angle: Pressure angle in radians; None for 20 degrees.
-        clearance: As for ``Gear``.
+        tip_gap: As for ``Gear``.
         backlash: As for ``Gear``.
 
     Raises:
@@ -169,12 +169,12 @@ class Rack(Toothed):
         *,
         base: Amount | None = None,
         pressure_angle: float | None = None,
-        clearance: float = _CLEARANCE,
+        tip_gap: float = _TIP_GAP,
         backlash: Amount = 0.0,
     ) -> None:
         angle = _checked(module, teeth, pressure_angle, 0.0, "Rack", author_place())
         thick = 2.0 * module if base is None else base
-        numbers = (module, angle, thick, backlash, clearance, teeth)
+        numbers = (module, angle, thick, backlash, tip_gap, teeth)
         made = made_of("RackProfile", *numbers).extrude(width)
         self._set(
             made, module=module, teeth=teeth, pressure_angle=angle, helix=0.0, pitch_radius=0.0

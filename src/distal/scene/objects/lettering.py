@@ -40,6 +40,7 @@ from distal.scene.objects.shaping import (
 )
 from distal.scene.tree.conversion import beside
 from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.former_names import FORMER_WORDS
 
 ALIGNMENTS: Final = {"left": 0.0, "center": 0.5, "right": 1.0}
 _PACKED: Final = (b"wOFF", b"wOF2")
@@ -55,7 +56,7 @@ def text_outline(
     *,
     font: str | os.PathLike[str] | None = None,
     size: float = 1.0,
-    align: str = "center",
+    justify: str = "center",
     line_spacing: float = 1.2,
     place: Span | None = None,
 ) -> DrawnOutline:
@@ -66,7 +67,7 @@ def text_outline(
             multiple of 4 letters.
         font: The font's file, or the name of an installed font; None for a default font.
         size: Font size; capital letters are about 0.7 times as high.
-        align: Position of x = 0 in each line: "left", "center" or "right".
+        justify: Position of x = 0 in each line: "left", "center" or "right".
         line_spacing: Distance between lines, as a multiple of ``size``.
         place: The author's line.
 
@@ -77,8 +78,9 @@ def text_outline(
     place = place or author_place()
     if not isinstance(text, str):
         refuse_kind(f"a text is what is written, not {text!r:.40}", None, place)
-    if align not in ALIGNMENTS:
-        refuse(f"align is 'left', 'center' or 'right', not {align!r}", None, place)
+    if justify not in ALIGNMENTS:
+        hint = f'justify="{FORMER_WORDS[justify]}"' if justify in FORMER_WORDS else None
+        refuse(f"justify is 'left', 'center' or 'right', not {justify!r}", hint, place)
     for name, value in (("size", size), ("line_spacing", line_spacing)):
         if not 0.0 < value < math.inf:
             refuse(f"{name} must be above 0, not {value}", None, place)
@@ -92,7 +94,7 @@ def text_outline(
     edges: list[Edge] = []
     for i, line in enumerate(lines):
         glyphs, width = face.laid_out(line, place)
-        origin = complex(-ALIGNMENTS[align] * width * scale, -i * line_spacing * size - middle)
+        origin = complex(-ALIGNMENTS[justify] * width * scale, -i * line_spacing * size - middle)
         edges += [tuple(origin + scale * p for p in edge) for edge in glyphs]
     if not edges:
         refuse("a text needs a letter that can be seen", None, place)

@@ -34,7 +34,7 @@ class Text(Shape2D):
         text: The text; "\n" starts a new line.
         font: The font's file, or the name of an installed font; None for a default font.
         size: Font size; capital letters are about 0.7 times as high.
-        align: Position of x = 0 in each line: "left", "center" or "right".
+        justify: Position of x = 0 in each line: "left", "center" or "right".
         line_spacing: Distance between lines, as a multiple of ``size``.
 
     Raises:
@@ -47,12 +47,12 @@ class Text(Shape2D):
         *,
         font: str | os.PathLike[str] | None = None,
         size: float = 1.0,
-        align: str = "center",
+        justify: str = "center",
         line_spacing: float = 1.2,
     ) -> None:
         place = author_place()
         outline = lettering.text_outline(
-            text, font=font, size=size, align=align, line_spacing=line_spacing, place=place
+            text, font=font, size=size, justify=justify, line_spacing=line_spacing, place=place
         )
         BaseShape.__init__(self, _node(outline, place, even_odd=False))
 

@@ -28,13 +28,14 @@ from distal.scene.objects.masked import masked
 from distal.scene.objects.shaped_edges import shaped_edge
 from distal.scene.tree.conversion import Asked, is_scalar, plain_choice
 from distal.scene.tree.errors import refuse
+from distal.scene.tree.former_names import FORMER_WORDS
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Argument, Number, Vector
 
 _SHELLS: Final[Mapping[str, Operator]] = {
     "inner": offsets.SHELL_INNER,
-    "centre": offsets.SHELL_CENTRE,
+    "center": offsets.SHELL_CENTER,
     "outer": offsets.SHELL_OUTER,
 }
 
@@ -224,10 +225,11 @@ class Placed(BaseShape):
         """Move the surface outwards by a distance, or inwards by a negative one."""
         return self._with(offsets.OFFSET, distance)
 
-    def shell(self: S, thickness: Number, where: str = "centre") -> S:
-        """Make the shape hollow; ``where`` places the wall: "inner", "centre" or "outer"."""
+    def shell(self: S, thickness: Number, where: str = "center") -> S:
+        """Make the shape hollow; ``where`` places the wall: "inner", "center" or "outer"."""
         if where not in _SHELLS:
-            refuse(f"a shell lies inner, centre or outer, not {where!r}", None, author_place())
+            hint = f'where="{FORMER_WORDS[where]}"' if where in FORMER_WORDS else None
+            refuse(f"a shell lies inner, center or outer, not {where!r}", hint, author_place())
         return self._with(_SHELLS[where], thickness)
 
     def where(

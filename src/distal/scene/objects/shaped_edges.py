@@ -41,8 +41,8 @@ _INSTEAD: Final[Mapping[str, Mapping[str, str]]] = {
         "Polygon": "RoundedPolygon(points, radius)",
     },
     "chamfer": {
-        "Box": "ChamferBox(size, chamfer)",
-        "Rectangle": "ChamferedRectangle(size, chamfer)",
+        "Box": "ChamferBox(size, bevel)",
+        "Rectangle": "ChamferedRectangle(size, bevel)",
     },
 }
 

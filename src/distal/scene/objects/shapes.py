@@ -39,7 +39,7 @@ def _make(primitive: Primitive) -> type[BaseShape]:
         "__module__": __name__,
         "__signature__": inspect.Signature(own),
         "row": primitive,
-        **{p.name: argument(p.name) for p in own if not hasattr(base, p.name)},
+        **{p.name: argument(p.name) for p in own},
     }
     made = type(primitive.name, (base,), body)
     CLASSES_OF_RULES[id(primitive)] = made

@@ -54,6 +54,7 @@ from distal.scene.tree.conversion import (
     unwrapped,
 )
 from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.former_names import FORMERLY_FIRST, hints_by_name, renamed
 from distal.scene.tree.varying import VaryingNumber, varying_or_same
 from distal.scene.tree.whole_numbers import whole_ends
 from distal.session import SESSION
@@ -83,6 +84,7 @@ class FunctionParameter:
     name: str
     type: Type | None
     default: Any
+    by_name: bool = False  # whether it is passed by name only
     is_vector: bool = field(init=False)  # whether several scalars may be passed for it
     is_named_color: bool = field(init=False)  # whether its name is that of a color
     size: int = field(init=False)  # its number of floats; 0 for what needs other conversions
@@ -133,7 +135,7 @@ def slots_of(func: Func) -> tuple[FunctionParameter, ...]:
                 raise CompileError.at(
                     ErrorCode.OBJECT, error.message, slot.span, error.hint
                 ) from None
-            made.append(FunctionParameter(slot.name, type, slot.default))
+            made.append(FunctionParameter(slot.name, type, slot.default, not slot.positional))
         found = _slots[func] = tuple(made)
     return found
 
@@ -184,6 +186,11 @@ def arguments(
     """
     listed = (functions,) if isinstance(functions, Func) else tuple(functions)
     slots = _number_slots(listed, frozenset(reserved))
+    first = FORMERLY_FIRST.get(what) if args else None
+    if first is not None and first not in kwargs:
+        binding = _ArgumentBinding(slots, what, place)
+        binding.take_keywords(kwargs)
+        binding.refuse_former_order(first)
     plain = _plain_values(slots, args, kwargs, limits or {}, colors)
     if plain is not None:
         if requires is not None:
@@ -250,7 +257,7 @@ def _plain_values(
         name, size, type_ = slot.name, slot.size, slot.type
         if at < count:
             value = args[at]
-            if name in kwargs:
+            if name in kwargs or slot.by_name:
                 return None
             if size > 1 and is_plain_scalar(value):
                 value = args[at : at + size]
@@ -296,7 +303,7 @@ def _bound_quickly(
                 given[name] = slot.default
             continue
         value = args[at]
-        if name in given:
+        if name in given or slot.by_name:
             return None
         if slot.is_vector and type(value) not in _SCALARS:
             value = unwrapped(value)
@@ -377,7 +384,9 @@ class _ArgumentBinding:
         refuse_kind(message, hint, self.place)
 
     def _listed(self) -> str:
-        return ", ".join(s.name for s in self.slots)
+        first = next((i for i, s in enumerate(self.slots) if s.by_name), len(self.slots))
+        names = [s.name for s in self.slots]
+        return ", ".join([*names[:first], *["*"] * (first < len(names)), *names[first:]])
 
     def _refuse_modules(self, given: Iterable[Any]) -> None:
         for module in (arg for arg in given if isinstance(arg, ModuleType)):
@@ -402,7 +411,7 @@ class _ArgumentBinding:
                 letters = _LETTERS[: _size(vectors[0])] if len(vectors) == 1 else ""
                 if letters:
                     takes += f"; {', '.join(letters)} are parts of '{vectors[0].name}'"
-                hint = did_you_mean(name, {*names, *letters}) or takes
+                hint = renamed(self.what, name) or did_you_mean(name, {*names, *letters}) or takes
                 self._wrong(f"{self.what} has no '{name}'", hint)
         if parts:
             self._take_parts(vectors[0], parts)
@@ -421,7 +430,8 @@ class _ArgumentBinding:
         """Assign the arguments by position."""
         left = list(args)
         self._refuse_modules(args)
-        for slot in self.slots:
+        slots = [slot for slot in self.slots if not slot.by_name]
+        for slot in slots:
             if not left:
                 return
             if slot.name in self.given:
@@ -438,13 +448,29 @@ class _ArgumentBinding:
         if left:
             if not self.slots:
                 self._wrong(f"{self.what} takes no numbers")
-            last = self.slots[-1]
+            if len(slots) < len(self.slots):
+                self._wrong(*self._by_name_only(slots))
+            last = slots[-1]
             message = f"{self.what} takes nothing after '{last.name}'"
             hint = f"it takes {self._listed()}"
             if last.is_vector and last.name in SPLATTED and is_scalar(left[0]):
                 letters = ", ".join(_LETTERS[: _size(last)])
                 hint = f"'{last.name}' is one number for all, or {letters}"
             self._wrong(message, hint)
+
+    def _by_name_only(self, slots: Sequence[FunctionParameter]) -> tuple[str, str]:
+        """Return the message and the hint for numbers by position that are passed by name."""
+        after = f"after '{slots[-1].name}'" if slots else "by position"
+        named = hints_by_name(self.what, [slot.name for slot in self.slots if slot.by_name])
+        return f"{self.what} takes nothing {after}", f"by name: {', '.join(named)}"
+
+    def refuse_former_order(self, first: str) -> NoReturn:
+        """Refuse numbers by position that may be in the former order, which meant another shape.
+
+        They are in the order of now if ``first``, which was first, is passed by its name.
+        """
+        message = f"{self.what} takes '{first}' by name if others are given by position"
+        self._wrong(message, f"it takes {self._listed()}")
 
     def _gathered(self, slot: FunctionParameter, left: Sequence[Any]) -> int:
         """Return how many scalars make up a vector; 0 if it is passed as one value."""

@@ -9,14 +9,18 @@ from __future__ import annotations
 import functools
 import inspect
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self, TypeVar, cast
 
 from distal.fields.guarantees import ENDLESS
+from distal.frontend.problems import did_you_mean
 from distal.ir.nodes import Cast, Uniform
 from distal.lang.expressions import Expression
+from distal.lang.source_places import author_place
 from distal.scene.tree.conversion import Number
+from distal.scene.tree.errors import refuse_kind
+from distal.scene.tree.former_names import renamed
 from distal.scene.tree.varying import VaryingNumber
 
 Made = TypeVar("Made")
@@ -191,9 +195,14 @@ def argument(name: str) -> property:
 
 def _recorded_class(made: Any) -> Any:
     initialise = made.__init__
+    parameters = list(inspect.signature(initialise).parameters.values())[1:]
+    takes_any = any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters)
+    names = [parameter.name for parameter in parameters]
 
     @functools.wraps(initialise)
     def initialise_recorded(self: Any, *args: Any, **kwargs: Any) -> None:
+        if not takes_any:
+            _check_names(made.__name__, kwargs, names)
         initialise(self, *args, **kwargs)
         kind = type(self)
         # A class with an own constructor calls this one with other arguments.
@@ -201,10 +210,19 @@ def _recorded_class(made: Any) -> Any:
         self._record(Origin(factory, args, kwargs, factory, state_of(self)))
 
     made.__init__ = initialise_recorded
-    for name, parameter in list(inspect.signature(initialise).parameters.items())[1:]:
-        if parameter.kind not in _OF_MANY and not hasattr(made, name):
-            setattr(made, name, argument(name))
+    for parameter in parameters:
+        if parameter.kind not in _OF_MANY and not hasattr(made, parameter.name):
+            setattr(made, parameter.name, argument(parameter.name))
     return made
+
+
+def _check_names(what: str, given: Iterable[str], names: Sequence[str]) -> None:
+    """Refuse arguments by name that there are not, at the author's line."""
+    for name in given:
+        if name not in names:
+            hint = renamed(what, name) or did_you_mean(name, names)
+            hint = hint or f"it takes {', '.join(names)}"
+            refuse_kind(f"{what} has no '{name}'", hint, author_place())
 
 
 _OF_MANY: Final = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
