@@ -21,10 +21,10 @@ TREES: Final = int(os.environ.get("DISTAL_FIELD_SAMPLES", "1"))
 # What moves the surface out, where a box must hold more than the surface did, and what turns or
 # cuts a box before that.
 GROWING: Final = (
-    *("round", "offset", "shell centre", "shell outer", "emboss", "tongue", "displace", "pipe"),
+    *("round", "offset", "shell center", "shell outer", "emboss", "tongue", "displace", "pipe"),
     *("union quadratic", "union chamfer", "union round", "union exponential", "union power"),
     *("thicken by", "extrude rounded", "extrude tapered", "revolve partly", "sweep", "rotate"),
-    *("mirror octant", "kaleidoscope", "slice", "intersection"),
+    *("symmetry octant", "kaleidoscope", "slice", "intersection"),
 )
 
 

@@ -26,14 +26,16 @@ from tests.scene.method_fields import (
     arr,
     at_steps,
     block,
+    folded,
     folded_sphere,
     joined,
     kaleidoscope,
     mirror_signs,
-    mirrored,
     outwards,
     plane_places,
     pulled,
+    reflected,
+    reversed_axes,
     ring_places,
     slices,
     tapered,
@@ -71,11 +73,37 @@ SOLIDS = [
         lambda a, b, p, parts: a(p / [1.0, parts["y"], parts["z"]]),
         child=HIGH,
     ),
+    # Factors below 0 reflect.
+    Case(
+        "scale",
+        {"factors": (-1.3,)},
+        lambda a, b, p, factors: 1.3 * a(p / -1.3),
+        fixed=("factors",),
+    ),
+    Case(
+        "scale",
+        {"factors": (1.3, -0.7, 1.9)},
+        lambda a, b, p, factors: 0.7 * a(p / arr(factors)),
+        fixed=("factors",),
+        child=HIGH,
+    ),
     Case(
         "mirror",
-        {"normal": AXIS, "offset": 0.15},
-        lambda a, b, p, normal, offset: a(mirrored(p, normal, offset)),
-        unit=("normal",),
+        {"axes": "x", "offset": 0.0},
+        lambda a, b, p, axes, offset: a(reversed_axes(p, axes) + arr([2.0 * offset, 0.0, 0.0])),
+        changed={"axes": ["y", "z", "xy", "zyx"], "offset": [0.4]},
+    ),
+    Case(
+        "mirror",
+        {"offset": 0.15, "across": AXIS},
+        lambda a, b, p, offset, across: a(reflected(p, across, offset)),
+        unit=("across",),
+    ),
+    Case(
+        "symmetry",
+        {"offset": 0.15, "across": AXIS},
+        lambda a, b, p, offset, across: a(folded(p, across, offset)),
+        unit=("across",),
     ),
     Case(
         "symmetry",
@@ -340,12 +368,12 @@ SOLIDS = [
             {"thickness": 0.3, "where": where},
             # A wall from so far inside to so far outside of the old surface.
             lambda a, b, p, thickness, where: np.maximum(
-                a(p) - thickness * {"inner": 0.0, "centre": 0.5, "outer": 1.0}[where],
-                -a(p) - thickness * {"inner": 1.0, "centre": 0.5, "outer": 0.0}[where],
+                a(p) - thickness * {"inner": 0.0, "center": 0.5, "outer": 1.0}[where],
+                -a(p) - thickness * {"inner": 1.0, "center": 0.5, "outer": 0.0}[where],
             ),
-            changed={"where": [w for w in ("inner", "centre", "outer") if w != where]},
+            changed={"where": [w for w in ("inner", "center", "outer") if w != where]},
         )
-        for where in ("inner", "centre", "outer")
+        for where in ("inner", "center", "outer")
     ),
     # Bent out of shape
     Case(
@@ -492,7 +520,7 @@ SOLIDS = [
     # Operators without a method
     Case(
         "apply",
-        {"operator": "mirror diagonal"},
+        {"operator": "symmetry diagonal"},
         lambda a, b, p, operator: a(
             joined(np.maximum(p[:, 0], p[:, 2]), p[:, 1], np.minimum(p[:, 0], p[:, 2]))
         ),
@@ -500,7 +528,7 @@ SOLIDS = [
     ),
     Case(
         "apply",
-        {"operator": "mirror octant"},
+        {"operator": "symmetry octant"},
         lambda a, b, p, operator: a(
             joined(np.abs(p[:, ::2]).max(1), p[:, 1], np.abs(p[:, ::2]).min(1))
         ),

@@ -69,7 +69,7 @@ def shell_inner(d: float, thickness: float) -> float:
 
 
 @func
-def shell_centre(d: float, thickness: float) -> float:
+def shell_center(d: float, thickness: float) -> float:
     """Return a hollow shape whose wall has the surface as its middle."""
     return abs(d) - 0.5 * thickness
 
@@ -81,7 +81,7 @@ def shell_outer(d: float, thickness: float) -> float:
 
 
 @func
-def shell_centre_bounds(bounds: Boxes, thickness: float, side_growth: float) -> Boxes:
+def shell_center_bounds(bounds: Boxes, thickness: float, side_growth: float) -> Boxes:
     """Return the box, enlarged by half of the wall."""
     return moved_out(bounds, 0.5 * thickness, side_growth)
 
@@ -163,11 +163,11 @@ SHELL_INNER = operator(
     growth=Growth.KEPT,
     width=shell_width,
 )
-SHELL_CENTRE = operator(
-    "shell centre",
-    finish=shell_centre,
+SHELL_CENTER = operator(
+    "shell center",
+    finish=shell_center,
     keeps_exact=EXACT_OUTSIDE,
-    bounds=shell_centre_bounds,
+    bounds=shell_center_bounds,
     limits=THICK,
     growth=Growth.KEPT,
     fills=True,

@@ -17,7 +17,7 @@ from distal.fields.deform.offsets import (
     ERODE,
     OFFSET,
     ROUND,
-    SHELL_CENTRE,
+    SHELL_CENTER,
     SHELL_INNER,
     SHELL_OUTER,
 )
@@ -27,7 +27,7 @@ from distal.scene.tree.node import Node
 from distal.scene.tree.part_names import PlacedPart
 
 # Operators that move a surface outwards: what is cut out, they make smaller.
-_OFFSETS: Final = frozenset((ROUND, OFFSET, DILATE, ERODE, SHELL_INNER, SHELL_CENTRE, SHELL_OUTER))
+_OFFSETS: Final = frozenset((ROUND, OFFSET, DILATE, ERODE, SHELL_INNER, SHELL_CENTER, SHELL_OUTER))
 # The name under which a tree keeps its leaves.
 LEAVES: Final = "placed leaves"
 

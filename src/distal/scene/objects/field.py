@@ -403,7 +403,7 @@ class BaseShape(Composed, Presentable):
         blend: str = "quadratic",
         **k: Unpack[BlendNumbers],
     ) -> S:
-        """Subtract other shapes; also written ``a - b``.
+        """Subtract other shapes, one after the other; also written ``a - b``.
 
         Arguments as for ``union``.
         """
@@ -411,7 +411,13 @@ class BaseShape(Composed, Presentable):
         return joined
 
     def xor(self: S, *others: BaseShape | Iterable[BaseShape]) -> S:
-        """Keep what is in exactly one of two shapes; also written ``a ^ b``."""
+        """Keep what is in exactly one of two shapes; also written ``a ^ b``.
+
+        Of more shapes, it is what is in an odd number of them.
+
+        Args:
+            others: Shapes, or one list of shapes.
+        """
         joined: S = self._combined(joins.XOR, others, 0.0, "quadratic")
         return joined
 
