@@ -27,6 +27,7 @@ from distal import (
     RoundBox,
     Shape2D,
     Sphere,
+    Text,
     Torus,
 )
 from distal.fields.library import OPERATORS, PRIMITIVES
@@ -153,8 +154,8 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     "taper": lambda: Box((0.9, 1.4, 0.9)).apply("taper", -0.7, 0.7, 0.35),
     "attract": lambda: Box(1.2).apply("attract", (0.0, 0.9, 0.0), 0.9, 1.0),
     "repel": lambda: Box(1.2).apply("repel", (0.4, 0.4, 0.4), 0.8, 0.9),
-    "mirror": lambda: _LEAF.mirror("x"),
-    "mirror across": lambda: _LEAF.mirror(across=(0.8, 0.6, 0.0)),
+    "mirror": lambda: _LEAF | _LEAF.mirror("y"),
+    "mirror across": lambda: _LEAF | _LEAF.mirror(across=(0.8, 0.6, 0.0)),
     "symmetry across": lambda: _LEAF.symmetry(across=(1, 0, 0)),
     "symmetry": lambda: _PEBBLE.translate(0.5, 0.4, 0.5).symmetry("xyz"),
     "symmetry diagonal": lambda: _LEAF.apply("symmetry diagonal"),
@@ -165,8 +166,8 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     "flat scale": lambda: _STAR.scale(0.6),
     "flat scale axes": lambda: _STAR.scale(1.3, 0.7),
     "flat shear": lambda: Rectangle((0.7, 0.7)).apply("flat shear", 0.5),
-    "flat mirror": lambda: _STAR.translate(0.3, 0).mirror("x"),
-    "flat mirror across": lambda: _STAR.translate(0.3, 0).mirror(across=(0.8, 0.6)),
+    "flat mirror": lambda: Text("R").mirror("x"),
+    "flat mirror across": lambda: Text("R").mirror(across=(0.8, 0.6)),
     "flat symmetry across": lambda: _STAR.translate(0.3, 0).symmetry(across=(1, 0)),
     "flat symmetry": lambda: _STAR.scale(0.5).translate(0.45, 0.4).symmetry("xy"),
     "flat symmetry diagonal": lambda: (
