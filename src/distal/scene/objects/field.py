@@ -90,7 +90,7 @@ class BaseShape(Composed, Presentable):
             refuse(
                 f"this {node.name} is made of {node.parts:,} shapes; more than {MOST_PARTS:,} "
                 "take too long to compile and to draw",
-                "repeat, array and mirror show many copies for the price of one",
+                "repeat, array and symmetry show many copies for the price of one",
                 node.place,
             )
         self.__dict__["node"] = with_bounds_of_places(shallow(node))
