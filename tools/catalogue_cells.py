@@ -27,6 +27,7 @@ from distal import (
     RoundBox,
     Shape2D,
     Sphere,
+    Text,
     Torus,
 )
 from distal.fields.library import OPERATORS, PRIMITIVES
@@ -153,23 +154,27 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     "taper": lambda: Box((0.9, 1.4, 0.9)).apply("taper", -0.7, 0.7, 0.35),
     "attract": lambda: Box(1.2).apply("attract", (0.0, 0.9, 0.0), 0.9, 1.0),
     "repel": lambda: Box(1.2).apply("repel", (0.4, 0.4, 0.4), 0.8, 0.9),
-    "mirror": lambda: _LEAF.mirror((1, 0, 0)),
+    "mirror": lambda: _LEAF | _LEAF.mirror("y"),
+    "mirror across": lambda: _LEAF | _LEAF.mirror(across=(0.8, 0.6, 0.0)),
+    "symmetry across": lambda: _LEAF.symmetry(across=(1, 0, 0)),
     "symmetry": lambda: _PEBBLE.translate(0.5, 0.4, 0.5).symmetry("xyz"),
-    "mirror diagonal": lambda: _LEAF.apply("mirror diagonal"),
-    "mirror octant": lambda: Capsule(0.08, 0.5).translate(0.8, 0.0, 0.3).apply("mirror octant"),
+    "symmetry diagonal": lambda: _LEAF.apply("symmetry diagonal"),
+    "symmetry octant": lambda: Capsule(0.08, 0.5).translate(0.8, 0.0, 0.3).apply("symmetry octant"),
     "kaleidoscope": lambda: _LEAF.kaleidoscope(6),
     "flat translate": lambda: Rectangle((0.5, 0.3)).translate(0.3, 0.2),
     "flat rotate": lambda: Rectangle((1.0, 0.4)).rotate(0.6),
     "flat scale": lambda: _STAR.scale(0.6),
     "flat scale axes": lambda: _STAR.scale(1.3, 0.7),
     "flat shear": lambda: Rectangle((0.7, 0.7)).apply("flat shear", 0.5),
-    "flat mirror": lambda: _STAR.translate(0.3, 0).mirror((1, 0)),
+    "flat mirror": lambda: Text("R").mirror("x"),
+    "flat mirror across": lambda: Text("R").mirror(across=(0.8, 0.6)),
+    "flat symmetry across": lambda: _STAR.translate(0.3, 0).symmetry(across=(1, 0)),
     "flat symmetry": lambda: _STAR.scale(0.5).translate(0.45, 0.4).symmetry("xy"),
-    "flat mirror diagonal": lambda: (
-        Rectangle((0.6, 0.2)).translate(0.5, 0.1).apply("flat mirror diagonal")
+    "flat symmetry diagonal": lambda: (
+        Rectangle((0.6, 0.2)).translate(0.5, 0.1).apply("flat symmetry diagonal")
     ),
-    "flat mirror octant": lambda: (
-        Rectangle((0.4, 0.2)).translate(0.6, 0.2).apply("flat mirror octant")
+    "flat symmetry octant": lambda: (
+        Rectangle((0.4, 0.2)).translate(0.6, 0.2).apply("flat symmetry octant")
     ),
     "flat kaleidoscope": lambda: (
         Rectangle((0.5, 0.15)).rotate(0.3).translate(0.6, 0.1).kaleidoscope(6)
@@ -253,7 +258,7 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     "dilate": lambda: Box(1.0).apply("dilate", 0.15),
     "erode": lambda: Box(1.4).apply("erode", 0.15),
     "shell inner": lambda: _open(Sphere(0.9).shell(0.1, "inner")),
-    "shell center": lambda: _open(Sphere(0.9).shell(0.1)),
+    "shell center": lambda: _open(Sphere(0.9).shell(0.1, "center")),
     "shell outer": lambda: _open(Sphere(0.9).shell(0.1, "outer")),
     "split below": lambda: _BODY.split((0.6, 0.8, 0))[0],
     "split above": lambda: _BODY.split((0.6, 0.8, 0))[1],

@@ -13,6 +13,7 @@ from distal.lang.places import cell as cell
 from distal.lang.places import place as place
 from distal.lang.places import random_by_cell as random_by_cell
 from distal.lang.units import cm as cm
+from distal.lang.units import deg as deg
 from distal.lang.units import foot as foot
 from distal.lang.units import inch as inch
 from distal.lang.units import meter as meter
@@ -33,8 +34,10 @@ from distal.scene.objects.gears import Gear as Gear
 from distal.scene.objects.gears import Rack as Rack
 from distal.scene.objects.gears import RingGear as RingGear
 from distal.scene.objects.gears import mesh_gears as mesh_gears
+from distal.scene.objects.joined import difference as difference
 from distal.scene.objects.joined import intersection as intersection
 from distal.scene.objects.joined import union as union
+from distal.scene.objects.joined import xor as xor
 from distal.scene.objects.letters import SvgPath as SvgPath
 from distal.scene.objects.letters import Text as Text
 from distal.scene.objects.materials import Material as Material
@@ -3600,7 +3603,9 @@ __all__ = [
     "copies",
     "copper",
     "cube_map",
+    "deg",
     "diamond",
+    "difference",
     "emerald",
     "emissive",
     "facing",
@@ -3665,5 +3670,6 @@ __all__ = [
     "waves",
     "wax",
     "wood",
+    "xor",
     "zinc",
 ]

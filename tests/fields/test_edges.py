@@ -87,10 +87,10 @@ def test_mirrors_at_diagonals_keep_the_length_of_gradients():
     flat = Rectangle(0.5, 0.6).translate(1.0, 0.2)
     along = np.linspace(0.2, 2.0, 40)
     for shape, p in (
-        (solid.apply("mirror octant"), np.stack([along, 0.1 + 0.0 * along, along], axis=1)),
-        (solid.apply("mirror diagonal"), np.stack([along, 0.1 + 0.0 * along, along], axis=1)),
-        (flat.apply("flat mirror octant"), np.stack([along, along], axis=1)),
-        (flat.apply("flat mirror diagonal"), np.stack([along, along], axis=1)),
+        (solid.apply("symmetry octant"), np.stack([along, 0.1 + 0.0 * along, along], axis=1)),
+        (solid.apply("symmetry diagonal"), np.stack([along, 0.1 + 0.0 * along, along], axis=1)),
+        (flat.apply("flat symmetry octant"), np.stack([along, along], axis=1)),
+        (flat.apply("flat symmetry diagonal"), np.stack([along, along], axis=1)),
     ):
         lengths = np.linalg.norm(shape.gradient(p.astype(np.float32)), axis=1)
         np.testing.assert_allclose(lengths, 1.0, atol=1e-5)

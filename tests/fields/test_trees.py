@@ -24,7 +24,7 @@ GROWING: Final = (
     *("round", "offset", "shell center", "shell outer", "emboss", "tongue", "displace", "pipe"),
     *("union quadratic", "union chamfer", "union round", "union exponential", "union power"),
     *("thicken by", "extrude rounded", "extrude tapered", "revolve partly", "sweep", "rotate"),
-    *("mirror octant", "kaleidoscope", "slice", "intersection"),
+    *("symmetry octant", "kaleidoscope", "slice", "intersection"),
 )
 
 

@@ -86,7 +86,7 @@ SIGNED = {
     "disc, twisted": (Disc(1).twist(1.0), False),
     "disc, rounded": (Disc(1).round(0.1), True),
     "disc, offset": (Disc(1).offset(0.1), True),
-    "disc, as a shell": (Disc(1).shell(0.1), True),
+    "disc, as a shell": (Disc(1).shell(0.1, where="center"), True),
     "disc, as an inner shell": (Disc(1).shell(0.1, where="inner"), False),
     "disc or ball": (Disc(1) | Sphere(1), False),
     "disc and ball": (Disc(1) & Sphere(1), False),

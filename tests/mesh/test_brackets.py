@@ -73,7 +73,7 @@ CLOSED = [
         (-1, -0.5, -0.5),
         (1, 1.5, 0.5),
     ),
-    (Sphere(1.0).shell(0.2), BALL * (1.1**3 - 0.9**3), (0, 0, 0), None, None),
+    (Sphere(1.0).shell(0.2, where="center"), BALL * (1.1**3 - 0.9**3), (0, 0, 0), None, None),
 ]
 
 

@@ -124,7 +124,7 @@ def test_no_printable_shape_is_called_wrong():
         Box(30, 5, 30).translate(8.0, 0, 6.0) - union(*bores),
         Box(12, 2, 3).twist(0.1),
         Capsule(1.0, 5.0).translate(6.0, 0, 0).repeat_polar(7) | Cylinder(5.5, 1.0),
-        Box(8).shell(0.7) - Box(20).translate(0, 12.0, 0),
+        Box(8).shell(0.7, where="center") - Box(20).translate(0, 12.0, 0),
     ]
     for shape in shapes:
         made = shape.mesh(colors=False)

@@ -88,7 +88,7 @@ def test_leaves_have_the_values_of_their_trees():
 def test_widths_of_operators():
     assert widths(Sphere(3.0)) == pytest.approx([ROD * 3.0], rel=1e-4)
     assert widths(Sphere(3.0).scale(0.5)) == pytest.approx([ROD * 1.5], rel=1e-4)
-    assert widths(Sphere(3.0).shell(0.2)) == pytest.approx([0.19])
+    assert widths(Sphere(3.0).shell(0.2, where="center")) == pytest.approx([0.19])
     assert widths(Rectangle(9, 8).extrude(0.5)) == pytest.approx([0.475])
     assert widths(Box(9, 9, 9).apply("erode", 1.0)) == pytest.approx(
         [9 / math.sqrt(3.0) - 1.9], rel=1e-4

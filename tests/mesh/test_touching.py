@@ -63,8 +63,8 @@ PAIRS = {
     "two halves": (half(Sphere(1.0), -1.0) | half(Sphere(1.0), 1.0), Sphere(1.0)),
     "half a ring": ((RING & Box(4.0).translate(2.0, 0.0, 0.0)).symmetry("x"), RING),
     "quarter of a ring": ((RING & Box(4.0).translate(2.0, 0.0, 2.0)).symmetry("xz"), RING),
-    "mirror": (
-        BOX.translate(0.5, 0.1, 0.0).mirror((1.0, 0.0, 0.0)),
+    "symmetry across": (
+        BOX.translate(0.5, 0.1, 0.0).symmetry(across=(1.0, 0.0, 0.0)),
         Box(2.0, 1.3, 0.9).translate(0.0, 0.1, 0.0),
     ),
     "pour hole": (

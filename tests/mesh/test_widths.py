@@ -20,8 +20,8 @@ TURN = {"x": 0.3, "y": 0.5, "z": 0.7}
         (Sphere(1.0), 2.0, None),
         (Box(2.0, 1.0, 0.5), 0.5, None),
         (Box(2.0, 1.0, 0.5).rotate(**TURN), 0.5, None),
-        # A shell inwards: the wall is the shell, and the hollow is a gap.
-        (Box(2.0, 1.0, 0.5).shell(0.03) & Box(1.7, 4.0, 4.0), 0.03, 0.47),
+        # The wall is the shell, and the hollow is a gap.
+        (Box(2.0, 1.0, 0.5).shell(0.03, where="center") & Box(1.7, 4.0, 4.0), 0.03, 0.47),
         # A slot that is narrower than the cells of the mesh are apart at first.
         (Box(40.0, 10.0, 20.0) - Box(0.37, 20.0, 20.0).translate(x=3.0), 10.0, 0.37),
         (Torus(1.0, 0.2), 0.4, 1.6),

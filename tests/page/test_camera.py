@@ -21,7 +21,7 @@ from tests.page import player_pages
 from tests.page.looking import Looked, looked_at
 
 FAR = 100
-ROOM = Box((6, 3, 6)).shell(0.1).translate(y=1.5) | Box(1).translate(1, 0.5, -1)
+ROOM = Box((6, 3, 6)).shell(0.1, where="center").translate(y=1.5) | Box(1).translate(1, 0.5, -1)
 SCENES = {
     "ball": Scene(Sphere().translate(y=1) | Plane(), camera=Camera((2, 0.6, 3), (0, 1, 0))),
     "room": Scene(

@@ -157,7 +157,7 @@ def refracted():
                 Sphere(0.6).paint(glass(ior=1.5)),
                 Box(0.8).round(0.1).rotate(y=0.6).paint(glass(ior=1.33, color=(0.6, 0.9, 0.7))),
                 Sphere(0.6)
-                .shell(0.1)
+                .shell(0.1, where="center")
                 .paint(Material("#fcc", diffuse=0.05, specular=0.1, transmission=0.85, ior=1.4)),
             ),
             Plane(-0.7).paint(checker("#eee", "#246")),

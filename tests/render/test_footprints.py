@@ -151,7 +151,7 @@ def shown_width(footprint: float) -> float:
         (lambda s: s, 1.0),
         (lambda s: s.scale(2.0), 0.5),
         (lambda s: s.scale(0.25).rotate(y=0.7).translate(0.0, 0.0, 0.0), 4.0),
-        (lambda s: s.mirror((1.0, 0.0, 0.0)), 1.0),
+        (lambda s: s.symmetry(across=(1.0, 0.0, 0.0)), 1.0),
         (lambda s: s.rotate(x=0.3, y=0.2).rotate(y=-0.2).rotate(x=-0.3), 1.0),
     ],
 )

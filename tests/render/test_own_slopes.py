@@ -52,7 +52,7 @@ SHAPES = {
     "xor": Sphere(1.0) ^ TWISTED.rotate(y=0.5),
     "shared": TWISTED
     | TWISTED.translate(x=3.0)
-    | (BENT | Sphere(0.3)).scale(2.0).mirror((1, 0, 0)),
+    | (BENT | Sphere(0.3)).scale(2.0).symmetry(across=(1, 0, 0)),
     "smooth": TWISTED.union(Sphere(1.0), smooth=0.2) | Plane(y=-2.0),
 }
 

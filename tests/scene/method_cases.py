@@ -26,14 +26,16 @@ from tests.scene.method_fields import (
     arr,
     at_steps,
     block,
+    folded,
     folded_sphere,
     joined,
     kaleidoscope,
     mirror_signs,
-    mirrored,
     outwards,
     plane_places,
     pulled,
+    reflected,
+    reversed_axes,
     ring_places,
     slices,
     tapered,
@@ -71,11 +73,37 @@ SOLIDS = [
         lambda a, b, p, parts: a(p / [1.0, parts["y"], parts["z"]]),
         child=HIGH,
     ),
+    # Factors below 0 reflect.
+    Case(
+        "scale",
+        {"factors": (-1.3,)},
+        lambda a, b, p, factors: 1.3 * a(p / -1.3),
+        fixed=("factors",),
+    ),
+    Case(
+        "scale",
+        {"factors": (1.3, -0.7, 1.9)},
+        lambda a, b, p, factors: 0.7 * a(p / arr(factors)),
+        fixed=("factors",),
+        child=HIGH,
+    ),
     Case(
         "mirror",
-        {"normal": AXIS, "offset": 0.15},
-        lambda a, b, p, normal, offset: a(mirrored(p, normal, offset)),
-        unit=("normal",),
+        {"axes": "x", "offset": 0.0},
+        lambda a, b, p, axes, offset: a(reversed_axes(p, axes) + arr([2.0 * offset, 0.0, 0.0])),
+        changed={"axes": ["y", "z", "xy", "zyx"], "offset": [0.4]},
+    ),
+    Case(
+        "mirror",
+        {"offset": 0.15, "across": AXIS},
+        lambda a, b, p, offset, across: a(reflected(p, across, offset)),
+        unit=("across",),
+    ),
+    Case(
+        "symmetry",
+        {"offset": 0.15, "across": AXIS},
+        lambda a, b, p, offset, across: a(folded(p, across, offset)),
+        unit=("across",),
     ),
     Case(
         "symmetry",
@@ -492,7 +520,7 @@ SOLIDS = [
     # Operators without a method
     Case(
         "apply",
-        {"operator": "mirror diagonal"},
+        {"operator": "symmetry diagonal"},
         lambda a, b, p, operator: a(
             joined(np.maximum(p[:, 0], p[:, 2]), p[:, 1], np.minimum(p[:, 0], p[:, 2]))
         ),
@@ -500,7 +528,7 @@ SOLIDS = [
     ),
     Case(
         "apply",
-        {"operator": "mirror octant"},
+        {"operator": "symmetry octant"},
         lambda a, b, p, operator: a(
             joined(np.abs(p[:, ::2]).max(1), p[:, 1], np.abs(p[:, ::2]).min(1))
         ),

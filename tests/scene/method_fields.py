@@ -180,10 +180,18 @@ def outwards(p: Any, inner: float, outer: float, ease: str) -> Any:
     return eased((np.hypot(p[:, 0], p[:, 2]) - inner) / (outer - inner), ease)
 
 
-def mirrored(p: Any, normal: Any, offset: float) -> Any:
+def reflected(p: Any, normal: Any, offset: float) -> Any:
     n = arr(normal)
-    below = p @ n < offset
-    return np.where(below[:, None], p - 2.0 * (p @ n - offset)[:, None] * n, p)
+    return p - 2.0 * (p @ n - offset)[:, None] * n
+
+
+def folded(p: Any, normal: Any, offset: float) -> Any:
+    below = p @ arr(normal) < offset
+    return np.where(below[:, None], reflected(p, normal, offset), p)
+
+
+def reversed_axes(p: Any, axes: str) -> Any:
+    return p * [-1.0 if c in axes else 1.0 for c in "xyz"[: p.shape[1]]]
 
 
 def kaleidoscope(x: Any, y: Any, count: int) -> Any:

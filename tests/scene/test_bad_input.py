@@ -281,7 +281,7 @@ ERRORS = {
         lambda: grown(20),
         "this union is made of 1,048,576 shapes; "
         "more than 1,000,000 take too long to compile and to draw",
-        "repeat, array and mirror show many copies for the price of one",
+        "repeat, array and symmetry show many copies for the price of one",
     ),
     # Own functions
     "own function of no point": (

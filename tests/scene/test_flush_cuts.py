@@ -28,7 +28,7 @@ FLUSH = {
     "same radius": Cylinder(1.0, 4.0) - Cylinder(1.0, 1.0).translate(y=1.0),
     "array": PLATE - BORE.repeat(3.0, 0.0, 3.0, count=(4, 1, 3)),
     "second of two": PLATE - THROUGH - BORE.translate(x=5.0),
-    "shell": PLATE.shell(0.2) - Cylinder(0.7, 2.0).translate(y=1.1),
+    "shell": PLATE.shell(0.2, where="center") - Cylinder(0.7, 2.0).translate(y=1.1),
     "pour hole": Box(4.0) - Box(2.0) - Cylinder(0.3, 1.0).translate(y=1.5),
     "extruded": (Rectangle(4.0, 4.0) - Rectangle(1.0, 4.0)).extrude(2.0),
     "flat": Rectangle(4.0, 4.0) - Rectangle(1.0, 4.0),

@@ -26,7 +26,8 @@ from distal.scene.steering import STILL, Steering
 from distal.scene.viewing.guide import Guide, Moment
 
 BALL = Sphere().translate(y=1) | Plane()
-ROOM = Box((6, 3, 6)).shell(0.1).translate(y=1.5) | Box((1, 1, 1)).translate(1, 0.5, -1)
+WALLS = Box((6, 3, 6)).shell(0.1, where="center").translate(y=1.5)
+ROOM = WALLS | Box((1, 1, 1)).translate(1, 0.5, -1)
 FENCE = Box((0.01, 3.0, 0.01)).repeat((0.3, 0, 0), count=(21, 1, 1)).translate(y=1.5)
 TURNED = Box((1, 6, 1)).twist(0.3).translate(y=3)
 STAIRS = Box((2, 0.5, 1)) | Box((2, 1, 1)).translate(z=-1) | Box((2, 1.5, 1)).translate(z=-2)

@@ -144,7 +144,7 @@ def test_boxes_need_no_device():
         Box(1.0, 2.0, 3.0).rotate(y=0.3, x=1.0).scale(2.0).translate(1.0, 2.0, 3.0),
         Torus().union(Sphere(0.4), smooth=0.2).twist(0.5).round(0.1),
         (Box(1.0) - Sphere(0.6)).repeat(2.0, 2.0, 2.0, count=(3, 1, 2)),
-        Sphere().symmetry("xz").elongate(0.5, 0.0, 0.2).shell(0.1),
+        Sphere().symmetry("xz").elongate(0.5, 0.0, 0.2).shell(0.1, where="center"),
     )
     for shape in shapes:
         found, known = subject_box(shape.node, {}, 0.0), shape.bounds()

@@ -227,9 +227,9 @@ EXEMPT = {
 DEFAULTS = {
     "wrap_cylinder": {"count": None},
     "where": {"blend": 0.0},
-    "mirror": {"offset": 0.0},
+    **{k: {"axes": None, "offset": 0.0, "across": None} for k in ("mirror", "symmetry")},
     "split": {"offset": 0.0},
-    "shell": {"where": "center"},
+    "shell": {"where": "inner"},
     "orient": {"target": None},
     "repeat": {"count": None, "neighbours": 0, "mirrored": False},
     "repeat_polar": {"neighbours": 0},

@@ -28,7 +28,7 @@ def unit(n: int) -> np.ndarray:
 
 def step(shape):
     """Apply a random operator: the shape, and what it does to points outside and to values."""
-    kind, flat = RANDOM.integers(7), shape.flat
+    kind, flat = RANDOM.integers(9), shape.flat
     n = 2 if flat else 3
     if kind == 0:
         v = RANDOM.uniform(-0.1, 0.1, n)
@@ -36,13 +36,20 @@ def step(shape):
     if kind == 1:
         factor = float(RANDOM.uniform(0.97, 1.03))
         return shape.scale(factor), lambda p: p / factor, factor
+    if kind == 7:
+        normal, offset = unit(n), float(RANDOM.uniform(-0.1, 0.1))
+        image = shape.mirror(across=tuple(normal), offset=offset)
+        return image, lambda p: p - 2 * (p @ normal - offset)[:, None] * normal, 1.0
+    if kind == 8:
+        axis = int(RANDOM.integers(n))
+        return shape.mirror("xyz"[axis]), lambda p: p * (1.0 - 2.0 * np.eye(n)[axis]), 1.0
     if kind in (2, 3):
         normal, offset = unit(n), float(RANDOM.uniform(-0.3, 0.0))
 
         def back(p):
             return p - 2 * np.minimum(p @ normal - offset, 0.0)[:, None] * normal
 
-        return shape.mirror(tuple(normal), offset), back, 1.0
+        return shape.symmetry(across=tuple(normal), offset=offset), back, 1.0
     if kind == 4:
         names = "xy" if flat else "xyz"
         axis = int(RANDOM.integers(n))

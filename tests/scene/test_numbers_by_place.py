@@ -81,7 +81,7 @@ SHAPES = {
     "lifted": lambda: Circle(0.5 + 0.1 * np.sin(6.0 * place.x)).extrude(0.5),
     "extruded": lambda: Circle(0.5).extrude(1.0 + 0.2 * np.sin(place.x)),
     "rounded": lambda: Box(1.0).round(0.05 + 0.04 * np.sin(5.0 * place.y)),
-    "shell": lambda: Sphere(0.4).shell(0.05 + 0.03 * np.sin(8.0 * place.y)),
+    "shell": lambda: Sphere(0.4).shell(0.05 + 0.03 * np.sin(8.0 * place.y), where="center"),
     "turned": lambda: Box(1.0, 2.0, 1.0).rotate(y=place.y),
     "twisted": lambda: Box(1.0, 2.0, 1.0).twist(clamp(place.y, -1.0, 1.0)),
     "tapered": lambda: Box(1.0).scale(clamp(1.0 + 0.3 * place.y, 0.5, 2.0)),
@@ -131,7 +131,7 @@ def test_slope_and_box_hold(name):
     [
         (lambda: Sphere(WIDE), 1.5),
         (lambda: Circle(0.5 + 0.1 * np.sin(6.0 * place.x)), 1.6),
-        (lambda: Sphere(0.4).shell(0.05 + 0.03 * np.sin(8.0 * place.y)), 1.12),
+        (lambda: Sphere(0.4).shell(0.05 + 0.03 * np.sin(8.0 * place.y), where="center"), 1.12),
         (lambda: Cylinder(0.4 + 0.02 * np.sin(30.0 * place.y), 2.0), 1.6),
         # Half of a size is a distance; the three components change together.
         (lambda: Box(0.6 + 0.1 * np.sin(4.0 * place.y)), 1.0 + 0.2 * np.sqrt(3.0)),

@@ -60,7 +60,7 @@ CASES = {
         lambda: Slab(0.5).difference(Sphere(0.5), smooth=0.1),
     ),
     "blend": (0.7 * ball(P) + 0.3 * BAR, lambda: Sphere(0.5).morph(BAR_HERE, 0.3)),
-    "shell": (np.abs(ball(P)) - 0.05, lambda: Sphere(0.5).shell(0.1)),
+    "shell": (np.abs(ball(P)) - 0.05, lambda: Sphere(0.5).shell(0.1, where="center")),
     "dilate": (ball(P) - 0.1, lambda: Sphere(0.5).offset(0.1)),
     "orient": (
         np.hypot(P[:, 1], P[:, 2]) - 0.3,

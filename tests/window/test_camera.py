@@ -21,7 +21,7 @@ SCENES = """from distal import *
 floor = Plane()
 ball = Scene(Sphere().translate(y=1) | floor, camera=Camera((2, 0.6, 3), (0, 1, 0)))
 room = Scene(
-    Box((6, 3, 6)).shell(0.1).translate(y=1.5) | Box(1).translate(1, 0.5, -1),
+    Box((6, 3, 6)).shell(0.1, where="center").translate(y=1.5) | Box(1).translate(1, 0.5, -1),
     lights=PointLight((0, 2.5, 0), 4),
     camera=Camera((0, 1.6, 2.5), (0, 1.2, 0)),
 )

@@ -1,11 +1,12 @@
-"""Units of length: ``8 * inch`` and ``2 * cm`` in a scene whose unit is 1 mm; units of files.
+"""Units: ``45 * deg`` in radians; ``8 * inch`` in a scene whose unit is 1 mm; those of files.
 
-Input: nothing. Output: numbers. A scene has no unit of its own; parts for printing use millimetres,
-as the sizes of ``Bolt``, ``Nut`` and ``MetricThread`` do.
+Input: nothing. Output: numbers. Angles are radians everywhere. A scene has no unit of its own;
+parts for printing use millimeters, as the sizes of ``Bolt``, ``Nut`` and ``MetricThread`` do.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 # Meters in one unit, by the names that commands, files and methods know.
@@ -24,6 +25,9 @@ cm: Final = UNITS["cm"] / MILLIMETER
 meter: Final = UNITS["m"] / MILLIMETER
 inch: Final = UNITS["inch"] / MILLIMETER
 foot: Final = UNITS["ft"] / MILLIMETER
+
+# Radians in one degree.
+deg: Final = math.pi / 180.0
 
 
 def meters_of(unit: str, error: type[Exception] = ValueError) -> float:

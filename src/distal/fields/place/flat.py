@@ -1,4 +1,4 @@
-"""Placement of flat shapes: translation, rotation, scaling, shear and mirroring in the plane.
+"""Placement of flat shapes: translation, rotation, scaling, shear, mirror images, symmetry.
 
 Input: a point of the plane, and the numbers of the placement. Output: the point at which the shape
 is evaluated (the inverse placement of the given point), and the rectangle of the placed shape. The
@@ -7,11 +7,13 @@ counterparts for solids are ``solid`` and ``mirrors``.
 
 from __future__ import annotations
 
+from typing import Final
+
 from distal.fields.extents import at_least_one, hull_of, rectangle_distance, turned_flat
 from distal.fields.guarantees import EXACT, LOWER_BOUND, NOTHING, Bounds2, Growth, Limit, operator
 from distal.fields.ordering import larger_first
-from distal.fields.place.mirrors import count_requirement, folded
-from distal.fields.place.solid import scaled_value
+from distal.fields.place.mirrors import count_requirement, folded, reflected
+from distal.fields.place.solid import same_direction, scaled_value
 from distal.fields.widths import deformed_width, scaled_width, stretched_flat_width
 from distal.lang import abs, cos, dot, func, length, mat2, max, min, sin, sqrt, vec2
 
@@ -113,21 +115,59 @@ def sheared_flat_slope(slope: float, xy: float) -> float:
 
 
 @func
-def mirrored_flat(p: vec2, normal: vec2, offset: float) -> vec2:
-    """Mirror a point to the side of the line that ``normal`` points to."""
-    return p - normal * (2.0 * min(dot(p, normal) - offset, 0.0))
+def reflected_flat(p: vec2, x: bool, y: bool) -> vec2:
+    """Return the point before a reflection along the chosen axes."""
+    q = p
+    if x:
+        q.x = -q.x
+    if y:
+        q.y = -q.y
+    return q
 
 
 @func
-def mirrored_flat_bounds(bounds: Bounds2, normal: vec2, offset: float) -> Bounds2:
-    """Return the rectangle around the rectangle and its mirror image."""
-    image = mat2(
-        vec2(1.0, 0.0) - 2.0 * normal.x * normal,
-        vec2(0.0, 1.0) - 2.0 * normal.y * normal,
-    )
+def reflected_flat_bounds(bounds: Bounds2, x: bool, y: bool) -> Bounds2:
+    """Return the rectangle of the mirror image."""
+    low, high = bounds.low, bounds.high
+    if x:
+        low.x, high.x = -bounds.high.x, -bounds.low.x
+    if y:
+        low.y, high.y = -bounds.high.y, -bounds.low.y
+    return Bounds2(low, high)
+
+
+@func
+def reflected_flat_across(p: vec2, across: vec2, offset: float) -> vec2:
+    """Return the point before a reflection in the line with the normal ``across``."""
+    return p - across * (2.0 / dot(across, across) * (dot(p, across) - offset))
+
+
+@func
+def reflected_flat_direction(p: vec2, across: vec2) -> vec2:
+    """Return the direction before a reflection in a line."""
+    return p - across * (2.0 / dot(across, across) * dot(p, across))
+
+
+@func
+def reflected_flat_across_bounds(bounds: Bounds2, across: vec2, offset: float) -> Bounds2:
+    """Return the rectangle around the mirror image of the rectangle."""
+    twice = across * (2.0 / dot(across, across))
+    image = mat2(vec2(1.0, 0.0) - across.x * twice, vec2(0.0, 1.0) - across.y * twice)
     there = turned_flat(bounds, image)
-    shift = normal * (2.0 * offset)
-    return hull_of(bounds, Bounds2(there.low + shift, there.high + shift))
+    shift = twice * offset
+    return Bounds2(there.low + shift, there.high + shift)
+
+
+@func
+def symmetric_flat_across(p: vec2, across: vec2, offset: float) -> vec2:
+    """Mirror a point to the side of the line that its normal ``across`` points to."""
+    return p - across * (2.0 * min(dot(p, across) - offset, 0.0))
+
+
+@func
+def symmetric_flat_across_bounds(bounds: Bounds2, across: vec2, offset: float) -> Bounds2:
+    """Return the rectangle around the rectangle and its mirror image."""
+    return hull_of(bounds, reflected_flat_across_bounds(bounds, across, offset))
 
 
 @func
@@ -191,7 +231,11 @@ def kaleidoscope_flat_bounds(bounds: Bounds2) -> Bounds2:
     return Bounds2(vec2(-side), vec2(side))
 
 
-def symmetry_flat_requirement(x: bool, y: bool) -> str | None:
+# Of the rigid moves and scales (``Operator.turn``), those that turn no axis away from its line.
+UPRIGHT_TURNS: Final = (same_direction, same_direction_flat, reflected, reflected_flat)
+
+
+def axes_flat_requirement(x: bool, y: bool) -> str | None:
     """Return why no axis is chosen, or None."""
     return None if x or y else "name at least one axis"
 
@@ -247,12 +291,24 @@ SHEAR_FLAT = operator(
     growth=Growth.HELD,
     width=deformed_width,
 )
-MIRROR_FLAT = operator(
+REFLECT_FLAT = operator(
     "flat mirror",
-    point=mirrored_flat,
-    keeps=LOWER_BOUND,
-    bounds=mirrored_flat_bounds,
-    limits={"normal": Limit.UNIT},
+    point=reflected_flat,
+    keeps=EXACT,
+    turn=reflected_flat,
+    linear=True,
+    bounds=reflected_flat_bounds,
+    requires=axes_flat_requirement,
+    growth=Growth.KEPT,
+)
+REFLECT_ACROSS_FLAT = operator(
+    "flat mirror across",
+    point=reflected_flat_across,
+    keeps=EXACT,
+    turn=reflected_flat_direction,
+    linear=True,
+    bounds=reflected_flat_across_bounds,
+    limits={"across": Limit.UNIT},
     growth=Growth.TURNED,
 )
 SYMMETRY_FLAT = operator(
@@ -260,18 +316,26 @@ SYMMETRY_FLAT = operator(
     point=symmetric_flat,
     keeps=LOWER_BOUND,
     bounds=symmetric_flat_bounds,
-    requires=symmetry_flat_requirement,
+    requires=axes_flat_requirement,
     growth=Growth.KEPT,
 )
-MIRROR_DIAGONAL_FLAT = operator(
-    "flat mirror diagonal",
+SYMMETRY_ACROSS_FLAT = operator(
+    "flat symmetry across",
+    point=symmetric_flat_across,
+    keeps=LOWER_BOUND,
+    bounds=symmetric_flat_across_bounds,
+    limits={"across": Limit.UNIT},
+    growth=Growth.TURNED,
+)
+SYMMETRY_DIAGONAL_FLAT = operator(
+    "flat symmetry diagonal",
     point=diagonal_flat,
     keeps=LOWER_BOUND,
     bounds=diagonal_flat_bounds,
     growth=Growth.KEPT,
 )
-MIRROR_OCTANT_FLAT = operator(
-    "flat mirror octant",
+SYMMETRY_OCTANT_FLAT = operator(
+    "flat symmetry octant",
     point=octant_flat,
     keeps=LOWER_BOUND,
     bounds=octant_flat_bounds,

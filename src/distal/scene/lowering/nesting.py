@@ -2,9 +2,9 @@
 
 Input: a tree, such as a turtle's, that moves and turns all that it has drawn so far with each step.
 Output: a tree of the same shape, whose depth does not grow with the number of steps. Translations,
-rotations, scales and mirrors of constant numbers are folded to one row of mirrors, one translation,
-one rotation and one scale; those of a union become those of its members. Values agree within
-rounding, so trees that are not deep remain as the author wrote them.
+rotations, scales, mirror images and symmetries of constant numbers are folded to one row of planes
+of symmetry, one translation, one rotation and one scale; those of a union become those of its
+members. Values agree within rounding, so trees that are not deep remain as the author wrote them.
 """
 
 from __future__ import annotations
@@ -48,15 +48,15 @@ _AXES: Final[tuple[Vector, ...]] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0,
 
 @dataclass(frozen=True, slots=True)
 class FoldedPlacement:
-    """A point is mirrored at each plane in turn, then moved back, turned back and scaled back.
+    """A point is folded at each plane in turn, then moved back, turned back and scaled back.
 
     Attributes:
-        right: The image of the x axis under the rotation.
+        right: The image of the x axis under the rotation, which may also reflect.
         up: That of the y axis.
         back: That of the z axis.
         offset: The translation.
         factors: The scale along each axis, before the rotation.
-        planes: Normal and offset of each mirror, the outermost first.
+        planes: Normal and offset of each plane of symmetry, the outermost first.
     """
 
     right: Vector = _AXES[0]
@@ -97,8 +97,18 @@ class FoldedPlacement:
             return None
         return replace(self, factors=made)
 
-    def mirrored(self, normal: Vector, offset: float) -> FoldedPlacement | None:
-        """Return the placement of what is first mirrored; None if it is stretched after that."""
+    def reflected(self, normal: Vector, offset: float) -> FoldedPlacement | None:
+        """Return the placement of what is first reflected; None if it is stretched after that."""
+        share = 2.0 / sum(c * c for c in normal)
+        columns = [
+            tuple(a - share * normal[i] * n for a, n in zip(axis, normal, strict=True))
+            for i, axis in enumerate(_AXES)
+        ]
+        away = tuple(share * offset * n for n in normal)
+        return self.moved(away).rotated(columns)
+
+    def symmetric(self, normal: Vector, offset: float) -> FoldedPlacement | None:
+        """Return the placement of what is first folded; None if it is stretched after that."""
         if not self.is_uniform:
             return None
         way = self.turned(normal)
@@ -122,6 +132,9 @@ class FoldedPlacement:
             node = under(in_plane.SCALE_FLAT if flat else solid.SCALE, {"factor": factor})
         if (self.right, self.up, self.back) != _AXES:
             if flat:
+                if self.right[0] * self.up[1] < self.right[1] * self.up[0]:
+                    axes = {"x": False, "y": True}
+                    node = Node(in_plane.REFLECT_FLAT, flat, (node,), constants=axes, place=place)
                 angle = Number(FLOAT, math.atan2(self.right[1], self.right[0]))
                 node = under(in_plane.ROTATE_FLAT, {"angle": angle})
             else:
@@ -132,7 +145,7 @@ class FoldedPlacement:
             offset = Number(vector, self.offset[:size])
             node = under(in_plane.TRANSLATE_FLAT if flat else solid.TRANSLATE, {"offset": offset})
         if self.planes:
-            rule = mirrors.MIRRORS_FLAT if flat else mirrors.MIRRORS
+            rule = mirrors.SYMMETRY_PLANES_FLAT if flat else mirrors.SYMMETRY_PLANES
             planes = Buffer(_unlinked(self.planes))
             node = Node(rule, flat, (node,), constants={"planes": planes}, place=place)
         return node
@@ -166,8 +179,8 @@ def shallow(node: Node) -> Node:
         refuse(
             f"this {node.name} is the last of {deep} operators, each on the result of the one "
             f"before; at most {MOST_NESTED} are possible",
-            "unite shapes that are placed each by itself; moves, rotations, scales and mirrors by "
-            "constant numbers, and unions, are not counted",
+            "unite shapes that are placed each by itself; moves, rotations, scales, mirror images "
+            "and symmetries by constant numbers, and unions, are not counted",
             node.place,
         )
     return node
@@ -296,23 +309,39 @@ def _stretch(placed: FoldedPlacement, node: Node) -> FoldedPlacement | None:
     return placed.scaled((*factors[:2], factors[0]) if node.flat else factors)
 
 
-def _mirror(placed: FoldedPlacement, node: Node) -> FoldedPlacement | None:
-    return placed.mirrored(_vector(node, "normal"), _number(node, "offset"))
+def _reflect_across(placed: FoldedPlacement, node: Node) -> FoldedPlacement | None:
+    return placed.reflected(_vector(node, "across"), _number(node, "offset"))
 
 
-def _mirror_rows(placed: FoldedPlacement, node: Node) -> FoldedPlacement | None:
+def _reflect(placed: FoldedPlacement, node: Node) -> FoldedPlacement | None:
+    made: FoldedPlacement | None = placed
+    for axis in _chosen(node):
+        made = made and made.reflected(axis, 0.0)
+    return made
+
+
+def _symmetry_across(placed: FoldedPlacement, node: Node) -> FoldedPlacement | None:
+    return placed.symmetric(_vector(node, "across"), _number(node, "offset"))
+
+
+def _symmetry_planes(placed: FoldedPlacement, node: Node) -> FoldedPlacement | None:
     made: FoldedPlacement | None = placed
     for x, y, z, offset in node.constants["planes"].data:
-        made = made and made.mirrored((x, y, z), offset)
+        made = made and made.symmetric((x, y, z), offset)
     return made
 
 
 def _symmetry(placed: FoldedPlacement, node: Node) -> FoldedPlacement | None:
     made: FoldedPlacement | None = placed
-    for name, axis in zip("xyz", _AXES, strict=True):
-        if node.constants.get(name, False):
-            made = made and made.mirrored(axis, 0.0)
+    for axis in _chosen(node):
+        made = made and made.symmetric(axis, 0.0)
     return made
+
+
+def _chosen(node: Node) -> list[Vector]:
+    """Return the axes that an operator names by a choice for each."""
+    named = zip("xyz", _AXES, strict=True)
+    return [axis for name, axis in named if node.constants.get(name, False)]
 
 
 def _move(placed: FoldedPlacement, node: Node) -> FoldedPlacement:
@@ -330,14 +359,18 @@ _STEPS: Final[Mapping[Any, Callable[[FoldedPlacement, Node], FoldedPlacement | N
     solid.ROTATE_MATRIX: _turn_matrix,
     solid.SCALE: _scale,
     solid.STRETCH: _stretch,
-    mirrors.MIRROR: _mirror,
-    mirrors.MIRRORS: _mirror_rows,
+    mirrors.REFLECT: _reflect,
+    mirrors.REFLECT_ACROSS: _reflect_across,
     mirrors.SYMMETRY: _symmetry,
+    mirrors.SYMMETRY_ACROSS: _symmetry_across,
+    mirrors.SYMMETRY_PLANES: _symmetry_planes,
     in_plane.TRANSLATE_FLAT: _move,
     in_plane.ROTATE_FLAT: _turn(_AXES[2]),
     in_plane.SCALE_FLAT: _scale,
     in_plane.STRETCH_FLAT: _stretch,
-    in_plane.MIRROR_FLAT: _mirror,
-    mirrors.MIRRORS_FLAT: _mirror_rows,
+    in_plane.REFLECT_FLAT: _reflect,
+    in_plane.REFLECT_ACROSS_FLAT: _reflect_across,
     in_plane.SYMMETRY_FLAT: _symmetry,
+    in_plane.SYMMETRY_ACROSS_FLAT: _symmetry_across,
+    mirrors.SYMMETRY_PLANES_FLAT: _symmetry_planes,
 }

@@ -14,8 +14,7 @@ from typing import Final
 from distal.fields.combine.joins import first_box
 from distal.fields.extents import hull_of, overlap
 from distal.fields.guarantees import Operator, Primitive
-from distal.fields.place.flat import same_direction_flat
-from distal.fields.place.solid import same_direction
+from distal.fields.place.flat import UPRIGHT_TURNS
 from distal.fields.turned_boxes import (
     carried_box,
     turned_hull,
@@ -38,7 +37,6 @@ _COMBINED: Final[dict[Func | None, Func]] = {
     hull_of: turned_hull,
     overlap: turned_overlap,
 }
-_UNTURNED: Final = (same_direction, same_direction_flat)
 _AXES: Final = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
@@ -52,7 +50,7 @@ def _is_turned(node: Node) -> bool:
     if isinstance(rule, Primitive) or node.has_rows:
         return False
     if rule.turn is not None:
-        return rule.turn not in _UNTURNED or is_turned(node.children[0])
+        return rule.turn not in UPRIGHT_TURNS or is_turned(node.children[0])
     if rule.combine is None or rule.point is not None or rule.finish is not None:
         return False
     if rule.bounds is first_box:

@@ -95,7 +95,7 @@ class BaseShape(ShapeValue, Composed, Presentable):
             refuse(
                 f"this {node.name} is made of {node.parts:,} shapes; more than {MOST_PARTS:,} "
                 "take too long to compile and to draw",
-                "repeat, array and mirror show many copies for the price of one",
+                "repeat, array and symmetry show many copies for the price of one",
                 node.place,
             )
         self.__dict__["node"] = with_bounds_of_places(shallow(node))
@@ -411,7 +411,7 @@ class BaseShape(ShapeValue, Composed, Presentable):
         blend: str = "quadratic",
         **k: Unpack[BlendNumbers],
     ) -> S:
-        """Subtract other shapes; also written ``a - b``.
+        """Subtract other shapes, one after the other; also written ``a - b``.
 
         Arguments as for ``union``.
         """
@@ -419,7 +419,13 @@ class BaseShape(ShapeValue, Composed, Presentable):
         return joined
 
     def xor(self: S, *others: BaseShape | Iterable[BaseShape]) -> S:
-        """Keep what is in exactly one of two shapes; also written ``a ^ b``."""
+        """Keep what is in exactly one of two shapes; also written ``a ^ b``.
+
+        Of more shapes, it is what is in an odd number of them.
+
+        Args:
+            others: Shapes, or one list of shapes.
+        """
         joined: S = self._combined(joins.XOR, others, 0.0, "quadratic")
         return joined
 

@@ -1,7 +1,7 @@
-"""Unions and intersections of lists of shapes.
+"""The set operations as functions of several shapes: union, intersection, difference, xor.
 
-Input: shapes, in a list, a generator or one by one. Output: one shape. The methods ``union`` and
-``intersection`` of a shape do the work.
+Input: shapes, in a list, a generator or one by one. Output: one shape. The methods of these names
+of a shape do the work.
 """
 
 from __future__ import annotations
@@ -59,6 +59,47 @@ def intersection(
     """
     first, rest = _first_of("intersection", shapes)
     joined: S = first.intersection(*rest, smooth=smooth, blend=blend, **k) if rest else first
+    return joined
+
+
+def difference(
+    *shapes: S | Iterable[S],
+    smooth: Number = 0.0,
+    blend: str = "quadratic",
+    **k: Unpack[BlendNumbers],
+) -> S:
+    """Return the first shape without the others: ``difference(a, b, c)`` is ``a - b - c``.
+
+    Args:
+        shapes: Shapes, or one list or generator of shapes; from the first, the others are
+            subtracted.
+        smooth: How far a blend moves the surface where two surfaces meet, as for ``union``.
+        blend: Form of the blend, one of those of the method ``union``.
+        k: ``count``: number of columns or stairs.
+
+    Raises:
+        SceneTypeError: There is no shape, or something else is among the shapes.
+        SceneValueError: Flat shapes and solids are mixed, or a number is beyond its limit.
+    """
+    first, rest = _first_of("difference", shapes)
+    joined: S = first.difference(*rest, smooth=smooth, blend=blend, **k) if rest else first
+    return joined
+
+
+def xor(*shapes: S | Iterable[S]) -> S:
+    """Return what is in exactly one of two shapes: ``xor(a, b)`` is ``a ^ b``.
+
+    Of more shapes, it is what is in an odd number of them.
+
+    Args:
+        shapes: Shapes, or one list or generator of shapes.
+
+    Raises:
+        SceneTypeError: There is no shape, or something else is among the shapes.
+        SceneValueError: Flat shapes and solids are mixed.
+    """
+    first, rest = _first_of("xor", shapes)
+    joined: S = first.xor(*rest) if rest else first
     return joined
 
 

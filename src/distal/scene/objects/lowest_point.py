@@ -42,7 +42,14 @@ THIN: Final = 0.01
 
 # Operators below which tight boxes of exact shapes stay tight.
 _TIGHT: Final = frozenset(
-    (joins.UNION, placing.TRANSLATE, placing.SCALE, mirrors.SYMMETRY, extrude.EXTRUDE)
+    (
+        joins.UNION,
+        placing.TRANSLATE,
+        placing.SCALE,
+        mirrors.REFLECT,
+        mirrors.SYMMETRY,
+        extrude.EXTRUDE,
+    )
 )
 
 Corner = tuple[float, ...]

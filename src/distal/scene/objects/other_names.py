@@ -9,9 +9,12 @@ from collections.abc import Mapping
 from typing import Final
 
 _ROTATE: Final = "rotate(x=…, y=…, z=…), in radians"
+_MIRROR: Final = "mirror('x'), or mirror(across=normal)"
+_SYMMETRY: Final = "symmetry('x'), or symmetry(across=normal): one half, copied over"
 _PAINT: Final = "paint(material or color)"
 _UNION: Final = "a | b, or a.union(b, smooth=0.1)"
 _DIFFERENCE: Final = "a - b, or a.difference(b)"
+_INTERSECTION: Final = "a & b, or a.intersection(b)"
 _PICTURE: Final = "render((640, 480)).save(file), and mesh().save(file)"
 
 OTHER_NAMES: Final[Mapping[str, str]] = {
@@ -24,12 +27,14 @@ OTHER_NAMES: Final[Mapping[str, str]] = {
     **dict.fromkeys(("color", "colour", "set_material", "with_material"), _PAINT),
     **dict.fromkeys(("add", "join", "fuse", "merge", "smooth_union", "blend"), _UNION),
     **dict.fromkeys(("subtract", "cut", "minus", "smooth_difference"), _DIFFERENCE),
-    **dict.fromkeys(("intersect", "common", "smooth_intersection"), "a & b, or a.intersection(b)"),
+    **dict.fromkeys(("intersect", "common", "smooth_intersection"), _INTERSECTION),
     **dict.fromkeys(("hollow", "onion"), "shell(thickness)"),
     **dict.fromkeys(("rounded", "filleted"), "round(radius), or (a - b).fillet(radius)"),
     **dict.fromkeys(("bevel", "chamfered"), "(a - b).chamfer(size)"),
     **dict.fromkeys(("stack", "place_on", "on_top"), 'on(other, "top")'),
-    **dict.fromkeys(("reflect", "mirror_x", "mirrorX"), "mirror((1, 0, 0)) or symmetry('x')"),
+    **dict.fromkeys(("reflect", "reflected", "mirrored", "flip"), _MIRROR),
+    **dict.fromkeys(("mirror_x", "mirror_y", "mirror_z", "mirrorX", "flip_x"), _MIRROR),
+    **dict.fromkeys(("symmetric", "symmetry_x", "fold", "mirror_copy"), _SYMMETRY),
     **dict.fromkeys(("circular_array", "polar_array"), "repeat_polar(count)"),
     **dict.fromkeys(("sdf", "distance", "evaluate", "eval"), "shape(points)"),
     **dict.fromkeys(("normal", "normals", "grad"), "gradient(points)"),

@@ -25,6 +25,7 @@ from distal.scene.objects.anchors import measured_extents, offset_aligned, offse
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.in_plane import IN_PLANE
 from distal.scene.objects.masked import masked
+from distal.scene.objects.reflecting import PlaneArguments, without_signs
 from distal.scene.objects.shaped_edges import shaped_edge
 from distal.scene.tree.conversion import Asked, is_scalar, plain_choice
 from distal.scene.tree.errors import refuse
@@ -118,28 +119,61 @@ class Placed(BaseShape):
     @overload
     def scale(self: S, *, x: Number = ..., y: Number = ..., z: Number = ...) -> S: ...
     def scale(self: S, *factors: Any, **parts: Any) -> S:
-        """Scale by one factor, or by one factor for each axis (which loses exactness)."""
+        """Scale by one factor, or by one factor for each axis (which loses exactness).
+
+        Plain factors below 0 also reflect: ``scale(-1, 1, 1)`` is ``mirror("x")``.
+        """
+        unsigned = without_signs(factors, parts, flat=self.flat)
+        if unsigned.reflected:
+            image = self.mirror(unsigned.reflected)
+            if unsigned.uniform is None:
+                return image._with(placing.STRETCH, unsigned.values)
+            is_image = unsigned.uniform == 1.0
+            return image if is_image else image._with(placing.SCALE, unsigned.uniform)
         if len(factors) == 1 and not parts and is_scalar(factors[0]):
             return self._with(placing.SCALE, *factors)
         return self._with(placing.STRETCH, *factors, **parts)
 
-    def mirror(self: S, normal: Vector, offset: Number = 0.0) -> S:
-        """Replace the half behind a plane by the mirror image of the half in front of it.
+    def mirror(
+        self: S, axes: str | None = None, offset: Number = 0.0, *, across: Vector | None = None
+    ) -> S:
+        """Reflect: ``mirror("x")`` swaps left and right; ``mirror(across=normal, offset=0.5)``.
 
-        On a flat shape, the plane is a line. The normal points to the half that is kept.
+        It is the mirror image alone; ``symmetry`` keeps one half and copies it over. Exact. On a
+        flat shape, planes are lines.
 
         Args:
-            normal: Normal of the plane, of length 1.
-            offset: Distance of the plane from the origin along the normal.
-        """
-        return self._with(mirrors.MIRROR, normal, offset)
+            axes: The axis that is reversed, "x", "y" or "z"; of several, each is.
+            offset: Distance of the plane from the origin, along the axis or the normal.
+            across: The normal of any other plane, of length 1.
 
-    def symmetry(self: S, axes: str) -> S:
-        """Mirror the positive side of each named axis to the negative side: ``symmetry("xz")``."""
-        known = "xy" if self.flat else "xyz"
-        if not isinstance(axes, str) or not axes or not set(axes) <= set(known):
-            refuse(f"symmetry takes letters of '{known}', not {axes!r}", None, author_place())
-        return self._with(mirrors.SYMMETRY, **{axis: axis in axes for axis in known})
+        Raises:
+            SceneValueError: The arguments name neither an axis nor a plane, or both.
+        """
+        plane = PlaneArguments("mirror", axes, offset, across, self.flat, author_place())
+        operator, numbers = plane.operator()
+        return self._with(operator, **numbers)
+
+    def symmetry(
+        self: S, axes: str | None = None, offset: Number = 0.0, *, across: Vector | None = None
+    ) -> S:
+        """Keep one half and copy its mirror image over: ``symmetry("xz")``.
+
+        What was in the other half is gone. Of the half that the axis, or the normal, points to, the
+        image is made; of several axes, that of one after the other. On a flat shape, planes are
+        lines.
+
+        Args:
+            axes: Letters of axes.
+            offset: Distance of the plane from the origin, along the one axis or the normal.
+            across: The normal of any other plane, of length 1, instead of axes.
+
+        Raises:
+            SceneValueError: The arguments name neither an axis nor a plane, or both.
+        """
+        plane = PlaneArguments("symmetry", axes, offset, across, self.flat, author_place())
+        operator, numbers = plane.operator()
+        return self._with(operator, **numbers)
 
     def kaleidoscope(self: S, count: Number) -> S:
         """Repeat a wedge ``count`` times about the y axis, mirroring every other copy."""
@@ -225,11 +259,22 @@ class Placed(BaseShape):
         """Move the surface outwards by a distance, or inwards by a negative one."""
         return self._with(offsets.OFFSET, distance)
 
-    def shell(self: S, thickness: Number, where: str = "center") -> S:
-        """Make the shape hollow; ``where`` places the wall: "inner", "center" or "outer"."""
+    def shell(self: S, thickness: Number, where: str = "inner") -> S:
+        """Make the shape hollow.
+
+        Args:
+            thickness: Thickness of the wall, in scene units.
+            where: Where the wall lies: "inner", so that the outside keeps its size; "outer", so
+                that the inside does; or "center", half on each side of the surface.
+
+        Raises:
+            SceneValueError: There is no such place.
+        """
         if where not in _SHELLS:
-            hint = f'where="{FORMER_WORDS[where]}"' if where in FORMER_WORDS else None
-            refuse(f"a shell lies inner, center or outer, not {where!r}", hint, author_place())
+            hint = did_you_mean(str(where), _SHELLS)
+            if where in FORMER_WORDS:
+                hint = f'where="{FORMER_WORDS[where]}"'
+            refuse(f"a shell lies inner, center or outer, not {where!r:.40}", hint, author_place())
         return self._with(_SHELLS[where], thickness)
 
     def where(

@@ -15,8 +15,7 @@ from distal.fields.combine import joins
 from distal.fields.combine.blends import COMBINATIONS, FLAT_UNIONS, PRISMS
 from distal.fields.guarantees import Limit, Operator, Primitive
 from distal.fields.lift import extrude
-from distal.fields.place.flat import same_direction_flat
-from distal.fields.place.solid import same_direction
+from distal.fields.place.flat import UPRIGHT_TURNS
 from distal.ir.types import FLOAT, VEC2, VEC3
 from distal.lang.places import CELL
 from distal.scene.objects.binding import bound
@@ -112,7 +111,7 @@ def _prism_axes(node: Node) -> frozenset[str]:
             return frozenset()
         if isinstance(rule, Primitive) or rule.along:
             return frozenset(rule.along)
-        if rule.turn not in (same_direction, same_direction_flat):
+        if rule.turn not in UPRIGHT_TURNS:
             return frozenset()
         node = node.children[0]
 

@@ -24,6 +24,6 @@ def warn_of_degrees(place: Span | None, *angles: Any) -> None:
             turns = abs(angle) / math.tau
             message = (
                 f"angles are radians, and {angle:g} of them are {turns:.3g} turns; "
-                f"for degrees write np.radians({angle:g})"
+                f"for degrees write {angle:g} * deg"
             )
             warn(message, place)
