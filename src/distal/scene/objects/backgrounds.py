@@ -38,7 +38,7 @@ from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import unwrapped
 from distal.scene.tree.errors import refuse_kind
-from distal.scene.tree.value import recorded
+from distal.scene.tree.value import Origin, recorded
 
 if TYPE_CHECKING:
     from distal.scene.objects import images as image_files
@@ -247,16 +247,22 @@ def as_background(
     if isinstance(value, Background):
         return value
     if isinstance(value, Surroundings):
-        return Background.of(value.background, value if value.light else None)
+        made = Background.of(value.background, value if value.light else None)
+        made._record(value._origin)
+        return made
     if isinstance(value, Func):
-        return Background.of(_own(value, {}, place))
+        made = Background.of(_own(value, {}, place))
+        made._record(Origin(Background, (value,), {}, Background))
+        return made
     if not isinstance(unwrapped(value), str | tuple | list | Symbolic):
         refuse_kind(
             f"a background is wanted, not {type(value).__name__} {value!r:.40}",
             'write "#rrggbb", Sky(), Environment(image) or a @func of the direction',
             place,
         )
-    return Background.of(_plain({"color": value}, place))
+    made = Background.of(_plain({"color": value}, place))
+    made._record(Origin(Background, (value,), {}, Background))
+    return made
 
 
 def _plain(given: Mapping[str, Any], place: Span | None) -> FunctionCall:

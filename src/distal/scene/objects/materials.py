@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import FunctionType
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final, cast
 
 from distal.diagnostics import Span
 from distal.fields.guarantees import Limit
@@ -169,7 +169,8 @@ class Material(CalledObject):
             emits=self.emits,
             priority=priority,
         )
-        made._record(self._origin)
+        if (origin := self._origin_or_none) is not None:
+            made._record(origin)
         return made
 
     @property
@@ -436,6 +437,10 @@ def glass(
         given["absorption"] = absorption
     call = _call("glass", library.glass, given, place)
     return Material.of(call, reflects=True, refracts=True, emits=False)
+
+
+# What is changed of these displaces the other.
+cast("Any", glass).alternatives = (("color", "absorption"),)
 
 
 def _absorption(color: Any, place: Span | None) -> Any:

@@ -97,7 +97,9 @@ class ShapeValue(Value):
         label = changes.pop("name", node.label)
         cut_material = changes.pop("cut_material", node.cut_material)
         made: Any = self._made_again(changes, place) if changes else self
-        if material is not made.node.material:
+        if material is None and made.node.material is not None:
+            made = made._again(made.node.with_material(None))
+        elif material is not made.node.material:
             made = made.paint(material)
         if cut_material is not made.node.cut_material:
             made = made.cut_material(cut_material)

@@ -8,18 +8,17 @@ from __future__ import annotations
 
 import functools
 import inspect
-import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self, TypeVar, cast
 
-from distal.fields.guarantees import ENDLESS
+from distal.fields.guarantees import ended
 from distal.frontend.problems import did_you_mean
 from distal.ir.nodes import Cast, Uniform
 from distal.lang.expressions import Expression
 from distal.lang.source_places import author_place
 from distal.scene.tree.conversion import Number
-from distal.scene.tree.errors import refuse_kind
+from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.former_names import renamed
 from distal.scene.tree.varying import VaryingNumber
 
@@ -70,6 +69,12 @@ class Origin:
                 known[name] = self.given.get(name, parameter.default)
         return MappingProxyType({**known, **self.given})
 
+    @property
+    def alternatives(self) -> tuple[tuple[str, ...], ...]:
+        """Groups of arguments of which at most one is given, as the factory declares them."""
+        found: tuple[tuple[str, ...], ...] = getattr(self.factory, "alternatives", ())
+        return found
+
 
 class Value:
     """An object that an author makes; it never changes."""
@@ -106,29 +111,32 @@ class CalledValue(Value):
 
     Attributes:
         noun: The word for such objects in messages.
-        alternatives: Groups of arguments of which at most one is given.
     """
 
     __slots__ = ()
 
     noun: ClassVar[str]
-    alternatives: ClassVar[tuple[tuple[str, ...], ...]] = ()
-    _origin: Origin
 
     @property
     def arguments(self) -> Mapping[str, Any]:
-        """The arguments by name, checked: colors are linear; a slider comes back as itself."""
-        alternatives = {name for group in self.alternatives for name in group}
-        checked = {
-            name: value
-            for values in self._checked()
-            for name, value in values.items()
-            if name not in alternatives
-        }
-        given = self._origin.arguments
+        """The arguments by name, checked: colors are linear; a slider comes back as itself.
+
+        Of arguments that exclude each other, that which was given.
+        """
+        checked = {n: value_of(v) for values in self._checked() for n, v in values.items()}
+        origin = self._origin_or_none
+        if origin is None:
+            return MappingProxyType(checked)
+        exclusive = {name for group in origin.alternatives for name in group}
+        given = origin.arguments.items()
         return MappingProxyType(
-            {n: value_of(checked[n]) if n in checked else v for n, v in given.items()}
+            {n: v if n in exclusive or n not in checked else checked[n] for n, v in given}
         )
+
+    @property
+    def _origin_or_none(self) -> Origin | None:
+        """The call that made the object; None for what a scene makes, such as its camera."""
+        return getattr(self, "_origin", None)
 
     def replace(self, **changes: Any) -> Self:
         """Return the object with other arguments: ``light.replace(intensity=2)``.
@@ -141,10 +149,14 @@ class CalledValue(Value):
             SceneTypeError: An argument is unknown or of another type.
             SceneValueError: A number is beyond its limit.
         """
-        groups = (set(group) for group in self.alternatives)
+        origin = self._origin_or_none
+        if origin is None:
+            message = f"this {self.noun} was made by the scene: it cannot be changed"
+            refuse(message, f"give the scene a {self.noun} of your own", author_place())
+        groups = (set(group) for group in origin.alternatives)
         displaced = {name for group in groups if group & set(changes) for name in group}
-        given = {n: v for n, v in self._origin.given.items() if n not in displaced}
-        made: Self = self._origin.factory(**{**given, **changes})
+        given = {n: v for n, v in origin.given.items() if n not in displaced}
+        made: Self = origin.factory(**{**given, **changes})
         return made
 
     if not TYPE_CHECKING:  # a checker reports an unknown name itself
@@ -270,10 +282,5 @@ def value_of(checked: Any) -> Any:
         alone = isinstance(node, Uniform) and len(value.parameters) == 1
         return value.parameters[0] if alone else value
     if isinstance(value, tuple):
-        return tuple([_ended(component) for component in value])
-    return _ended(value)
-
-
-def _ended(number: float) -> float:
-    """Return a number; infinity for what is stored for it."""
-    return math.inf if number >= ENDLESS else number
+        return tuple([ended(component) for component in value])
+    return ended(value)
