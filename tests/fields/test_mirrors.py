@@ -15,18 +15,23 @@ import pytest
 
 from distal import (
     Box,
+    Camera,
     Cylinder,
+    DistantLight,
     Ellipsoid,
     Helix,
     InfiniteCylinder,
     Rectangle,
+    Scene,
     Shape,
     Sphere,
     Thread,
     checker,
     deg,
+    metal,
+    pattern,
 )
-from distal.lang import slider
+from distal.lang import func, sin, slider, vec3
 from distal.scene.tree.errors import SceneValueError
 from tests.fields.trees import Tree
 
@@ -293,6 +298,33 @@ def test_a_painted_image_has_the_looks_of_the_reflected_place() -> None:
     shape = painted.mirror(across=tuple(NORMAL), offset=OFFSET).named("image")
     assert shape.node.label == "image"
     assert shape.node.children[0].material is painted.node.material
+
+
+@func
+def glow(p: vec3) -> vec3:
+    return vec3(0.5 + 0.5 * sin(9.0 * p.x), 0.5 + 0.5 * sin(7.0 * p.y + p.x), 0.3)
+
+
+@func
+def glow_of_image(p: vec3) -> vec3:
+    return glow(vec3(-p.x, p.y, p.z))
+
+
+@pytest.mark.parametrize("looks", ["a pattern", "metal"])
+def test_the_picture_of_an_image_is_that_of_a_shape_modelled_so(looks: str) -> None:
+    shape = Box(1.2, 0.8, 0.6).translate(0.2, 0.1, 0.3) | Sphere(0.5).translate(-0.6, 0.2, 0.0)
+    other = Box(1.2, 0.8, 0.6).translate(-0.2, 0.1, 0.3) | Sphere(0.5).translate(0.6, 0.2, 0.0)
+    made = {"a pattern": (pattern(glow), pattern(glow_of_image)), "metal": (metal(), metal())}
+    pictures = []
+    for image, material in zip((shape, other), made[looks], strict=True):
+        painted = image.paint(material)
+        seen = painted.mirror("x") if image is shape else painted
+        camera = Camera((-3.0, 2.0, 5.0), (0.0, 0.0, 0.0))
+        lights = [DistantLight(direction=(0.4, -1.0, -0.5))]
+        scene = Scene(seen, camera=camera, lights=lights, background=(0.2, 0.3, 0.4))
+        pictures.append(np.asarray(scene.render((60, 45), device="cpu")))
+    np.testing.assert_allclose(pictures[0], pictures[1], atol=5e-4)
+    assert np.abs(pictures[0] - pictures[0][:, ::-1]).max() > 0.1
 
 
 REFUSED: dict[str, tuple[Callable[[], Any], str]] = {

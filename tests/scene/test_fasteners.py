@@ -123,6 +123,7 @@ def test_holes_let_a_bolt_through_or_take_its_thread():
 
 def test_lengths_have_units():
     assert (distal.mm, distal.cm, distal.meter) == (1.0, 10.0, 1000.0)
+    assert 180 * distal.deg == pytest.approx(math.pi, abs=1e-15)
     assert (distal.inch, distal.foot) == (25.4, pytest.approx(12.0 * 25.4))
 
 

@@ -14,12 +14,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+import distal
 from distal import Shape, Shape2D
 from distal.fields.combine.blends import BLENDS
 from distal.fields.ease import EASES
 from distal.fields.library import OPERATORS
 from distal.lang import func, sin, vec3
 from distal.lang.runtime_access import executor
+from distal.scene.tree.errors import SceneTypeError
 from tests.scene import method_fields as cases
 from tests.scene.method_cases import SOLIDS
 from tests.scene.method_cases_flat import FLATS
@@ -323,6 +325,33 @@ def test_signs_of_operators_are_their_methods():
         assert made.node.rule is OPERATORS[name]
         assert made.node.children == (a.node, b.node), sign
     assert (~a).node.rule is OPERATORS["complement"]
+
+
+def test_functions_of_several_shapes_are_methods_and_signs():
+    a, b = shape_of(cases.MIXED, False), shape_of(cases.MIXED, False, second=True)
+    c = a.translate(0.5, -0.3, 0.2)
+    p = np.random.default_rng(1).uniform(-0.9, 0.9, (COUNT, 3))
+    at_a, at_b, at_c = (asked(shape, p) for shape in (a, b, c))
+    signs = {"union": a | b | c, "intersection": a & b & c, "difference": a - b - c}
+    signs["xor"] = a ^ b ^ c
+    for name, by_signs in signs.items():
+        function = getattr(distal, name)
+        expected = asked(by_signs, p)
+        for made in (function(a, b, c), function([a, b, c]), function(s for s in (a, b, c))):
+            np.testing.assert_array_equal(asked(made, p), expected, err_msg=name)
+        np.testing.assert_array_equal(asked(getattr(a, name)(b, c), p), expected, err_msg=name)
+        assert function(a) is a
+        with pytest.raises(SceneTypeError, match=f"{name} needs at least one shape"):
+            function([])
+        with pytest.raises(SceneTypeError, match=f"{name} joins shapes, not 3"):
+            function(3, a)
+    np.testing.assert_allclose(asked(signs["difference"], p), np.max([at_a, -at_b, -at_c], axis=0))
+    inside = (at_a < 0).astype(int) + (at_b < 0) + (at_c < 0)
+    np.testing.assert_array_equal(asked(signs["xor"], p) < 0, inside % 2 == 1)
+    for name in ("union", "intersection", "difference"):
+        smooth = getattr(distal, name)(a, b, c, smooth=0.3, blend="stairs", count=3)
+        by_method = getattr(a, name)(b, c, smooth=0.3, blend="stairs", count=3)
+        np.testing.assert_array_equal(asked(smooth, p), asked(by_method, p))
 
 
 @func

@@ -203,7 +203,7 @@ def test_lights_and_cameras_are_replaced():
     assert camera.fov_deg == 40.0 and camera.fov is None
     assert camera.replace(fov=0.5).fov == 0.5 and camera.replace(fov=0.5).fov_deg is None
     assert camera.replace(target=(0, 1, 0)).fov_deg == 40.0
-    assert dir(distal.metal("red")).count("roughness") == 1
+    assert "roughness" in dir(distal.metal("red")) and not hasattr(distal.matte("red"), "ior")
 
 
 def test_materials_keep_their_priority():
@@ -215,7 +215,7 @@ def test_materials_keep_their_priority():
 
 
 def test_unknown_names_are_refused_at_the_authors_line():
-    light = distal.PointLight()
+    light = distal.PointLight((1, 2, 3))
     with pytest.raises(AttributeError, match="a light has no 'intensty'"):
         _ = light.intensty
     for value, name in ((light, "intensty"), (Sphere(), "radus"), (distal.metal(), "rough")):

@@ -290,6 +290,6 @@ def _check_tips(first: Gear, second: Toothed, place: Span | None) -> None:
 def _refuse_tips(other: str, teeth: int, place: Span | None) -> None:
     refuse(
         f"the tips of the {other} would cut into the feet of the gear with {teeth} teeth",
-        "take more teeth there, or pressure_angle=math.radians(25) for both",
+        "take more teeth there, or pressure_angle=25 * deg for both",
         place,
     )

@@ -159,9 +159,8 @@ class Placed(BaseShape):
     ) -> S:
         """Keep one half and copy its mirror image over: ``symmetry("xz")``.
 
-        What was in the other half is gone. Of the half that the axis, or the normal, points to, the
-        image is made; of several axes, that of one after the other. On a flat shape, planes are
-        lines.
+        The half that the axis or the normal points to stays; what was in the other half is gone.
+        Several axes are folded one after the other. On a flat shape, planes are lines.
 
         Args:
             axes: Letters of axes.

@@ -169,7 +169,7 @@ class CalledValue(Value):
             raise AttributeError(f"a {self.noun} has no '{name}'", name=name, obj=self)
 
         def __dir__(self):
-            return [*super().__dir__(), *self.arguments]
+            return sorted({*super().__dir__(), *self.arguments})
 
     def _checked(self) -> Iterator[Mapping[str, Any]]:
         """Yield the checked values of the calls that the object holds, by name."""
@@ -200,7 +200,10 @@ def argument(name: str) -> property:
 
     def read(value: Any) -> Any:
         own = getattr(value, "__dict__", {})
-        return own[name] if name in own else value.arguments[name]
+        known = own if name in own else value.arguments
+        if name not in known:  # a material that is made by another function
+            raise AttributeError(name)
+        return known[name]
 
     return property(read, doc=f"The argument ``{name}``.")
 
