@@ -22,7 +22,7 @@ flat = Circle(1.0)
 endless = Plane()
 size = slider("size", 1.0, low=0.5, high=2.0)
 ball = Sphere(size)
-wire = Sphere(1.0) | Box(4.0, 0.001, 0.001).named("wire")
+wire = Sphere(1.0) | Box(4.0, 0.0001, 0.0001).named("wire")
 scene = Scene(part)
 table = Box(2, 0.2, 2).named("top").translate(y=1) | Box(0.3, 2, 0.3).named("leg")
 pair = part.named("body") | Sphere(0.3).translate(y=2.0).named("knob") | endless
@@ -39,9 +39,10 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
 def test_a_mesh_is_saved_and_described(run: Any) -> None:
     done = run("mesh", "parts.py:part", "-o", "part.stl", "--unit", "cm", "--check")
     assert done.exit_code == 0
-    first, second, third = done.stderr.splitlines()
+    first, second, counts, third = done.stderr.splitlines()
     assert first.startswith("part.stl: ") and first.endswith(" triangles, 2 x 1 x 1 cm, 2 cubic cm")
     assert "cm from the surface" in second
+    assert counts == "1 piece, 0 holes, 0 voids"
     assert third == "0 open edges, 0 pinched points, 0 intersections"
     data = Path("part.stl").read_bytes()[84:]
     rows = np.frombuffer(data, np.dtype([("numbers", "<f4", 12), ("rest", "<u2")]))["numbers"]
@@ -62,8 +63,8 @@ def test_named_parts_are_saved_apart(run: Any) -> None:
     assert done.exit_code == 0
     lines = done.stderr.splitlines()
     assert lines[0].startswith("p.3mf, body: ") and lines[0].endswith("2 x 1 x 1 mm, 2 cubic mm")
-    assert lines[2].startswith("p.3mf, knob: ")
-    assert lines[4] == "'Plane' (line 6) has no end and is left out"
+    assert lines[3].startswith("p.3mf, knob: ")
+    assert lines[6] == "'Plane' (line 6) has no end and is left out"
     done = run("mesh", "parts.py:pair", "-o", "p.glb", "--parts", "--tolerance", "0.02", "--json")
     found = json.loads(done.stdout)
     assert [part["name"] for part in found["parts"]] == ["body", "knob"]
