@@ -38,7 +38,7 @@ from distal.lang import (
 def test_numbers_children_and_place():
     assert re.fullmatch(r"<Sphere\(radius=2\), test_described\.py:\d+>", repr(Sphere(2.0)))
     named = Sphere(2.0).named("ball")
-    assert repr(named).startswith("<Shape Sphere(radius=2) 'ball', ")
+    assert repr(named).startswith("<Sphere(radius=2) 'ball', ")
     joined = (Sphere(1.0) | Box(1.0, 2.0, slider("w", 1.0, 0.0, 3.0))).translate(1, 2.5, 3)
     assert repr(joined).startswith(
         "<Shape translate(offset=(1, 2.5, 3)) of union of Sphere(radius=1), Box(size=w), "
