@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 from distal.frontend.problems import did_you_mean
 from distal.lang.source_places import author_place
 from distal.scene.tree.errors import refuse_kind
-from distal.scene.tree.value import Value, value_of
+from distal.scene.tree.value import AuthorObject, value_of
 
 if TYPE_CHECKING:
     from distal.diagnostics import Span
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from distal.scene.tree.conversion import Number
 
 
-class SceneValue(Value):
+class SceneValue(AuthorObject):
     """The part of a scene that shows what it was made from.
 
     ``shape``, ``lights``, ``camera`` and ``background`` are those that are drawn: the author's,
@@ -36,7 +36,7 @@ class SceneValue(Value):
     look: Look
     material: Material
     has_floor: bool
-    numbers: Mapping[str, Number | None]
+    numbers: Mapping[str, Number]
     _given: Mapping[str, Any]
 
     # The arguments that are numbers, which have no attribute of their own.
@@ -89,7 +89,9 @@ class SceneValue(Value):
 
 
 def _number(name: str) -> property:
-    return property(lambda scene: value_of(scene.numbers[name]), doc=f"The argument ``{name}``.")
+    return property(
+        lambda scene: value_of(scene.numbers.get(name)), doc=f"The argument ``{name}``."
+    )
 
 
 _NUMBERS: Final = {name: _number(name) for name in SceneValue.number_names}

@@ -17,7 +17,7 @@ from distal.lang.functions import Func
 from distal.lang.immutable import Immutable
 from distal.lang.source_places import author_place
 from distal.scene.tree.arguments import arguments
-from distal.scene.tree.value import Value, value_of
+from distal.scene.tree.value import AuthorObject, value_of
 
 # How the main light shines: as a lamp at some distance, or as the sun.
 Shining: TypeAlias = Literal["lamp", "sun"]
@@ -120,7 +120,7 @@ class LookRow:
     lined: bool = False
 
 
-class Look(Value, Immutable):
+class Look(AuthorObject, Immutable):
     """The light, background, camera, floor and tone map of a scene, where the author gives none.
 
     A look never changes after construction; ``studio(exposure=1.5)`` makes one with other numbers.

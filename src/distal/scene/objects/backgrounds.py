@@ -38,7 +38,7 @@ from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import unwrapped
 from distal.scene.tree.errors import refuse_kind
-from distal.scene.tree.value import Origin, recorded
+from distal.scene.tree.value import CallRecord, recorded
 
 if TYPE_CHECKING:
     from distal.scene.objects import images as image_files
@@ -248,11 +248,12 @@ def as_background(
         return value
     if isinstance(value, Surroundings):
         made = Background.of(value.background, value if value.light else None)
-        made._record(value._origin)
+        if (origin := value._origin_or_none) is not None:
+            made._record(origin)
         return made
     if isinstance(value, Func):
         made = Background.of(_own(value, {}, place))
-        made._record(Origin(Background, (value,), {}, Background))
+        made._record(CallRecord(Background, (value,), {}, Background))
         return made
     if not isinstance(unwrapped(value), str | tuple | list | Symbolic):
         refuse_kind(
@@ -261,7 +262,7 @@ def as_background(
             place,
         )
     made = Background.of(_plain({"color": value}, place))
-    made._record(Origin(Background, (value,), {}, Background))
+    made._record(CallRecord(Background, (value,), {}, Background))
     return made
 
 

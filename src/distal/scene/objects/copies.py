@@ -29,7 +29,7 @@ from distal.scene.tree.columns import choices, column, rows_of
 from distal.scene.tree.conversion import NO_VALUES, Asked, Number, is_scalar, number, unwrapped
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
-from distal.scene.tree.value import Origin, recorded, value_of
+from distal.scene.tree.value import CallRecord, recorded, value_of
 from distal.scene.tree.varying import varied_in
 
 if TYPE_CHECKING:
@@ -313,7 +313,7 @@ def _recolored(
         )
         if (origin := template._origin_or_none) is not None:
             given = {**origin.given, "color": value_of(color)}
-            made._record(Origin(origin.factory, (), given, Material))
+            made._record(CallRecord(origin.factory, (), given, Material))
         found.append(made)
     return found
 

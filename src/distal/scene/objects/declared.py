@@ -29,10 +29,10 @@ from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import unwrapped
 from distal.scene.tree.errors import refuse_kind
 from distal.scene.tree.former_names import renamed
-from distal.scene.tree.value import Origin, Value, argument
+from distal.scene.tree.value import AuthorObject, CallRecord, argument
 
 C = TypeVar("C")
-V = TypeVar("V", bound=Value)
+V = TypeVar("V", bound=AuthorObject)
 
 _BY_POSITION: Final = inspect.Parameter.POSITIONAL_OR_KEYWORD
 _BY_NAME: Final = inspect.Parameter.KEYWORD_ONLY
@@ -273,7 +273,7 @@ def declared_function(
         place = author_place()
         given = given_arguments(declaration, args, kwargs, declaration.name, place)
         value = make(declaration, given, place)
-        value._record(Origin(made, (), given, type(value)))
+        value._record(CallRecord(made, (), given, type(value)))
         return value
 
     made.__name__ = made.__qualname__ = declaration.name

@@ -31,7 +31,7 @@ from distal.scene.tree.calls import FunctionCall, Pattern
 from distal.scene.tree.conversion import Asked, number, unwrapped
 from distal.scene.tree.conversion import Number as CheckedNumber
 from distal.scene.tree.errors import refuse, refuse_kind
-from distal.scene.tree.value import Origin, recorded, value_of
+from distal.scene.tree.value import CallRecord, recorded, value_of
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Color, Number, Varying
@@ -200,7 +200,7 @@ class Material(CalledObject):
             emits=self.emits,
             priority=self.priority,
         )
-        made._record(Origin(_bumped, (), given, Material))
+        made._record(CallRecord(_bumped, (), given, Material))
         return made
 
     @property
@@ -306,7 +306,7 @@ def own_pattern(
         made = Pattern(what, function, call.values, place)
     if made is not None:
         numbers = {name: value_of(value) for name, value in call.values.items()}
-        made._record(Origin(pattern_of, (function,), numbers, type(made)))
+        made._record(CallRecord(pattern_of, (function,), numbers, type(made)))
         return made
     gives = "nothing that is known" if result is None else f"a {result}"
     refuse_kind(
@@ -347,7 +347,7 @@ def mixed(a: Material, b: Material, t: Any, what: str, place: Span | None) -> Ma
         refracts=a.refracts or b.refracts,
         emits=a.emits or b.emits,
     )
-    made._record(Origin(_mixed_again, (), {"a": a, "b": b, "t": t}, Material))
+    made._record(CallRecord(_mixed_again, (), {"a": a, "b": b, "t": t}, Material))
     return made
 
 
@@ -379,7 +379,7 @@ def as_material(value: Any, place: Span | None = None) -> Material:
             place,
         )
     made = _declared(MATERIALS.members["matte"], {"color": value}, place)
-    made._record(Origin(FUNCTIONS["matte"], (), {"color": value}, Material))
+    made._record(CallRecord(FUNCTIONS["matte"], (), {"color": value}, Material))
     return made
 
 

@@ -9,17 +9,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final, Self, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self, cast
 
 from distal.diagnostics import Span
 from distal.fields.guarantees import Operator, Primitive
 from distal.fields.library import OPERATORS
 from distal.fields.repeat.varied import IN_CELLS
+from distal.lang.functions import Func
 from distal.lang.source_places import author_place
 from distal.scene.tree.arguments import RESERVED, RESERVED_OF_SHAPES, slots_of
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node, Rule
-from distal.scene.tree.value import Origin, Value, state_of, value_of
+from distal.scene.tree.value import AuthorObject, CallRecord, state_of, value_of
 from distal.scene.tree.varying import holds
 
 if TYPE_CHECKING:
@@ -34,10 +35,10 @@ CLASSES_OF_RULES: Final[dict[int, type[BaseShape]]] = {}
 PLAIN: Final[dict[bool, type[BaseShape]]] = {}
 
 
-class ShapeValue(Value):
+class ShapeValue(AuthorObject):
     """The part of a shape that shows what it was made from."""
 
-    flat: bool
+    flat: ClassVar[bool]
     node: Node
 
     @property
@@ -148,7 +149,7 @@ class ShapeValue(Value):
     def _set_node(self, node: Node) -> None:
         raise NotImplementedError
 
-    def _record(self, origin: Origin) -> None:
+    def _record(self, origin: CallRecord) -> None:
         authored(self.node).derived(_ORIGIN, lambda: origin)
 
 
@@ -166,7 +167,8 @@ def shape_of(node: Node) -> BaseShape:
     own = authored(node)
     origin = _origin_of(own)
     if origin is not None:
-        return origin.kind._of_node(node, origin.state)
+        made: BaseShape = origin.kind._of_node(node, origin.state)
+        return made
     return CLASSES_OF_RULES.get(id(own.rule), PLAIN[node.flat])._of_node(node, {})
 
 
@@ -174,6 +176,7 @@ def shape_of(node: Node) -> BaseShape:
 def names_of(rule: Rule) -> tuple[str, ...]:
     """Return the names of a rule's arguments, in the declared order."""
     rule = OPERATORS.get(rule.name, rule) if isinstance(rule, Operator) else rule
+    functions: tuple[Func, ...]
     if isinstance(rule, Primitive):
         functions, hidden = (rule.distance,), {*RESERVED_OF_SHAPES, *rule.measured}
     else:
@@ -207,6 +210,6 @@ def _checked_children(
     return listed
 
 
-def _origin_of(node: Node) -> Origin | None:
-    found: Origin | None = node.known(_ORIGIN)
+def _origin_of(node: Node) -> CallRecord | None:
+    found: CallRecord | None = node.known(_ORIGIN)
     return found

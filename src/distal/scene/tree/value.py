@@ -25,7 +25,7 @@ from distal.scene.tree.varying import VaryingNumber
 Made = TypeVar("Made")
 
 
-class Origin:
+class CallRecord:
     """The call that made an object; its arguments are bound when they are read.
 
     Attributes:
@@ -76,7 +76,7 @@ class Origin:
         return found
 
 
-class Value:
+class AuthorObject:
     """An object that an author makes; it never changes."""
 
     __slots__ = ()
@@ -101,12 +101,12 @@ class Value:
     def __replace__(self, /, **changes: Any) -> Self:
         return self.replace(**changes)
 
-    def _record(self, origin: Origin) -> None:
+    def _record(self, origin: CallRecord) -> None:
         """Keep the call that made the object."""
         raise NotImplementedError
 
 
-class CalledValue(Value):
+class CalledValue(AuthorObject):
     """A value that holds calls of scene functions: a light, a camera, a material, a pattern.
 
     Attributes:
@@ -134,7 +134,7 @@ class CalledValue(Value):
         )
 
     @property
-    def _origin_or_none(self) -> Origin | None:
+    def _origin_or_none(self) -> CallRecord | None:
         """The call that made the object; None for what a scene makes, such as its camera."""
         return getattr(self, "_origin", None)
 
@@ -175,7 +175,7 @@ class CalledValue(Value):
         """Yield the checked values of the calls that the object holds, by name."""
         raise NotImplementedError
 
-    def _record(self, origin: Origin) -> None:
+    def _record(self, origin: CallRecord) -> None:
         object.__setattr__(self, "_origin", origin)
 
 
@@ -222,7 +222,7 @@ def _recorded_class(made: Any) -> Any:
         kind = type(self)
         # A class with an own constructor calls this one with other arguments.
         factory = kind if kind.__init__ is initialise_recorded else made
-        self._record(Origin(factory, args, kwargs, factory, state_of(self)))
+        self._record(CallRecord(factory, args, kwargs, factory, state_of(self)))
 
     made.__init__ = initialise_recorded
     for parameter in parameters:
@@ -250,7 +250,7 @@ def _recorded_function(function: Callable[..., Any], *, of_class: bool) -> Calla
         given = args[of_class:]
         if not any(value is one for one in _each_of((*given, *kwargs.values()))):
             factory = getattr(args[0], function.__name__) if of_class else call
-            value._record(Origin(factory, given, kwargs, type(value)))
+            value._record(CallRecord(factory, given, kwargs, type(value)))
         return value
 
     return call
