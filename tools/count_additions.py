@@ -49,7 +49,7 @@ ADDITIONS: Final = (
     # A rule for proofs of slopes is optional: without one, nothing is proved.
     Addition("an intrinsic", "sinh", ("sinh",), users=("tape/derivative_bounds.py",)),
     Addition("a built-in in scene code", "outer", ("outer_product",)),
-    Addition("a shape", "CappedTorus", ("CappedTorus", "capped_torus")),
+    Addition("a shape", "CutHollowSphere", ("CutHollowSphere", "cut_hollow_sphere")),
     Addition("an operator", "twist", ("twist",)),
     Addition("a light", "SpotLight", ("SpotLight", "spot_light"), users=("looks/dressing.py",)),
     Addition("a camera", "PanoramaCamera", ("PanoramaCamera", "panorama")),

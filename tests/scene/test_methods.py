@@ -51,7 +51,7 @@ NO_OPERATOR = {
     "mesh": "mesh/test_mesh",
     "measure": "mesh/test_mesh",
     "parameters": "asks",
-    "text": "shows",
+    "emitted": "shows",
     "show": "shows",
     "export": "shows",
     "video": "shows",
