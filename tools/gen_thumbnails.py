@@ -160,7 +160,7 @@ def _shape_line(name: str, given: Mapping[str, ast.expr], inlined: _Inlined) -> 
         own = {k.value: v for k, v in pairs if isinstance(k, ast.Constant)}
         # What is given comes first in the shape's own order: all data are first parameters.
         numbers = {str(k): ast.unparse(inlined.expression(v)) for k, v in own.items()}
-    only = len(slots) == 1
+    only = len(slots) == 1 and not slots[0].by_name
     parts = [text if only else f"{key}={text}" for key, text in numbers.items()]
     line = f"{name}({', '.join(parts)})"
     return line if row.signed or _is_flat(name) else f"{line}.round(0.03)"

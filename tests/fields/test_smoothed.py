@@ -48,7 +48,7 @@ def test_any_exponent_gives_the_root_of_the_sum_of_powers(name):
     points[:3] = np.eye(3)
     solid = getattr(distal, name)
     for exponent in (2.0, 24.0, 96.0, 300.0, 2000.0):
-        shape = solid(radius=0.5, exponent=exponent)
+        shape = solid(inradius=0.5, exponent=exponent)
         size = np.linalg.norm(points, axis=1) + 0.5
         off = np.abs(shape(points) + 0.5 - expected(AXES[name], points, exponent)) / size
         assert off.max() < 1e-13

@@ -179,7 +179,7 @@ TEXTS = [
     (("",), {}, "a text needs a letter"),
     ((" \n",), {}, "a text needs a letter"),
     (("a",), {"size": 0.0}, "size must be above 0, not 0.0"),
-    (("a",), {"align": "middle"}, "align is 'left', 'center' or 'right', not 'middle'"),
+    (("a",), {"justify": "middle"}, "justify is 'left', 'center' or 'right', not 'middle'"),
     (("a",), {"font": "no such font"}, "there is no font 'no such font' on this machine"),
     (("a",), {"font": "missing.ttf"}, "there is no font file 'missing.ttf'"),
     (("\U000f0000",), {}, "no font that is known has '\\U000f0000'"),
