@@ -53,8 +53,8 @@ class PlaneArguments:
         of_axes, of_plane = _OPERATORS[self.method]
         if self.axes is None:
             if self.across is None:
-                normal = (1, 0) if self.flat else (1, 0, 0)
-                hint = f'{self.method}("x"), or {self.method}(across={normal}, offset=0.5)'
+                example = (1, 0) if self.flat else (1, 0, 0)
+                hint = f'{self.method}("x"), or {self.method}(across={example}, offset=0.5)'
                 self._refuse(f"{self.method} needs an axis or a plane", hint)
             return of_plane, {"across": self.across, "offset": self.offset}
         if self.across is not None:
