@@ -22,12 +22,12 @@ struct Nearest {
 
 const float[3] table = float[3](0.2, 0.9, 0.4);
 
-// careful.py:23
+// careful.py
 float held_angle(float x) {
     return clamp(x, -4194304.0, 4194304.0);
 }
 
-// elementary.py:54
+// elementary.py
 float sine_near_zero(float r) {
     float s = r * r;
     float p = -0.00019809778 + s * 2.6058e-6;
@@ -36,7 +36,7 @@ float sine_near_zero(float r) {
     return r + r * s * p;
 }
 
-// careful.py:29
+// careful.py
 #ifdef TRUST_SIN
 float sine(float x) { return sin(x); }
 #else
@@ -48,7 +48,7 @@ float sine(float x) {
 }
 #endif
 
-// careful.py:39
+// careful.py
 #ifdef TRUST_COS
 float cosine(float x) { return cos(x); }
 #else

@@ -7,12 +7,12 @@ uniform float time;
 // The per-frame part, handed to the fragment stage.
 flat out vec4 packed_0;
 
-// careful.py:23
+// careful.py
 float held_angle(float x) {
     return clamp(x, -4194304.0, 4194304.0);
 }
 
-// elementary.py:54
+// elementary.py
 float sine_near_zero(float r) {
     float s = r * r;
     float p = -0.00019809778 + s * 2.6058e-6;
@@ -21,7 +21,7 @@ float sine_near_zero(float r) {
     return r + r * s * p;
 }
 
-// careful.py:29
+// careful.py
 float sine(float x) {
     float held = held_angle(x);
     float n = floor(held * 0.15915494 + 0.25) + 0.25;

@@ -42,7 +42,7 @@ Nearest nearest(vec2 p) {
     return found;
 }
 
-// rounding.py:11
+// rounding.py
 float round_half_even(float x) {
     float below = floor(x);
     float over = x - below;
