@@ -76,7 +76,12 @@ def step(shape):
     return shape.rotate(x=0.7, y=angle, z=0.3), lambda p: p @ m, 1.0
 
 
-@pytest.mark.parametrize("shape", [Box(1, 0.6, 0.4), Rectangle(1, 0.6)], ids=["solid", "flat"])
+# No mirror image of them is themselves.
+SOLID = Box(1, 0.6, 0.4) - Sphere(0.3).translate(0.5, 0.3, 0.2)
+FLAT = Rectangle(1, 0.6) - Circle(0.3).translate(0.5, 0.3)
+
+
+@pytest.mark.parametrize("shape", [SOLID, FLAT], ids=["solid", "flat"])
 def test_placements_in_a_long_row_give_the_values_of_one_after_the_other(shape):
     backs, factor, leaf = [], 1.0, shape
     for _ in range(400):
@@ -91,6 +96,27 @@ def test_placements_in_a_long_row_give_the_values_of_one_after_the_other(shape):
     inside = p[shape(p) < 0.0]
     low, high = map(np.array, shape.bounds())
     assert ((inside >= low) & (inside <= high)).all()
+
+
+@pytest.mark.parametrize("leaf", [SOLID, FLAT], ids=["solid", "flat"])
+def test_mirror_images_in_a_long_row_keep_their_hand(leaf):
+    n = 2 if leaf.flat else 3
+    normal, m = np.array((0.6, 0.8, 0.0)[:n]), rotation((0, 0, 1), 0.3)[:n, :n]
+    p = q = RANDOM.uniform(-2, 2, (100, n))
+    shape, backs = leaf, []
+    for count in range(120):
+        if count % 5 == 0:
+            shape = shape.mirror(across=tuple(normal), offset=0.1)
+            backs.append(lambda p: p - 2 * (p @ normal - 0.1)[:, None] * normal)
+        else:
+            shape = shape.rotate(0.3) if leaf.flat else shape.rotate(z=0.3)
+            backs.append(lambda p: p @ m)
+        if count > 60:
+            q = p
+            for back in reversed(backs):
+                q = back(q)
+            assert np.abs(shape(p) - leaf(q)).max() < 1e-5
+    assert shape.node.nesting < nesting.FOLDED_FROM + 32
 
 
 def test_a_turtle_of_two_thousand_steps():
