@@ -355,26 +355,36 @@ class LeafSpacing:
             real[real] = np.abs(self._value(between)) >= _BETWEEN * gap[real]
             i, j, gap, block = i[real], j[real], gap[real], block[real]
             middle, feet = 0.5 * (feet[0] + feet[1])[real], [foot[real] for foot in feet]
-            wide = ~self._at_edges(feet[0], middle, normal[i], normal[j], side, gap)
+            leaves = (some.leaf[i], some.leaf[j])
+            wide = ~self._at_edges(leaves, feet[0], middle, (normal[i], normal[j]), side, gap)
             i, j, gap = i[wide], j[wide], gap[wide]
             block, between = block[wide], middle[wide]
-            tilted = np.abs(normal[i]).max(axis=1) < _ALONG_AXIS
+            tilted = np.zeros(len(i), np.bool_)
+            for k in (i, j):  # the wall of a bore beside a plane is curved on one side
+                tilted |= np.abs(normal[k]).max(axis=1) < _ALONG_AXIS
             lost = tilted | self._between_corners(middles[block], side, between, normal[i])
             yield _Walls(i, j, gap, lost)
 
     def _at_edges(
-        self, foot: Floats, middle: Floats, one: Floats, other: Floats, side: float, gap: Floats
+        self,
+        leaves: tuple[Integers, Integers],
+        foot: Floats,
+        middle: Floats,
+        normals: tuple[Floats, Floats],
+        side: float,
+        gap: Floats,
     ) -> Bools:
         """Return where two faces are those of a sharp edge close by: it is thin, but ends there.
 
         Args:
+            leaves: The leaves of the two faces.
             foot: A place on the first face.
             middle: A place between the faces.
-            one: The normal of the first face.
-            other: The normal of the second.
+            normals: The normals of the faces.
             side: The side of the cell.
             gap: How far the faces are apart.
         """
+        one, other = normals
         way = one + other
         length = np.linalg.norm(way, axis=1)
         meet = length > _PARALLEL
@@ -384,7 +394,9 @@ class LeafSpacing:
         share = np.divide(far, rise, out=np.full(len(gap), np.inf), where=meet)
         found: Bools = np.abs(share) <= _CELLS_TO_EDGE * side
         edge = middle[found] + share[found, None] * way[found]
-        found[found] = np.abs(self._value(edge)) <= _REAL * gap[found]
+        # Both faces go there: one that is curved, such as that of a bore, may turn away before.
+        off = [np.abs(self.fields.values(leaf[found], edge)) for leaf in leaves]
+        found[found] = np.maximum(*off) <= _REAL * gap[found]
         return found
 
     def _between_corners(self, middle: Floats, side: float, place: Floats, normal: Floats) -> Bools:

@@ -182,9 +182,16 @@ class BoundsComposer:
             return found
         plain = BoxAxes.own(below.overlaps)
         inner = [self.of(body, child, share, plain) for child, share in children]
-        box = axes.box(body, self._call, self.of_operator(body, rule, inner, own).bounds)
-        both = {"bounds_a": found.bounds, "bounds_b": box}
-        return replace(found, bounds=body.let("bounds", self._call(overlap, both)))
+        turned = self.of_operator(body, rule, inner, own)
+        both = {
+            "bounds_a": found.bounds,
+            "bounds_b": axes.box(body, self._call, turned.bounds),
+        }
+        box = body.let("bounds", self._call(overlap, both))
+        # A side of the turned box is as far as its corner, and a corner of both is passed by sides.
+        side_growth = _larger(body, "side_growth", found.side_growth, turned.growth)
+        growth = _corner_growth(body, side_growth, 3)
+        return replace(found, bounds=box, growth=growth, side_growth=side_growth)
 
     def _of_many(
         self,
