@@ -145,7 +145,7 @@ def reflected_flat_across(p: vec2, across: vec2, offset: float) -> vec2:
 @func
 def reflected_flat_direction(p: vec2, across: vec2) -> vec2:
     """Return the direction before a reflection in a line."""
-    return p - across * (2.0 / dot(across, across) * dot(p, across))
+    return reflected_flat_across(p, across, 0.0)
 
 
 @func

@@ -86,7 +86,7 @@ def reflected_across(p: vec3, across: vec3, offset: float) -> vec3:
 @func
 def reflected_direction(p: vec3, across: vec3) -> vec3:
     """Return the direction before a reflection in a plane."""
-    return p - across * (2.0 / dot(across, across) * dot(p, across))
+    return reflected_across(p, across, 0.0)
 
 
 @func

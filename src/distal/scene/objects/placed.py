@@ -68,6 +68,12 @@ class Placed(BaseShape):
         made: S = self._under(operator, (), numbers, place, others=(other,))
         return made
 
+    def _at_plane(self: S, method: str, axes: Any, offset: Any, across: Any) -> S:
+        """Apply ``mirror`` or ``symmetry``, at axes or at a plane."""
+        plane = PlaneArguments(method, axes, offset, across, self.flat, author_place())
+        operator, numbers = plane.operator()
+        return self._with(operator, **numbers)
+
     def apply(
         self, operator: str, *args: Argument, others: Sequence[BaseShape] = (), **kwargs: Argument
     ) -> Any:
@@ -150,9 +156,7 @@ class Placed(BaseShape):
         Raises:
             SceneValueError: The arguments name neither an axis nor a plane, or both.
         """
-        plane = PlaneArguments("mirror", axes, offset, across, self.flat, author_place())
-        operator, numbers = plane.operator()
-        return self._with(operator, **numbers)
+        return self._at_plane("mirror", axes, offset, across)
 
     def symmetry(
         self: S, axes: str | None = None, offset: Number = 0.0, *, across: Vector | None = None
@@ -170,9 +174,7 @@ class Placed(BaseShape):
         Raises:
             SceneValueError: The arguments name neither an axis nor a plane, or both.
         """
-        plane = PlaneArguments("symmetry", axes, offset, across, self.flat, author_place())
-        operator, numbers = plane.operator()
-        return self._with(operator, **numbers)
+        return self._at_plane("symmetry", axes, offset, across)
 
     def kaleidoscope(self: S, count: Number) -> S:
         """Repeat a wedge ``count`` times about the y axis, mirroring every other copy."""
@@ -270,9 +272,8 @@ class Placed(BaseShape):
             SceneValueError: There is no such place.
         """
         if where not in _SHELLS:
-            hint = did_you_mean(str(where), _SHELLS)
-            if where in FORMER_WORDS:
-                hint = f'where="{FORMER_WORDS[where]}"'
+            former = FORMER_WORDS.get(str(where))
+            hint = f'where="{former}"' if former else did_you_mean(str(where), _SHELLS)
             refuse(f"a shell lies inner, center or outer, not {where!r:.40}", hint, author_place())
         return self._with(_SHELLS[where], thickness)
 
