@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from distal.scene.tree.node import Node
 
 
-# To start threads takes longer than to compute so few rows of a function without a field.
+# To start a thread takes longer than to compute so few rows.
 _FEW_ROWS: Final = 1 << 12
 # The name under which a tree keeps the functions of its field.
 FIELD_FUNCTIONS: Final = "functions of the field"
@@ -113,15 +113,20 @@ class FieldKernels:
             made = known.need(function, types)
             self.rows += len(columns[0])
         args = [as_rows(column) for column in columns]
-        here = is_worker()
-        return executor().call(made, args, {}, params=self.params, time=self.time, here=here)
+        return executor().call(
+            made, args, {}, params=self.params, time=self.time, here=are_computed_here(args)
+        )
 
 
 def rows_of(function: Func, *columns: Any) -> Any:
     """Return the values of a function that needs no field, for many rows."""
     args = [as_rows(column) for column in columns]
-    here = is_worker() or len(args[0]) < _FEW_ROWS
-    return executor().call(function, args, {}, here=here)
+    return executor().call(function, args, {}, here=are_computed_here(args))
+
+
+def are_computed_here(columns: Sequence[Any]) -> bool:
+    """Return whether this thread computes rows alone: it is one of several, or they are few."""
+    return is_worker() or (len(columns) > 0 and len(columns[0]) < _FEW_ROWS)
 
 
 def as_rows(column: Any) -> Any:

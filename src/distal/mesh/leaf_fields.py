@@ -26,9 +26,8 @@ from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.runtime_access import executor
 from distal.mesh import arithmetic
-from distal.mesh.kernels import FieldKernels, as_rows
+from distal.mesh.kernels import FieldKernels, are_computed_here, as_rows
 from distal.mesh.outlines import arithmetic as flat_arithmetic
-from distal.mesh.parallel import is_worker
 from distal.mesh.solid import Bools, Floats, Integers
 from distal.scene.lowering.parts.flatten import UnionMember
 from distal.scene.lowering.parts.kind_boxes import columns_of
@@ -203,7 +202,8 @@ class LeafFields:
         call = executor().call
         if device is not None:
             return call(function, args, {}, params=given, time=kernels.time, device=device)
-        return call(function, args, {}, params=given, time=kernels.time, here=is_worker())
+        here = are_computed_here(args)
+        return call(function, args, {}, params=given, time=kernels.time, here=here)
 
 
 def _read_by(function: Composed, params: Mapping[str, Any]) -> Mapping[str, Any]:
