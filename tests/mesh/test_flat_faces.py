@@ -358,15 +358,15 @@ def test_pairs_of_triangles_of_all_sizes_are_found() -> None:
     assert pairs(points, triangles, None) == expected
     some = rng.random(400) < 0.1
     assert pairs(points, triangles, some) == {(i, j) for i, j in expected if some[i] or some[j]}
-    found = {tuple(sorted(pair)) for pair in intersecting_pairs(points, triangles).tolist()}
-    kept = {tuple(sorted(pair)) for pair in intersecting_pairs(points, triangles, some).tolist()}
+    found = {tuple(sorted(pair)) for pair in intersecting_pairs((points,), triangles).tolist()}
+    kept = {tuple(sorted(pair)) for pair in intersecting_pairs((points,), triangles, some).tolist()}
     assert kept == {(i, j) for i, j in found if some[i] or some[j]} and len(kept) > 5
 
 
 def pairs(points: Any, triangles: Any, some: Any) -> set[tuple[int, int]]:
     found = [
         (min(pair), max(pair))
-        for one, other in close_pairs(points, triangles, some)
+        for one, other in close_pairs((points,), triangles, some)
         for pair in zip(one.tolist(), other.tolist(), strict=True)
     ]
     assert len(found) == len(set(found))

@@ -6,8 +6,9 @@ triangles that vector code cannot separate are compared exactly, with integers o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any, Final
 
 import numpy as np
@@ -88,11 +89,11 @@ def intersections(
         triangles: Of shape (m, 3).
         watch: Called now and then.
     """
-    return len(intersecting_pairs(points, triangles, None, watch))
+    return len(intersecting_pairs((points,), triangles, None, watch))
 
 
 def intersecting_pairs(
-    points: Floats,
+    roundings: Sequence[Floats],
     triangles: Integers,
     some: Bools | None = None,
     watch: Callable[[float], None] | None = None,
@@ -101,25 +102,26 @@ def intersecting_pairs(
     """Return the pairs of triangles that meet where they have no point or side in common, (k, 2).
 
     Args:
-        points: Of shape (n, 3).
+        roundings: The points, each of shape (n, 3); a pair that meets in one of them is found.
         triangles: Of shape (m, 3).
         some: Pairs without one of these triangles are not looked at; None for all.
         watch: Called now and then.
         faces: Triangles with the same number from 0 are known to be apart.
     """
     found = []
-    for first, second in close_pairs(points, triangles, some):
+    for first, second in close_pairs(roundings, triangles, some):
         if watch is not None:
             watch(1.0)
         if faces is not None:
             unknown = (faces[first] != faces[second]) | (faces[first] < 0)
             first, second = first[unknown], second[unknown]
         one, other, shared = _aligned(triangles[first], triangles[second])
-        unsure = np.flatnonzero(~_apart(points, one, other, shared))
-        for row in unsure.tolist():
-            corners = points[one[row]].tolist(), points[other[row]].tolist()
-            if intersect(*corners, int(shared[row])):
-                found.append((first[row], second[row]))
+        for points in roundings:
+            unsure = np.flatnonzero(~_apart(points, one, other, shared))
+            for row in unsure.tolist():
+                corners = points[one[row]].tolist(), points[other[row]].tolist()
+                if intersect(*corners, int(shared[row])):
+                    found.append((first[row], second[row]))
     return np.array(found, np.int64).reshape(-1, 2)
 
 
@@ -150,7 +152,7 @@ def _aligned(one: Integers, other: Integers) -> tuple[Integers, Integers, Intege
 
 
 def close_pairs(
-    points: Floats, triangles: Integers, some: Bools | None = None
+    roundings: Sequence[Floats], triangles: Integers, some: Bools | None = None
 ) -> Iterator[tuple[Integers, Integers]]:
     """Yield pairs of triangles whose boxes overlap, each pair once.
 
@@ -158,16 +160,16 @@ def close_pairs(
     as long as its box or longer, and compared with those of this grid and of finer ones.
 
     Args:
-        points: Of shape (n, 3).
+        roundings: The points, each of shape (n, 3); a box holds a triangle in all of them.
         triangles: Of shape (m, 3).
         some: Pairs without one of these triangles are left out; None for all.
     """
     if not len(triangles):
         return
-    corners = points[triangles]
-    boxes = _Boxes(corners.min(axis=1), corners.max(axis=1))
-    sizes = (boxes.high - boxes.low).max(axis=1)
-    extent = float((boxes.high.max(axis=0) - boxes.low.min(axis=0)).max())
+    corners = [points.T[:, triangles[:, i]] for points in roundings for i in range(3)]
+    boxes = _Boxes(reduce(np.minimum, corners), reduce(np.maximum, corners))
+    sizes = (boxes.high - boxes.low).max(axis=0)
+    extent = float((boxes.high.max(axis=1) - boxes.low.min(axis=1)).max())
     shortest = max(float(np.median(sizes)), _SHORTEST * extent, 1e-300)
     level = np.ceil(np.log2(np.maximum(sizes / shortest, 1.0))).astype(np.int64)
     for number in numbers_in(level).tolist():
@@ -186,7 +188,7 @@ class _Boxes:
     """The boxes of triangles.
 
     Attributes:
-        low: The lowest corner of each, of shape (m, 3).
+        low: The lowest corner of each, of shape (3, m).
         high: The highest.
     """
 
@@ -206,7 +208,7 @@ class _Boxes:
         """
         if not len(own) or not len(finer):
             return
-        base = self.low.min(axis=0)
+        base = self.low.min(axis=1)
         side = self._finer_side(own, finer, side, int(level[own[0]]))
         rows, keys = self._cubes(own, side, base)
         order = np.argsort(keys, kind="stable")
@@ -220,14 +222,16 @@ class _Boxes:
         ends = np.searchsorted(total, np.arange(_PAIRS_AT_ONCE, last, _PAIRS_AT_ONCE))
         for part in np.split(busy, ends):
             which, at = runs(part, begin[part], count[part])
-            a, b = others[which], rows[at]
-            keep = (level[a] < level[b]) | (a < b)
-            keep &= (self.low[a] <= self.high[b]).all(axis=1)
-            keep &= (self.low[b] <= self.high[a]).all(axis=1)
+            a, b, cube = others[which], rows[at], asked[which]
+            keep = np.flatnonzero((level[a] < level[b]) | (a < b))
+            a, b, cube = a[keep], b[keep], cube[keep]
+            for low, high in zip(self.low, self.high, strict=True):
+                keep = np.flatnonzero((low[a] <= high[b]) & (low[b] <= high[a]))
+                a, b, cube = a[keep], b[keep], cube[keep]
             # A pair in several cubes counts in the first one that it shares.
-            corner = np.maximum(self.low[a], self.low[b]) - base
-            keep &= _keys(np.floor(corner / side).astype(np.int64)) == asked[which]
-            if keep.any():
+            corner = np.maximum(self.low[:, a], self.low[:, b]) - base[:, None]
+            keep = np.flatnonzero(_keys(np.floor(corner / side).astype(np.int64)) == cube)
+            if len(keep):
                 yield a[keep], b[keep]
 
     def _finer_side(self, own: Integers, finer: Integers, side: float, most: int) -> float:
@@ -242,29 +246,30 @@ class _Boxes:
             most: How often it is halved at most.
         """
         both = np.concatenate([own, finer])
-        low, high = self.low[both], self.high[both]
-        low, high = low - self.low.min(axis=0), high - self.low.min(axis=0)
+        base = self.low.min(axis=1)[:, None]
+        low, high = self.low[:, both] - base, self.high[:, both] - base
         for _ in range(most):
             half = 0.5 * side
             spans = np.floor(high / half) - np.floor(low / half) + 1.0
-            if spans.prod(axis=1).sum() > _CUBES * len(both):
+            if spans.prod(axis=0).sum() > _CUBES * len(both):
                 break
             side = half
         return side
 
     def _cubes(self, some: Integers, side: float, base: Floats) -> tuple[Integers, Integers]:
         """Return triangles with the key of each cube that their boxes are in."""
-        first = np.floor((self.low[some] - base) / side).astype(np.int64)
-        spans = np.floor((self.high[some] - base) / side).astype(np.int64) - first + 1
-        rows, number = runs(np.arange(len(some)), np.zeros(len(some), np.int64), spans.prod(axis=1))
-        across, up = spans[rows, 1], spans[rows, 2]
-        offset = np.stack([number // (across * up), number // up % across, number % up], axis=1)
-        return some[rows], _keys(first[rows] + offset)
+        base = base[:, None]
+        first = np.floor((self.low[:, some] - base) / side).astype(np.int64)
+        spans = np.floor((self.high[:, some] - base) / side).astype(np.int64) - first + 1
+        rows, number = runs(np.arange(len(some)), np.zeros(len(some), np.int64), spans.prod(axis=0))
+        across, up = spans[1:, rows]
+        offset = np.stack([number // (across * up), number // up % across, number % up])
+        return some[rows], _keys(first[:, rows] + offset)
 
 
 def _keys(cells: Integers) -> Integers:
-    """Return one number for each cube."""
-    found: Integers = (cells[:, 0] << 42) | (cells[:, 1] << 21) | cells[:, 2]
+    """Return one number for each cube, of shape (3, n)."""
+    found: Integers = (cells[0] << 42) | (cells[1] << 21) | cells[2]
     return found
 
 
@@ -287,8 +292,7 @@ def meeting_triangles(
     if not some.any():
         return np.empty(0, np.int64)
     single = points.astype(np.float32).astype(np.float64)
-    pairs = [
-        intersecting_pairs(places, triangles, some, watch, faces) for places in (points, single)
-    ]
-    found: Integers = np.unique(np.concatenate(pairs))
+    found: Integers = np.unique(
+        intersecting_pairs((points, single), triangles, some, watch, faces)
+    )
     return found
