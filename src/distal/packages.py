@@ -78,7 +78,6 @@ PACKAGES: Final = (
     Package("python-bidi", "text", "text from right to left", "bidi"),
     Package("markdown-it-py", "lessons", "pages of lessons", "markdown_it"),
     Package("pygments", "lessons", "pages of lessons"),
-    Package("manifold3d", "mesh", "meshes with fewer triangles"),
     Package("scipy", "design", "Sobol points"),
     Package("distributed", "cluster", "rendering on more than one machine"),
     Package("cryptography", "cluster", "the keys of --cluster local"),

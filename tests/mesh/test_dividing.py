@@ -201,7 +201,7 @@ THREADS = {
 }
 
 
-@pytest.mark.sample(24)
+@pytest.mark.sample(48)
 @pytest.mark.parametrize("share", [0.04, 0.02, 0.01, 0.004])
 @pytest.mark.parametrize("size", METRIC)
 @pytest.mark.parametrize("kind", THREADS)

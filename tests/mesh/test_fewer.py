@@ -16,7 +16,6 @@ from typer.testing import CliRunner
 
 from distal import Box, Cylinder, Sphere, gradient
 from distal.cli.application import application
-from distal.mesh import simplify
 from distal.mesh.palette import nearest, palette_of
 from distal.scene.tree.errors import SceneValueError
 
@@ -25,13 +24,10 @@ PART = (
 ) - Cylinder(0.2, 4.0)
 
 
-def test_a_simpler_mesh_is_within_the_tolerance_and_keeps_borders_of_colors() -> None:
-    plain = PART.mesh(0.01)  # where it starts: half of the tolerance
-    made = PART.mesh(0.02, simplify=True, check=True)
+def test_points_that_are_spared_leave_the_tolerance_and_borders_of_colors() -> None:
+    made = PART.mesh(0.02, check=True)
     report = made.report
-    before = report["triangles_before"]
-    assert before == plain.report["triangles_before"]
-    assert report["triangles"] == len(made.triangles) < 0.5 * before
+    assert report["triangles"] == len(made.triangles) < 0.5 * report["triangles_before"]
     assert report["check"] == {"open_edges": 0, "pinched_points": 0, "intersections": 0}
     assert report["error"]["largest"] <= 0.02
     # Other points than those that were measured: at least |value| / slope from the surface.
@@ -40,10 +36,11 @@ def test_a_simpler_mesh_is_within_the_tolerance_and_keeps_borders_of_colors() ->
     points = np.einsum("ij,ijk->ik", rng.dirichlet((1.0, 1.0, 1.0), 4000), made.points[rows])
     assert np.abs(PART(points)).max() <= 1.1 * 0.02
     assert len(np.unique(made.points, axis=0)) == len(made.points)
-    assert made.triangle_colors is not None and plain.triangle_colors is not None
+    finer = PART.mesh(0.005)
+    assert made.triangle_colors is not None and finer.triangle_colors is not None
     blue = [
         float(areas(mesh.points, mesh.triangles)[mesh.triangle_colors[:, 2] > 0.5].sum())
-        for mesh in (plain, made)
+        for mesh in (finer, made)
     ]
     assert blue[1] == pytest.approx(blue[0], rel=0.02)
 
@@ -51,14 +48,6 @@ def test_a_simpler_mesh_is_within_the_tolerance_and_keeps_borders_of_colors() ->
 def areas(points: Any, triangles: Any) -> Any:
     a, b, c = np.moveaxis(points[triangles], 1, 0)
     return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
-
-
-def test_a_worse_mesh_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(simplify, "_SHARES", (40.0,))  # more than is left
-    made = PART.mesh(0.02, simplify=True)
-    assert made.report["warnings"][-1] == (
-        "the mesh was not simplified: no mesh with fewer triangles is within the tolerance"
-    )
 
 
 def test_colors_are_reduced_to_means_of_their_groups() -> None:
@@ -93,8 +82,8 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     return lambda *args: CliRunner().invoke(application, args)
 
 
-def test_the_command_simplifies_and_counts_colors(run: Any) -> None:
-    options = ("--simplify", "--colors", "2", "--tolerance", "0.01", "--check")
+def test_the_command_counts_colors(run: Any) -> None:
+    options = ("--colors", "2", "--tolerance", "0.01", "--check")
     done = run("mesh", "part.py", "-o", "p.3mf", *options)
     assert done.exit_code == 0, done.stderr
     first = done.stderr.splitlines()[0]
@@ -104,14 +93,6 @@ def test_the_command_simplifies_and_counts_colors(run: Any) -> None:
         2,
         "error: --colors is a number from 1 to 256, not 0\n",
     )
-
-
-def test_a_missing_extra_is_one_line(run: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "manifold3d", None)
-    done = run("mesh", "part.py", "-o", "p.stl", "--simplify")
-    assert done.exit_code == 1
-    assert done.stderr.count("\n") == 1 and "pip install 'distal[mesh]'" in done.stderr
-    assert not Path("p.stl").exists()
 
 
 SLOW = """

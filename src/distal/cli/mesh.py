@@ -70,10 +70,6 @@ def mesh(
         int | None,
         typer.Option(metavar="N", help="At most so many colors, for a printer with N filaments."),
     ] = None,
-    simplify: Annotated[
-        bool,
-        typer.Option("--simplify", help="Remove triangles that the tolerance can spare."),
-    ] = False,
     parts: Annotated[
         bool,
         typer.Option("--parts", help="Save each shape with a name as a part of its own."),
@@ -92,7 +88,6 @@ def mesh(
     from distal.mesh import palette, scene_parts
     from distal.mesh.files import formats
     from distal.mesh.meshing import MeshRequest
-    from distal.packages import imported
 
     check_is_not_scene(output, scene)
     check_lengths(tolerance=tolerance, feature=feature)
@@ -100,8 +95,6 @@ def mesh(
         raise UsageError(f"--angle is an angle above 0, in degrees, not {angle:g}")
     if colors is not None and not 1 <= colors <= palette.MOST:
         raise UsageError(f"--colors is a number from 1 to {palette.MOST}, not {colors}")
-    if simplify:
-        imported("manifold3d")  # a missing package is named before the work
     formats.check_output(output, unit)
     shape, values, seconds = load_solid(scene, assignments, at)
     with ProgressBar("meshing") as progress:
@@ -113,7 +106,6 @@ def mesh(
             progress=progress,
             check=check,
             colors=True if colors is None else colors,
-            simplify=simplify,
             angle=None if angle is None else math.radians(angle),
         )
         found = scene_parts.meshes_of(shape.node, request, parts=parts)

@@ -84,7 +84,7 @@ def with_fewer_triangles(
     triangles: Integers,
     labels: Integers | None,
     *,
-    tolerance: float | None,
+    tolerance: float,
     angle: float,
     step: float,
     watch: Callable[[float], None],
@@ -97,8 +97,7 @@ def with_fewer_triangles(
         triangles: Of shape (m, 3).
         labels: Triangles with different numbers keep the border between them; those below 0 keep
             their points. None for all the same.
-        tolerance: How far mesh and surface may be apart where faces are curved; None to leave
-            curved faces as they are.
+        tolerance: How far mesh and surface may be apart where faces are curved.
         angle: How much the surface may turn within a triangle, in radians; infinite for any angle.
         step: The length of a cell.
         watch: Called now and then.
@@ -106,8 +105,6 @@ def with_fewer_triangles(
 
     def spared() -> Spared:
         rows = _with_flat_faces(points, triangles, labels, watch)
-        if tolerance is None:
-            return _numbered(Spared(np.empty(0, np.int64), rows))
         fixed = _at_borders(triangles, labels, len(points)) | _at_corners(points, rows)
         mesh = Collapsing.of(kernels, points, rows, ~fixed, tolerance, angle, step)
         return _numbered(_without_points(mesh, watch))

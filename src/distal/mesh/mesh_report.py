@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from distal.mesh.extract import Extracted
     from distal.mesh.leaf_check import LeafCheck
     from distal.mesh.meshing import MeshRequest
-    from distal.mesh.simplify import Simplified
 
 _MOST_NAMED: Final = 8  # parts that are named
 
@@ -134,19 +133,3 @@ def record_leaves(report: dict[str, Any], leaves: LeafCheck, wanted: Wanted) -> 
         error["place"] = list(leaves.error_at)
         report["warnings"].append(exceeded(wanted, leaves.error, leaves.error_at))
     report["warnings"] += leaves.warnings()
-
-
-def record_simplified(report: dict[str, Any], less: Simplified | None) -> None:
-    """Change the report to what it says about the mesh with fewer triangles."""
-    if less is None:
-        report["warnings"].append(
-            "the mesh was not simplified: no mesh with fewer triangles is within the tolerance"
-        )
-        return
-    error = report["error"]
-    report["points"], report["triangles"] = len(less.points), len(less.triangles)
-    # What manifold3d removes moves the surface by less than it is allowed to.
-    error["surface_to_mesh"] += less.moved
-    error["mesh_to_surface"], error["mean"] = less.largest, less.mean
-    error["place"] = list(less.place)
-    error["largest"] = max(less.largest, error["surface_to_mesh"])

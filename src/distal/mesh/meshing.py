@@ -13,9 +13,8 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from distal.lang.render_options import Cancel, Progress, checked_time
-from distal.mesh import simplify
 from distal.mesh.borders import cut_at_borders
-from distal.mesh.bricks import Slopes, Watch
+from distal.mesh.bricks import Slopes
 from distal.mesh.checks import checked
 from distal.mesh.coloring import Painted, painted
 from distal.mesh.extract import Extent, Extracted, Nothing
@@ -24,17 +23,15 @@ from distal.mesh.files.parts import Finish, Finishes
 from distal.mesh.integrals import size_and_volume
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.leaf_check import LeafCheck, refuse_missing, with_all_leaves
-from distal.mesh.mesh_report import record_leaves, record_simplified, report_of
+from distal.mesh.mesh_report import record_leaves, report_of
 from distal.mesh.palette import MOST as MOST_COLORS
 from distal.mesh.problems import MeshProblem
 from distal.mesh.refusals import refuse_endless, refuse_nothing, refuse_problem, refuse_too_fine
 from distal.mesh.requests import box_of, watch_of
 from distal.mesh.shells import shells_of
-from distal.mesh.simplify import Simplified
 from distal.mesh.solid import Floats, Integers, Mesh
 from distal.mesh.spacing import TooFine, Wanted, meshed
 from distal.mesh.surface_box import with_size
-from distal.packages import imported
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
 
@@ -43,8 +40,6 @@ if TYPE_CHECKING:
 
 # Without a tolerance it is this share of the largest side of the box.
 DEFAULT_TOLERANCE: Final = 2e-3
-# A mesh that is simplified first takes this share of the tolerance, and leaves the rest.
-FIRST_SHARE: Final = 0.5
 _POSITIVE: Final = (
     ("tolerance", "a length", "0.01"),
     ("feature", "a length", "0.01"),
@@ -69,9 +64,7 @@ class MeshRequest:
         check: Whether open edges, pinched points and intersections are counted.
         colors: Whether the mesh has the colors of the shape's materials; a number for at most so
             many different ones.
-        simplify: Whether points that the tolerance can spare are removed.
         angle: How much the surface may turn within a triangle, in radians; None for any angle.
-            ``simplify`` keeps none.
     """
 
     tolerance: float | None = None
@@ -82,7 +75,6 @@ class MeshRequest:
     cancel: Cancel | None = None
     check: bool = False
     colors: bool | int = True
-    simplify: bool = False
     angle: float | None = None
 
     def __post_init__(self) -> None:
@@ -155,7 +147,7 @@ def mesh_of_node(node: Node, request: MeshRequest) -> Mesh:
         made.points,
         made.triangles,
         paint.labels(made.points, made.triangles) if paint is not None and varies else None,
-        tolerance=None if request.simplify else wanted.tolerance,
+        tolerance=wanted.tolerance,
         angle=wanted.angle,
         step=found.step,
         watch=watch,
@@ -163,11 +155,6 @@ def mesh_of_node(node: Node, request: MeshRequest) -> Mesh:
     spared.record(report)
     made = made.with_points(spared.points, spared.triangles)
     colors = _appearance(paint, made, report)
-    if request.simplify:
-        less = _simplified(kernels, made, colors[1], report, wanted, found.step, watch)
-        if less is not None:
-            made = made.with_points(less.points, less.triangles)
-            colors = _appearance(paint, made, report)
     report |= asdict(shells_of(made.points, made.triangles))
     report["size"], report["volume"] = size_and_volume(made.points, made.triangles)
     if request.check:
@@ -192,34 +179,6 @@ class MeshArrays(NamedTuple):
         return MeshArrays(self.points[points], triangles, self.normals[points])
 
 
-def _simplified(
-    kernels: FieldKernels,
-    made: MeshArrays,
-    of_triangles: Floats | None,
-    report: dict[str, Any],
-    wanted: Wanted,
-    step: float,
-    watch: Watch,
-) -> Simplified | None:
-    """Return the triangles that manifold3d keeps, and record them; None if none can be spared.
-
-    Args:
-        kernels: The shape.
-        made: The mesh.
-        of_triangles: The colors of its triangles.
-        report: Its report.
-        wanted: The tolerance.
-        step: The length of a cell.
-        watch: Called now and then.
-    """
-    imported(simplify.PACKAGE)
-    error, tolerance = report["error"]["largest"], wanted.tolerance
-    given = (kernels, made.points, made.triangles, of_triangles)
-    less = simplify.simplified(*given, error=error, tolerance=tolerance, step=step, watch=watch)
-    record_simplified(report, less)
-    return less
-
-
 def _with_all_leaves(
     node: Node, kernels: FieldKernels, found: Extracted, wanted: Wanted, request: MeshRequest
 ) -> tuple[Extracted, LeafCheck]:
@@ -235,10 +194,9 @@ def _with_all_leaves(
     Raises:
         SceneValueError: A leaf is missing, and cells cannot be small enough for it.
     """
-    share = FIRST_SHARE if request.simplify else 1.0
     watch = watch_of(replace(request, progress=None))
     extent = extent_of(node, request)
-    found, leaves = with_all_leaves(kernels, extent, found, share * wanted.tolerance, watch)
+    found, leaves = with_all_leaves(kernels, extent, found, wanted.tolerance, watch)
     if leaves.missing:
         refuse_missing(leaves.missing, "mesh", "feature={width}, or a smaller tolerance=")
     return found, leaves
@@ -279,15 +237,11 @@ def found_mesh(node: Node, request: MeshRequest) -> tuple[Extracted, Wanted, Fie
     kernels = FieldKernels(node, request.params, request.time)
     extent = with_size(kernels, extent_of(node, request))
     wanted = _wanted(extent, request)
-    share = FIRST_SHARE if request.simplify else 1.0
-    first = replace(wanted, tolerance=share * wanted.tolerance)
     try:
-        found = meshed(kernels, extent, first, watch_of(request))
+        found = meshed(kernels, extent, wanted, watch_of(request))
     except MeshProblem as problem:
         refuse_problem(node, extent, problem)
     if isinstance(found, TooFine):
-        if found.tolerance is not None:
-            found = replace(found, tolerance=found.tolerance / share)
         refuse_too_fine(node, found, wanted)
     if isinstance(found, Nothing):
         refuse_nothing(node, found, request)

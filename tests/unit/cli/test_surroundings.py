@@ -252,8 +252,8 @@ ENDS = {
         ("compile", "s.py", "--target", "ir", "-o", "none/a.txt"),
     ),
     "a package or a device is missing, or memory": (
-        {"s.py": SCENE, "manifold3d.py": "raise ModuleNotFoundError(name='manifold3d')\n"},
-        ("mesh", "s.py", "-o", "a.stl", "--simplify"),
+        {"s.py": SCENE, "OpenEXR.py": "raise ModuleNotFoundError(name='OpenEXR')\n"},
+        ("render", "s.py", "-o", "a.exr"),
     ),
     "`check`, `--check` or `doctor` found something": (
         {"s.py": STEEP},

@@ -31,7 +31,6 @@ class Meshable(Placed):
         *,
         check: bool = False,
         colors: bool | int = True,
-        simplify: bool = False,
         angle: float | None = None,
     ) -> Mesh:
         """Return triangles of the surface: closed, without self-intersections, with sharp edges.
@@ -52,11 +51,9 @@ class Meshable(Placed):
                 which takes longer.
             colors: Whether the mesh has the colors of the shape's materials; a number reduces them
                 to at most so many.
-            simplify: Remove points that the tolerance can spare; needs the extra ``mesh``. The
-                error is measured again.
             angle: How much the surface may turn within a triangle, in radians: holes and shafts
                 have their size. Where the radius of the surface is below 1.5 tolerances it may be
-                any, as without this option. ``simplify`` keeps the tolerance alone.
+                any, as without this option.
 
         Raises:
             CompileError: The shape's scene code has mistakes.
@@ -72,7 +69,6 @@ class Meshable(Placed):
             cancel=cancel,
             check=check,
             colors=colors,
-            simplify=simplify,
             angle=angle,
         )
         return meshing.mesh_of(self, request)
