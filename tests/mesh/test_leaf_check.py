@@ -110,26 +110,31 @@ def test_each_copy_of_an_array_is_looked_for():
     assert topology(completed(Box(40, 10, 40) - kept, cells=6)) == (1, 3, 0)
 
 
-def test_no_printable_shape_is_called_wrong():
-    """Meshes within their tolerance show all leaves, however many."""
-    turn = {"x": 0.3, "y": 0.5, "z": 0.7}
-    bores = [Cylinder(1.0, 9.0).translate(4.0 * i, 0, 4.0 * j) for i in range(5) for j in range(4)]
-    shapes = [
+TURN = {"x": 0.3, "y": 0.5, "z": 0.7}
+BORES = [Cylinder(1.0, 9.0).translate(4.0 * i, 0, 4.0 * j) for i in range(5) for j in range(4)]
+
+
+@pytest.mark.sample(3)
+@pytest.mark.parametrize(
+    "shape",
+    [
         Box(40, 20, 10).round(2.0) - Cylinder(5.0, 30.0),
         Sphere(3.0),
-        Torus(3.0, 0.8).rotate(**turn),
+        Torus(3.0, 0.8).rotate(**TURN),
         Cone(2.0, 3.0),
-        Octahedron(2.0).rotate(**turn),
+        Octahedron(2.0).rotate(**TURN),
         Box(10).union(Sphere(5).translate(4, 4, 0), smooth=2.0) - Cylinder(0.6, 40),
-        Box(30, 5, 30).translate(8.0, 0, 6.0) - union(*bores),
+        Box(30, 5, 30).translate(8.0, 0, 6.0) - union(*BORES),
         Box(12, 2, 3).twist(0.1),
         Capsule(1.0, 5.0).translate(6.0, 0, 0).repeat_polar(7) | Cylinder(5.5, 1.0),
         Box(8).shell(0.7, where="center") - Box(20).translate(0, 12.0, 0),
-    ]
-    for shape in shapes:
-        made = shape.mesh(colors=False)
-        assert made.report["leaves"]["places"] > 50
-        assert not [text for text in made.report["warnings"] if "compared" in text]
+    ],
+)
+def test_no_printable_shape_is_called_wrong(shape):
+    """Meshes within their tolerance show all leaves, however many."""
+    made = shape.mesh(colors=False)
+    assert made.report["leaves"]["places"] > 50
+    assert not [text for text in made.report["warnings"] if "compared" in text]
 
 
 def test_faces_inside_a_solid_and_swallowed_leaves_have_no_places():
@@ -201,6 +206,7 @@ def random_plate(rng):
     return shape, holes
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("seed", range(4))
 def test_random_plates_have_all_their_holes(seed):
     rng = np.random.default_rng(seed)

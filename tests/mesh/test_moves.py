@@ -45,6 +45,7 @@ def test_all_moves_taken_back_leave_the_first_mesh(name: str) -> None:
     assert not any(len(moves.triangle) or len(moves.followed.place) for moves in mesh.log)
 
 
+@pytest.mark.sample(3, each="name")
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("name", SHAPES)
 def test_some_moves_taken_back_leave_a_closed_mesh(name: str, seed: int) -> None:

@@ -90,7 +90,7 @@ def samples_of(made: Any) -> Any:
     return np.concatenate([made.points, middle, *((middle + corners[:, i]) / 2 for i in range(3))])
 
 
-@pytest.mark.sample(2, each="name")
+@pytest.mark.sample(4, each="name")
 @pytest.mark.parametrize("seed", [0, 1, 2, 3])
 @pytest.mark.parametrize("name", PAIRS)
 def test_parts_that_touch_are_one_solid(name: str, seed: int) -> None:

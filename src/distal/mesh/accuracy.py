@@ -36,6 +36,7 @@ _LAST_OFF: Final = 8.0
 _NEXT_OFF: Final = 1.25
 _CLOSE: Final = 1e-3
 _ALIKE: Final = 0.9  # the least share of one value in another that counts as equal
+_IN_FACE: Final = 0.5  # of where its sides are looked at: how far a point of a face is from it
 # The most lattice points that are followed to a surface that the mesh does not have.
 _MOST_FOLLOWED: Final = 1 << 14
 # The most roots that are compared with more triangles than those around their own edge.
@@ -186,6 +187,7 @@ def _inside(kernels: FieldKernels, points: Floats, normals: Floats, tolerance: f
 
     away, off = np.zeros(len(points)), _FIRST_OFF * tolerance
     rows = alike(alike(np.arange(len(points)), off), _CLOSE * tolerance)  # no slit
+    rows = rows[np.abs(value(points[rows])) < _IN_FACE * _CLOSE * tolerance]  # not in a thin wall
     # At a knife edge, too, both sides are alike; but there the face ends.
     first = np.cross(normals, np.eye(3)[np.abs(normals).argmin(axis=1)])
     for way in (first, np.cross(normals, first), -first, np.cross(first, normals)):
