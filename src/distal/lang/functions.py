@@ -68,7 +68,10 @@ class Func:
 
     Attributes:
         overloads: One or more functions that differ in the types of their parameters.
+        remade: A function and the arguments that make it again, of one that is made of data.
     """
+
+    remade: tuple[Callable[..., Any], Any] | None = None
 
     def __init__(self, overload: Overload) -> None:
         python = overload.python

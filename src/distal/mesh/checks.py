@@ -292,7 +292,5 @@ def meeting_triangles(
     if not some.any():
         return np.empty(0, np.int64)
     single = points.astype(np.float32).astype(np.float64)
-    found: Integers = np.unique(
-        intersecting_pairs((points, single), triangles, some, watch, faces)
-    )
+    found: Integers = np.unique(intersecting_pairs((points, single), triangles, some, watch, faces))
     return found

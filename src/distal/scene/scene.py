@@ -277,7 +277,7 @@ class Scene(SceneValue, Composed, Presentable):
     # The kernel is compiled once: a later change would have no effect.
 
     def __setattr__(self, name: str, value: object) -> None:
-        if "_whole" in self.__dict__:
+        if "_whole" in self.__dict__ and name != "_kept_digest":
             raise AttributeError("a scene does not change; make another: Scene(shape, …)")
         object.__setattr__(self, name, value)
 
@@ -608,7 +608,7 @@ class Scene(SceneValue, Composed, Presentable):
     def _copied(self) -> Scene:
         """Return a copy that can be changed, without what was computed of this scene."""
         made = Scene.__new__(Scene)
-        computed = ("_whole", "sectioned", "renderer")
+        computed = ("_whole", "_kept_digest", "sectioned", "renderer")
         made.__dict__.update({n: v for n, v in self.__dict__.items() if n not in computed})
         made.display = DisplayEncoding(made)
         made._pictures = {}

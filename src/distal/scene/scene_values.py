@@ -51,6 +51,20 @@ class SceneValue(AuthorObject):
         "stride_growth",
     )
 
+    # The arguments that are settings.
+    setting_names: ClassVar[tuple[str, ...]] = (
+        "tone_map",
+        "glow",
+        "shadows",
+        "mode",
+        "bounces",
+        "shutter",
+        "normals",
+        "march",
+        "steps",
+        "acceleration",
+    )
+
     @property
     def arguments(self) -> Mapping[str, Any]:
         """The arguments by name, as given; None for those that the look decides."""
@@ -82,6 +96,11 @@ class SceneValue(AuthorObject):
                 hint = did_you_mean(name, self._given) or f"it takes {', '.join(self._given)}"
                 refuse_kind(f"a scene has no '{name}'", hint, place)
         return self._remade(changes, place)
+
+    def _compared(self) -> tuple[Any, ...]:
+        names = ("name", "subject", "shape", "lights", "camera", "background", "material", "look")
+        drawn = tuple(getattr(self, name) for name in (*names, "numbers", *self.setting_names))
+        return "scene", *drawn
 
     def _remade(self, changes: Mapping[str, Any], place: Span | None) -> Self:
         """Return the scene of other arguments; ``place`` is the line of its messages."""

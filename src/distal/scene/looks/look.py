@@ -141,7 +141,7 @@ class Look(AuthorObject, Immutable):
         numbers: All numbers, checked, by name.
     """
 
-    __slots__ = ("_changed", "name", "numbers", "row")
+    __slots__ = ("_changed", "_kept_digest", "name", "numbers", "row")
 
     name: str
     row: LookRow
@@ -174,6 +174,9 @@ class Look(AuthorObject, Immutable):
     def arguments(self) -> Mapping[str, Any]:
         """All numbers of the look, checked, by name."""
         return MappingProxyType({name: value_of(v) for name, v in self.numbers.items()})
+
+    def _compared(self) -> tuple[Any, ...]:
+        return "look", self.name, self.row, self.numbers
 
     def replace(self, **changes: Any) -> Look:
         """Return the look with other numbers: ``look.replace(exposure=1.2)``.

@@ -75,6 +75,9 @@ class Light(SceneObject):
             call.values for call in (self.radiance, self.sample, self.ambient) if call is not None
         )
 
+    def _compared(self) -> tuple[Any, ...]:
+        return self.noun, self.sample, self.ambient, self.radiance
+
     def functions(self) -> Iterator[Func]:
         """Yield the scene functions that the light calls."""
         for call in (self.sample, self.ambient):

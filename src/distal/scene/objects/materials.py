@@ -173,6 +173,10 @@ class Material(CalledObject):
             made._record(origin)
         return made
 
+    def _compared(self) -> tuple[Any, ...]:
+        rays = (self.reflects, self.refracts, self.emits)
+        return self.noun, self.call, rays, self.priority
+
     @property
     def uses(self) -> frozenset[str]:
         """Which of ``declarations.PLACE_NAMES`` the material depends on."""

@@ -26,7 +26,7 @@ class SceneObject(CalledValue, Immutable):
         declaration: The declaration that the class was made from, if it was made from one.
     """
 
-    __slots__ = ("__weakref__", "_origin")
+    __slots__ = ("__weakref__", "_kept_digest", "_origin")
 
     noun: ClassVar[str]
     declaration: ClassVar[Declaration]
@@ -59,6 +59,9 @@ class CalledObject(SceneObject):
 
     def _checked(self) -> Iterator[Mapping[str, Any]]:
         yield self.call.values
+
+    def _compared(self) -> tuple[Any, ...]:
+        return self.noun, self.call
 
     def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
         """Emit the call. ``site`` provides the function's other arguments (point, normal, cell)."""

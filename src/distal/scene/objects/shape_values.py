@@ -16,6 +16,7 @@ from distal.fields.guarantees import Operator, Primitive
 from distal.fields.library import OPERATORS
 from distal.fields.repeat.varied import IN_CELLS
 from distal.lang.functions import Func
+from distal.lang.lazy_module import LazyModule
 from distal.lang.source_places import author_place
 from distal.scene.tree.arguments import RESERVED, RESERVED_OF_SHAPES, slots_of
 from distal.scene.tree.errors import refuse, refuse_kind
@@ -26,6 +27,9 @@ from distal.scene.tree.varying import holds
 if TYPE_CHECKING:
     from distal.scene.objects.field import BaseShape
     from distal.scene.objects.materials import Material
+    from distal.scene.tree import digests
+else:
+    digests = LazyModule("distal.scene.tree.digests")  # needs hashlib and json
 
 # The key in a node's derived values of the call that it was made by.
 _ORIGIN: Final = "origin"
@@ -148,6 +152,9 @@ class ShapeValue(AuthorObject):
 
     def _set_node(self, node: Node) -> None:
         raise NotImplementedError
+
+    def _digest(self) -> bytes:
+        return digests.digest_of_node(self.node)
 
     def _record(self, origin: CallRecord) -> None:
         authored(self.node).derived(_ORIGIN, lambda: origin)

@@ -164,7 +164,7 @@ class Pattern(CalledValue, FunctionCall):
     A material accepts it instead of a color or a number.
     """
 
-    __slots__ = ("_origin",)
+    __slots__ = ("_kept_digest", "_origin")
 
     noun = "pattern"
 
@@ -173,3 +173,6 @@ class Pattern(CalledValue, FunctionCall):
 
     def _checked(self) -> Iterator[Mapping[str, Any]]:
         yield self.values
+
+    def _compared(self) -> tuple[Any, ...]:
+        return self.noun, self.func, self.values

@@ -16,11 +16,17 @@ from distal.fields.guarantees import ended
 from distal.frontend.problems import did_you_mean
 from distal.ir.nodes import Cast, Uniform
 from distal.lang.expressions import Expression
+from distal.lang.lazy_module import LazyModule
 from distal.lang.source_places import author_place
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.former_names import renamed
 from distal.scene.tree.varying import VaryingNumber
+
+if TYPE_CHECKING:
+    from distal.scene.tree import digests
+else:
+    digests = LazyModule("distal.scene.tree.digests")  # needs hashlib and json
 
 Made = TypeVar("Made")
 
@@ -100,6 +106,29 @@ class AuthorObject:
 
     def __replace__(self, /, **changes: Any) -> Self:
         return self.replace(**changes)
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether an object is the same by value; where it was written does not count."""
+        if self is other:
+            return True
+        if not isinstance(other, AuthorObject):
+            return NotImplemented
+        return self._digest() == other._digest()
+
+    def __hash__(self) -> int:
+        return int.from_bytes(self._digest()[:8], "little", signed=True)
+
+    def _compared(self) -> tuple[Any, ...]:
+        """Return what equal objects have in common: the word for their kind, and values."""
+        raise NotImplementedError
+
+    def _digest(self) -> bytes:
+        """Return 16 bytes that equal objects have in common; kept when they are first needed."""
+        found: bytes | None = getattr(self, "_kept_digest", None)
+        if found is None:
+            found = digests.digest_of(*self._compared())
+            object.__setattr__(self, "_kept_digest", found)
+        return found
 
     def _record(self, origin: CallRecord) -> None:
         """Keep the call that made the object."""
