@@ -2,8 +2,8 @@
 
 Input: nodes, and whatever objects and functions hold. Output: 16 bytes. Rules, numbers, materials
 and names count; places in the author's files and classes do not. Textures and arrays count by their
-content, a file by its path, a live texture and what is opaque by identity, so that such digests are
-equal in one process only.
+content, a file by its path, a live texture by what it shows. What is opaque counts by identity, so
+that such digests are equal in one process only.
 """
 
 from __future__ import annotations
@@ -24,7 +24,6 @@ from distal.ir.interning import Interned
 from distal.lang.expressions import Expression
 from distal.lang.functions import Func, is_fixed
 from distal.lang.identity_map import IdentityMap
-from distal.lang.live_textures import LiveTexture
 from distal.lang.names import LangForm, LangFunction
 from distal.lang.parameters import Parameter
 from distal.lang.resources import Buffer, TextureValue
@@ -127,8 +126,6 @@ class Digest:
                 yield f"parameter {value.name} {value.default!r} {value.interface}"
             case VaryingNumber():
                 yield from self._texts(("varying", value.name, value.number))
-            case LiveTexture():
-                yield _opaque(value)
             case TextureValue() | Buffer():
                 yield type(value).__name__
                 yield from self._texts([*vars(value), *vars(value).values()])
