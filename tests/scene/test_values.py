@@ -10,6 +10,7 @@ import copy
 import gc
 import inspect
 import math
+import re
 import sys
 
 import numpy as np
@@ -46,6 +47,15 @@ def same(a, b):
     return a is b or bool(a == b)
 
 
+def evaluated(value):
+    """Return what the text of an object evaluates to; the object itself if it does not evaluate."""
+    text = repr(value)
+    return value if re.search("<[^|]", text) else eval(text, {"__builtins__": __builtins__}, NAMES)
+
+
+NAMES = {**vars(distal.lang), **{name: getattr(distal, name) for name in distal.__all__}}
+
+
 def field_of(shape):
     size = 2 if shape.flat else 3
     points = np.random.default_rng(5).uniform(-1.5, 1.5, (50, size))
@@ -71,6 +81,7 @@ def test_a_shape_of_the_library_shows_its_arguments(name):
     again = kind(**shape.arguments)
     assert dict(again.arguments) == dict(shape.arguments)
     assert (field_of(again) == field_of(shape)).all()
+    assert again == shape == evaluated(shape) and hash(again) == hash(shape)
 
 
 @pytest.mark.parametrize("name", sorted(PRIMITIVES))
@@ -198,6 +209,9 @@ def test_called_objects_show_their_arguments(case):
         assert hasattr(value, name)
     again = value.replace()
     assert list(again.arguments) == list(value.arguments)
+    assert again == value and hash(again) == hash(value)
+    # A sky may be a light and a background.
+    assert repr(value).startswith("<") or evaluated(value) == value
     for name, given in value.arguments.items():
         changed = value.replace(**{name: given}) if given is not None else value
         assert same(changed.arguments[name], given), name

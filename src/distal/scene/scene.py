@@ -47,7 +47,6 @@ from distal.scene.scene_arguments import (
 )
 from distal.scene.scene_values import SceneValue
 from distal.scene.steering import Steering
-from distal.scene.tree.shown_numbers import placed
 from distal.scene.view_options import MODES, ViewOptions
 
 if TYPE_CHECKING:
@@ -280,12 +279,6 @@ class Scene(SceneValue, Composed, Presentable):
         if "_whole" in self.__dict__ and name != "_kept_digest":
             raise AttributeError("a scene does not change; make another: Scene(shape, …)")
         object.__setattr__(self, name, value)
-
-    def __repr__(self) -> str:
-        parts, lights = self.shape.node.parts, len(self.lights)
-        made = f"{parts} part{'s' * (parts != 1)}, {lights} light{'s' * (lights != 1)}"
-        place = "" if self.place is None else f", {placed(self.place)}"
-        return f"<Scene '{self.name}': {made}, {type(self.camera).__name__}{place}>"
 
     @cached_property
     def renderer(self) -> str:

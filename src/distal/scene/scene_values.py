@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from distal.scene.looks.look import Look
     from distal.scene.objects.materials import Material
     from distal.scene.tree.conversion import Number
+    from distal.scene.tree.texts import TextWriter
 
 
 class SceneValue(AuthorObject):
@@ -96,6 +97,11 @@ class SceneValue(AuthorObject):
                 hint = did_you_mean(name, self._given) or f"it takes {', '.join(self._given)}"
                 refuse_kind(f"a scene has no '{name}'", hint, place)
         return self._remade(changes, place)
+
+    def _written(self, writer: TextWriter) -> str:
+        parameters = inspect.signature(type(self)).parameters
+        given = {n: v for n, v in self.arguments.items() if v is not parameters[n].default}
+        return writer.call(type(self), given)
 
     def _compared(self) -> tuple[Any, ...]:
         names = ("name", "subject", "shape", "lights", "camera", "background", "material", "look")

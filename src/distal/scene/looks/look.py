@@ -19,6 +19,9 @@ from distal.lang.source_places import author_place
 from distal.scene.tree.arguments import arguments
 from distal.scene.tree.value import AuthorObject, value_of
 
+if TYPE_CHECKING:
+    from distal.scene.tree.texts import TextWriter
+
 # How the main light shines: as a lamp at some distance, or as the sun.
 Shining: TypeAlias = Literal["lamp", "sun"]
 
@@ -167,13 +170,15 @@ class Look(AuthorObject, Immutable):
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a look does not change; make another: {self.name}(…)")
 
-    def __repr__(self) -> str:
-        return f"<look {self.name}>"
-
     @property
     def arguments(self) -> Mapping[str, Any]:
         """All numbers of the look, checked, by name."""
         return MappingProxyType({name: value_of(v) for name, v in self.numbers.items()})
+
+    def _written(self, writer: TextWriter) -> str:
+        numbers = self.arguments
+        changed = {name: numbers[name] for name in self._changed}
+        return writer.call(self.name, changed)
 
     def _compared(self) -> tuple[Any, ...]:
         return "look", self.name, self.row, self.numbers

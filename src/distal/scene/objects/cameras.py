@@ -113,6 +113,7 @@ class TurnedCamera(BaseCamera):
     __slots__ = ()
 
     alternatives: ClassVar = (("screen_distance", "fov", "fov_deg"),)
+    written_as: ClassVar = "Camera.yaw_pitch_roll"
 
     def __init__(
         self,

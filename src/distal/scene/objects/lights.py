@@ -57,11 +57,6 @@ class Light(SceneObject):
             radiance=call_of_part(call, self.declaration.radiance),
         )
 
-    def __repr__(self) -> str:
-        call = self.sample or self.ambient
-        what = type(self).__name__ if call is None else call.described
-        return f"<light {what}>"
-
     @property
     def directions(self) -> tuple[FunctionCall, FunctionCall] | None:
         """Random directions for ``radiance``, if it is too uneven for those of a surface.

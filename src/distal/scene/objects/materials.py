@@ -35,6 +35,7 @@ from distal.scene.tree.value import CallRecord, recorded, value_of
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Color, Number, Varying
+    from distal.scene.tree.texts import TextWriter
 
 _WEIGHTS: Final = ("diffuse", "specular", "transmission")
 # The sum of weights like 0.85, 0.05 and 0.1 is slightly above 1 in floats.
@@ -173,6 +174,10 @@ class Material(CalledObject):
             made._record(origin)
         return made
 
+    def _written(self, writer: TextWriter) -> str:
+        text = super()._written(writer)
+        return f"{text}.replace(priority={self.priority})" if self.priority else text
+
     def _compared(self) -> tuple[Any, ...]:
         rays = (self.reflects, self.refracts, self.emits)
         return self.noun, self.call, rays, self.priority
@@ -231,6 +236,9 @@ class Material(CalledObject):
 def _bumped(surface: Material, height: Number | Varying) -> Material:
     """Return ``surface.bump(height)``: its arguments are named as those of its function."""
     return surface.bump(height)
+
+
+cast("Any", _bumped).written_as = ".bump"
 
 
 @func
@@ -325,6 +333,9 @@ def pattern_of(function: Func, **numbers: Any) -> Pattern | Material:
     return own_pattern(function, (), numbers, author_place())
 
 
+cast("Any", pattern_of).written_as = "pattern"
+
+
 def mixed(a: Material, b: Material, t: Any, what: str, place: Span | None) -> Material:
     """Return a mixture of two materials.
 
@@ -357,6 +368,9 @@ def mixed(a: Material, b: Material, t: Any, what: str, place: Span | None) -> Ma
 
 def _mixed_again(a: Material, b: Material, t: Number | Varying) -> Material:
     return a.mix(b, t)
+
+
+cast("Any", _mixed_again).written_as = ".mix"
 
 
 def as_material(value: Any, place: Span | None = None) -> Material:

@@ -39,9 +39,6 @@ class SceneObject(CalledValue, Immutable):
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a {self.noun} does not change; make another")
 
-    def __repr__(self) -> str:
-        return f"<{self.noun} {type(self).__name__}>"
-
 
 class CalledObject(SceneObject):
     """An object that is one call of a scene function.
@@ -53,9 +50,6 @@ class CalledObject(SceneObject):
     __slots__ = ("call",)
 
     call: FunctionCall
-
-    def __repr__(self) -> str:
-        return f"<{self.noun} {self.call.described}>"
 
     def _checked(self) -> Iterator[Mapping[str, Any]]:
         yield self.call.values

@@ -25,10 +25,13 @@ from distal.scene.tree.value import AuthorObject, CallRecord, state_of, value_of
 from distal.scene.tree.varying import holds
 
 if TYPE_CHECKING:
+    from distal.scene.objects import shape_texts
     from distal.scene.objects.field import BaseShape
     from distal.scene.objects.materials import Material
     from distal.scene.tree import digests
+    from distal.scene.tree.texts import TextWriter
 else:
+    shape_texts = LazyModule("distal.scene.objects.shape_texts")
     digests = LazyModule("distal.scene.tree.digests")  # needs hashlib and json
 
 # The key in a node's derived values of the call that it was made by.
@@ -51,9 +54,8 @@ class ShapeValue(AuthorObject):
 
         A number that is a slider or an expression comes back as that.
         """
-        node = authored(self.node)
-        origin = _origin_of(node)
-        return _arguments_of(node) if origin is None else origin.arguments
+        origin = self._origin
+        return _arguments_of(authored(self.node)) if origin is None else origin.arguments
 
     @property
     def operator(self) -> str | None:
@@ -76,6 +78,22 @@ class ShapeValue(AuthorObject):
         """The material that ``paint`` has set; None if there is none."""
         found: Material | None = self.node.material
         return found
+
+    @property
+    def _origin(self) -> CallRecord | None:
+        """The call that made the shape; None for shapes of the library, and operators' results."""
+        return _origin_of(authored(self.node))
+
+    @property
+    def _class(self) -> type[BaseShape] | None:
+        """The class of a shape of the library; None for others."""
+        return CLASSES_OF_RULES.get(id(authored(self.node).rule))
+
+    @property
+    def _made_with(self) -> tuple[str, Any, Any]:
+        """The name, the material and the cut material that the call that made it has given it."""
+        origin = self._origin
+        return ("", None, None) if origin is None else origin.made_with
 
     @property
     def _operator(self) -> Operator | None:
@@ -157,7 +175,12 @@ class ShapeValue(AuthorObject):
         return digests.digest_of_node(self.node)
 
     def _record(self, origin: CallRecord) -> None:
-        authored(self.node).derived(_ORIGIN, lambda: origin)
+        node = authored(self.node)
+        origin.made_with = (node.label, node.material, node.cut_material)
+        node.derived(_ORIGIN, lambda: origin)
+
+    def _written(self, writer: TextWriter) -> str:
+        return shape_texts.text_of_shape(self, writer)
 
 
 def authored(node: Node) -> Node:

@@ -33,6 +33,7 @@ from distal.scene.tree.value import AuthorObject, CallRecord, recorded
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Number, Vector
     from distal.scene.objects.shape import Shape, Shape2D
+    from distal.scene.tree.texts import TextWriter
 
 Floats = NDArray[np.float64]
 
@@ -145,7 +146,7 @@ class Curve(AuthorObject, Immutable):
         """The number of parabolas."""
         return (len(self._parabolas.points) - 1) // 2
 
-    def __repr__(self) -> str:
+    def _written(self, writer: TextWriter) -> str:
         kind = "closed " if self.closed else ""
         return f"<{kind}curve of {self.pieces} parabolas, error {self.error:.2g}>"
 

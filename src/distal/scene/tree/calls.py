@@ -24,7 +24,6 @@ from distal.render.declarations import PLACE_NAMES
 from distal.render.footprint import footprint_length
 from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.conversion import NO_VALUES, Number
-from distal.scene.tree.shown_numbers import listed, placed
 from distal.scene.tree.value import CalledValue
 from distal.scene.tree.varying import Composer, expression_of
 
@@ -68,12 +67,6 @@ class FunctionCall(Immutable):
         _set_func(self, func)
         _set_values(self, values)
         _set_place(self, place)
-
-    @property
-    def described(self) -> str:
-        """Its text: what it is, its numbers, the author's line."""
-        place = "" if self.place is None else f", {placed(self.place)}"
-        return f"{self.what}{listed(self.values)}{place}"
 
     def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
         """Emit the call. ``site`` provides the function's other arguments (point, normal, cell)."""
@@ -167,9 +160,6 @@ class Pattern(CalledValue, FunctionCall):
     __slots__ = ("_kept_digest", "_origin")
 
     noun = "pattern"
-
-    def __repr__(self) -> str:
-        return f"<pattern {self.described}>"
 
     def _checked(self) -> Iterator[Mapping[str, Any]]:
         yield self.values

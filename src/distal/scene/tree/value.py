@@ -24,8 +24,9 @@ from distal.scene.tree.former_names import renamed
 from distal.scene.tree.varying import VaryingNumber
 
 if TYPE_CHECKING:
-    from distal.scene.tree import digests
+    from distal.scene.tree import digests, texts
 else:
+    texts = LazyModule("distal.scene.tree.texts")
     digests = LazyModule("distal.scene.tree.digests")  # needs hashlib and json
 
 Made = TypeVar("Made")
@@ -38,9 +39,12 @@ class CallRecord:
         factory: The class or the function.
         kind: The class of the object.
         state: The public attributes of a shape besides its node.
+        made_with: The name, the material and the cut material of a shape that was made.
     """
 
-    __slots__ = ("_args", "_given", "_kwargs", "factory", "kind", "state")
+    __slots__ = ("_args", "_given", "_kwargs", "factory", "kind", "made_with", "state")
+
+    made_with: tuple[str, Any, Any]
 
     def __init__(
         self,
@@ -51,6 +55,7 @@ class CallRecord:
         state: Mapping[str, Any] = MappingProxyType({}),
     ) -> None:
         self.factory, self.kind, self.state = factory, kind, state
+        self.made_with = ("", None, None)
         self._args, self._kwargs = args, kwargs
         self._given: Mapping[str, Any] | None = None
 
@@ -118,6 +123,13 @@ class AuthorObject:
     def __hash__(self) -> int:
         return int.from_bytes(self._digest()[:8], "little", signed=True)
 
+    def __repr__(self) -> str:
+        return texts.TextWriter().text(self)
+
+    def _written(self, writer: texts.TextWriter) -> str:
+        """Return the object as text that evaluates to an equal one, as far as there is one."""
+        raise NotImplementedError
+
     def _compared(self) -> tuple[Any, ...]:
         """Return what equal objects have in common: the word for their kind, and values."""
         raise NotImplementedError
@@ -166,6 +178,13 @@ class CalledValue(AuthorObject):
     def _origin_or_none(self) -> CallRecord | None:
         """The call that made the object; None for what a scene makes, such as its camera."""
         return getattr(self, "_origin", None)
+
+    def _written(self, writer: texts.TextWriter) -> str:
+        origin = self._origin_or_none
+        if origin is None:
+            return f"<{self.noun} of the scene>"
+        arguments = self.arguments
+        return writer.call(origin.factory, {name: arguments[name] for name in origin.given})
 
     def replace(self, **changes: Any) -> Self:
         """Return the object with other arguments: ``light.replace(intensity=2)``.
