@@ -7,84 +7,95 @@ of its closure, of the function around it, of its module. For digests and pickle
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass
 from types import CodeType, ModuleType
 from typing import Any
+from weakref import WeakKeyDictionary
 
 from distal.frontend.parsing import parse
 from distal.frontend.signatures.signatures import definition_of
 from distal.lang.functions import Overload
+from distal.session import SESSION
 
 
 @dataclass(frozen=True, slots=True)
-class ValuesRead:
-    """The values that a function reads, by name.
+class FunctionContents:
+    """What the text of a function says.
 
     Attributes:
-        closure: Of the variables of functions around it; those without a value are left out.
-        enclosing: Of names that only its annotations use, in the function around it.
-        module: Of the global names.
+        text: The definition, without comments and decorators.
+        names: The names that its body reads and that are not its own variables.
+        in_annotations: The names in its annotations.
         attributes: The attributes that are read of each name: ``{"math": {"pi"}}``.
     """
 
-    closure: dict[str, Any] = field(default_factory=dict)
-    enclosing: dict[str, Any] = field(default_factory=dict)
-    module: dict[str, Any] = field(default_factory=dict)
-    attributes: dict[str, set[str]] = field(default_factory=dict)
-
-    def items(self) -> Iterator[tuple[str, Any]]:
-        """Yield all names and values."""
-        for part in (self.closure, self.enclosing, self.module):
-            yield from part.items()
+    text: str
+    names: frozenset[str]
+    in_annotations: frozenset[str]
+    attributes: Mapping[str, set[str]]
 
 
-def text_of(overload: Overload) -> str:
-    """Return the definition as text, without comments and decorators.
-
-    Raises:
-        CompileError: The source text is not available.
-    """
-    node = definition_of(overload).node
-    parts = [ast.unparse(node.args), *map(ast.unparse, node.body)]
-    returns = "" if node.returns is None else ast.unparse(node.returns)
-    return "\n".join([node.name, *parts, returns])
+_contents: WeakKeyDictionary[Overload, FunctionContents] = SESSION.keep(
+    "function contents", WeakKeyDictionary()
+)
 
 
-def values_read(overload: Overload) -> ValuesRead:
-    """Return the values that a function reads.
-
-    A name of its own variables counts only where an annotation has it.
+def contents_of(overload: Overload) -> FunctionContents:
+    """Return what the text of a function says, read at the first call.
 
     Raises:
         CompileError: The source text is not available.
     """
-    node, python, found = definition_of(overload).node, overload.python, ValuesRead()
-    cells = dict(zip(python.__code__.co_freevars, python.__closure__ or (), strict=True))
-    in_annotations = _annotation_names(node)
-    in_body: set[str] = set()
-    for part in (node.args, *node.body, *([node.returns] if node.returns else [])):
-        for each in ast.walk(part):
-            if isinstance(each, ast.Name):
-                in_body.add(each.id)
-            elif isinstance(each, ast.Attribute) and isinstance(each.value, ast.Name):
-                found.attributes.setdefault(each.value.id, set()).add(each.attr)
-    for name in sorted(in_annotations | in_body & _code_names(python.__code__)):
-        if name in cells:
-            try:
-                found.closure[name] = cells[name].cell_contents
-            except ValueError:  # it has no value yet
-                continue
-        elif name in in_annotations and name in overload.enclosing:
-            found.enclosing[name] = overload.enclosing[name]
-        elif name in python.__globals__:
-            found.module[name] = python.__globals__[name]
+    found = _contents.get(overload)
+    if found is None:
+        found = _contents.setdefault(overload, _read(overload))
     return found
 
 
-def attributes_of(module: ModuleType, names: set[str]) -> dict[str, Any]:
-    """Return attributes of a module, those that it has."""
-    return {name: vars(module)[name] for name in sorted(names) if name in vars(module)}
+def _read(overload: Overload) -> FunctionContents:
+    node = definition_of(overload).node
+    parts = [node.args, *node.body, *([node.returns] if node.returns else [])]
+    names: set[str] = set()
+    attributes: dict[str, set[str]] = {}
+    for each in (each for part in parts for each in ast.walk(part)):
+        if isinstance(each, ast.Name):
+            names.add(each.id)
+        elif isinstance(each, ast.Attribute) and isinstance(each.value, ast.Name):
+            attributes.setdefault(each.value.id, set()).add(each.attr)
+    text = "\n".join([node.name, *map(ast.unparse, parts)])
+    read = names & _code_names(overload.python.__code__)
+    return FunctionContents(text, frozenset(read), _annotation_names(node), attributes)
+
+
+def values_read(overload: Overload) -> dict[str, Any]:
+    """Return the values that a function reads, by name in the order of the alphabet.
+
+    They are of its closure, of the function around it (for annotations), of its module. Names
+    without a value are left out.
+
+    Raises:
+        CompileError: The source text is not available.
+    """
+    contents, python = contents_of(overload), overload.python
+    cells = dict(zip(python.__code__.co_freevars, python.__closure__ or (), strict=True))
+    found = {}
+    for name in sorted(contents.names | contents.in_annotations):
+        if name in cells:
+            with suppress(ValueError):  # it has no value yet
+                found[name] = cells[name].cell_contents
+        elif name in contents.in_annotations and name in overload.enclosing:
+            found[name] = overload.enclosing[name]
+        elif name in python.__globals__:
+            found[name] = python.__globals__[name]
+    return found
+
+
+def attributes_read(overload: Overload, name: str, module: ModuleType) -> dict[str, Any]:
+    """Return the attributes of a module that a function reads by the module's name in it."""
+    names = sorted(contents_of(overload).attributes.get(name, ()))
+    return {name: vars(module)[name] for name in names if name in vars(module)}
 
 
 def _code_names(code: CodeType) -> set[str]:
@@ -97,7 +108,7 @@ def _code_names(code: CodeType) -> set[str]:
     return found
 
 
-def _annotation_names(node: ast.FunctionDef) -> set[str]:
+def _annotation_names(node: ast.FunctionDef) -> frozenset[str]:
     """Return the names in the annotations of a function and in it, also in those given as text."""
     waiting: list[ast.AST | None] = []
     for each in ast.walk(node):
@@ -119,4 +130,4 @@ def _annotation_names(node: ast.FunctionDef) -> set[str]:
                     waiting.append(parse(each.value, mode="eval"))
                 except (SyntaxError, ValueError):
                     continue  # it is no annotation: the compiler says so
-    return found
+    return frozenset(found)

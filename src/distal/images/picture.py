@@ -98,6 +98,10 @@ class Picture:
         layers = {name: _layer(name, values, self.array) for name, values in self.layers.items()}
         object.__setattr__(self, "layers", MappingProxyType(layers))
 
+    def __reduce__(self) -> Any:
+        given = (self.array, self.provenance, dict(self.stats), self.light, dict(self.layers))
+        return _picture_of, (given, self.rounded)
+
     def __eq__(self, other: object) -> bool:
         """Return whether pixels and layers are the same to the bit; how they came does not count.
 
@@ -262,3 +266,10 @@ def _layer(name: str, values: NDArray[Any], array: NDArray[np.float32]) -> NDArr
     view = values.view()
     view.setflags(write=False)
     return view
+
+
+def _picture_of(given: tuple[Any, ...], rounded: NDArray[np.uint8] | None) -> Picture:
+    """Return a picture from a pickle."""
+    made = Picture(*given)
+    object.__setattr__(made, "rounded", rounded)
+    return made

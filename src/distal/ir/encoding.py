@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 import zlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from typing import Any, Final
@@ -75,7 +75,12 @@ def decoded(data: bytes, named: Callable[[str], Any], others: Sequence[type] = (
     """
     known = {**_CLASSES, **{c.__name__: c for c in others}}
     try:
-        module = _read(*json.loads(zlib.decompress(data)), known)
+        names, rows, root = json.loads(zlib.decompress(data))
+        classes = [known[name] for name in names]
+        made: list[Any] = []
+        for row in rows:
+            made.append(_made(row, classes, made))
+        module = made[root]
         if not isinstance(module, Module):
             raise EncodingError("the bytes are of no module")
     except (ValueError, KeyError, IndexError, TypeError, zlib.error) as error:
@@ -84,30 +89,6 @@ def decoded(data: bytes, named: Callable[[str], Any], others: Sequence[type] = (
         r if r.source is None else replace(r, source=named(r.source)) for r in module.resources
     )
     return replace(module, resources=resources)
-
-
-def encoded_value(root: Any) -> tuple[list[str], list[list[Any]], int]:
-    """Return an expression or a type as plain lists, for ``decoded_value``: it may be deep.
-
-    Raises:
-        EncodingError: A value is of no class of the IR.
-    """
-    writer = _Writer(_CLASSES)
-    number = writer.write(root)
-    return writer.names, writer.rows, number
-
-
-def decoded_value(names: list[str], rows: list[list[Any]], root: int) -> Any:
-    """Return what ``encoded_value`` has written."""
-    return _read(names, rows, root, _CLASSES)
-
-
-def _read(names: list[str], rows: list[list[Any]], root: int, known: Mapping[str, type]) -> Any:
-    classes = [known[name] for name in names]
-    made: list[Any] = []
-    for row in rows:
-        made.append(_made(row, classes, made))
-    return made[root]
 
 
 class _Writer:

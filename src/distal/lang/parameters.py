@@ -110,6 +110,9 @@ class Parameter(Symbolic):
             refuse_comparison("==")
         return NotImplemented
 
+    def _pickled(self) -> Any:
+        return Parameter, tuple(getattr(self, each.name) for each in fields(self))
+
     def __hash__(self) -> int:
         return hash((self.name, self.label, self.kind))
 

@@ -58,6 +58,7 @@ if TYPE_CHECKING:
     from distal.mesh.scene_parts import SceneParts
     from distal.scene import rendering
     from distal.scene.looks.look import Look
+    from distal.scene.objects import shape_rows
     from distal.scene.objects.argument_types import Color, Number, ParameterValues, Varying, Vector
     from distal.scene.objects.backgrounds import Background, Surroundings
     from distal.scene.objects.cameras import BaseCamera
@@ -65,6 +66,7 @@ if TYPE_CHECKING:
     from distal.scene.objects.materials import Material
     from distal.scene.objects.shape import Shape
 else:
+    shape_rows = LazyModule("distal.scene.objects.shape_rows")
     rendering = LazyModule("distal.scene.rendering")  # needs NumPy
 
 
@@ -76,6 +78,10 @@ WORDS: Final[Mapping[str, tuple[str, ...]]] = {
     "march": ("sphere", "heightfield"),
     "mode": MODES,
 }
+
+
+# What a scene computes of its arguments when it is first asked, and what marks it as complete.
+_COMPUTED: Final = ("_whole", "_kept_digest", "sectioned", "renderer")
 
 
 class Scene(SceneValue, Composed, Presentable):
@@ -272,6 +278,11 @@ class Scene(SceneValue, Composed, Presentable):
         made.__dict__["asked_display"] = self.asked_display
         copy_loaded_from(self, made)
         return made
+
+    def _pickled(self) -> Any:
+        computed = (*_COMPUTED, "display", "_pictures")
+        state = {n: v for n, v in self.__dict__.items() if n not in computed}
+        return _scene_of, (type(self), shape_rows.packed(state))
 
     # The kernel is compiled once: a later change would have no effect.
 
@@ -601,8 +612,7 @@ class Scene(SceneValue, Composed, Presentable):
     def _copied(self) -> Scene:
         """Return a copy that can be changed, without what was computed of this scene."""
         made = Scene.__new__(Scene)
-        computed = ("_whole", "_kept_digest", "sectioned", "renderer")
-        made.__dict__.update({n: v for n, v in self.__dict__.items() if n not in computed})
+        made.__dict__.update({n: v for n, v in self.__dict__.items() if n not in _COMPUTED})
         made.display = DisplayEncoding(made)
         made._pictures = {}
         copy_loaded_from(self, made)
@@ -623,3 +633,11 @@ class Scene(SceneValue, Composed, Presentable):
         parts: list[Any] = [*self.lights, self.camera, self.background, self.material]
         for part in parts:
             yield from part.functions()
+
+
+def _scene_of(kind: type[Scene], packed: shape_rows.PackedShapes) -> Scene:
+    """Return a scene from a pickle."""
+    made = kind.__new__(kind)
+    made.__dict__.update(shape_rows.unpacked(packed))
+    made.__dict__.update(display=DisplayEncoding(made), _pictures={}, _whole=True)
+    return made

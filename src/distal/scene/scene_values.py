@@ -100,7 +100,13 @@ class SceneValue(AuthorObject):
 
     def _written(self, writer: TextWriter) -> str:
         parameters = inspect.signature(type(self)).parameters
-        given = {n: v for n, v in self.arguments.items() if v is not parameters[n].default}
+        defaults = {name: parameter.default for name, parameter in parameters.items()}
+        # Types first: a parameter cannot be compared with a number.
+        given = {
+            n: v
+            for n, v in self.arguments.items()
+            if type(v) is not type(defaults[n]) or v != defaults[n]
+        }
         return writer.call(type(self), given)
 
     def _compared(self) -> tuple[Any, ...]:

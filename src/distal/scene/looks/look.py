@@ -163,9 +163,12 @@ class Look(AuthorObject, Immutable):
             colors=COLORS,
             place=place,
         )
-        made = {"name": name, "row": row, "numbers": numbers, "_changed": changed}
-        for attribute, value in made.items():
-            object.__setattr__(self, attribute, value)
+        self._keep(name=name, row=row, numbers=numbers, _changed=changed)
+
+    def _keep(self, **attributes: Any) -> None:
+        """Set attributes, on construction only."""
+        for name, value in attributes.items():
+            object.__setattr__(self, name, value)
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a look does not change; make another: {self.name}(…)")
@@ -179,6 +182,9 @@ class Look(AuthorObject, Immutable):
         numbers = self.arguments
         changed = {name: numbers[name] for name in self._changed}
         return writer.call(self.name, changed)
+
+    def _pickled(self) -> Any:
+        return _look_of, (self.name, self.row, dict(self._changed), dict(self.numbers))
 
     def _compared(self) -> tuple[Any, ...]:
         return "look", self.name, self.row, self.numbers
@@ -205,3 +211,12 @@ class Look(AuthorObject, Immutable):
     def __getitem__(self, name: str) -> Any:
         """Return one of the numbers: a float, a tuple, or an expression."""
         return self.numbers[name].value
+
+
+def _look_of(
+    name: str, row: LookRow, changed: Mapping[str, Any], numbers: Mapping[str, Any]
+) -> Look:
+    """Return a look from a pickle."""
+    made = Look.__new__(Look)
+    made._keep(name=name, row=row, numbers=numbers, _changed=changed)
+    return made

@@ -290,7 +290,10 @@ def accept(value: Any, asked: Asked) -> Any:
     if value.result is asked.type:
         return value
     if asked.type is VEC3 and value.result is FLOAT:
-        return Pattern("grey", grey, {"amount": value}, value.place)
+        made = Pattern("grey", grey, {"amount": value}, value.place)
+        if (origin := value._origin_or_none) is not None:
+            made._record(origin)
+        return made
     refuse_kind(
         f"'{asked.label}' takes a {asked.type}; {value.what} gives a {value.result}",
         place=asked.place,

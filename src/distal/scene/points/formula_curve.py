@@ -128,6 +128,10 @@ class Curve(AuthorObject, Immutable):
     def _record(self, origin: CallRecord) -> None:
         self._origin = origin
 
+    def _pickled(self) -> Any:
+        # Without its formula, which may be any function of Python.
+        return Curve, (self._parabolas, self._place)
+
     def _compared(self) -> tuple[Any, ...]:
         return "curve", self._parabolas.points, self.closed
 

@@ -68,6 +68,9 @@ class FunctionCall(Immutable):
         _set_values(self, values)
         _set_place(self, place)
 
+    def _pickled(self) -> Any:
+        return FunctionCall, (self.what, self.func, dict(self.values), self.place)
+
     def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
         """Emit the call. ``site`` provides the function's other arguments (point, normal, cell)."""
         given = dict(site)

@@ -18,9 +18,10 @@ from types import BuiltinFunctionType, FunctionType, GenericAlias, ModuleType
 from typing import Any, Final
 
 from distal.fields.guarantees import Operator, Primitive
-from distal.frontend.function_contents import attributes_of, text_of, values_read
-from distal.ir.encoding import encoded_value
+from distal.frontend.function_contents import attributes_read, contents_of, values_read
 from distal.ir.interning import Interned
+from distal.ir.nodes import Expr
+from distal.ir.walk import nodes_in
 from distal.lang.expressions import Expression
 from distal.lang.functions import Func, is_fixed
 from distal.lang.identity_map import IdentityMap
@@ -120,7 +121,7 @@ class Digest:
             case Func():
                 yield self._once(value, self._of_function).hex()
             case Expression():
-                yield f"expression {encoded_value(value.node)}"
+                yield self._of_expression(value.node).hex()
                 yield from self._texts(value.parameters)
             case Parameter():
                 yield f"parameter {value.name} {value.default!r} {value.interface}"
@@ -142,7 +143,7 @@ class Digest:
             case LangFunction() | LangForm():
                 yield f"distal.lang {value.__name__}"
             case Interned():
-                yield f"ir {encoded_value(value)}"
+                yield self._once(value, self._of_ir).hex()
             case os.PathLike():
                 yield f"path {os.fspath(value)!r}"
             case ModuleType():
@@ -192,6 +193,16 @@ class Digest:
     def _of_fields(self, value: Any) -> bytes:
         return self.of(*_fields_of(value))
 
+    def _of_expression(self, root: Expr) -> bytes:
+        # Operands come before users, so that nothing here is deep.
+        for node in nodes_in(root):
+            self._once(node, self._of_ir)
+        return self._once(root, self._of_ir)
+
+    def _of_ir(self, node: Any) -> bytes:
+        names = (field.name for field in fields(node) if field.name != "span")
+        return self.of(type(node).__name__, *(getattr(node, name) for name in names))
+
     def _of_struct(self, cls: Any) -> bytes:
         defaults = [None if f.default is MISSING else f.default for f in fields(cls)]
         annotations = [a if isinstance(a, str) else repr(a) for a in cls.__annotations__.values()]
@@ -204,13 +215,13 @@ class Digest:
             return self.of(*function.remade)
         parts: list[Any] = []
         for overload in function.overloads:
-            read, python = values_read(overload), overload.python
-            parts += [text_of(overload), overload.apart, overload.takes_self]
+            python = overload.python
+            parts += [contents_of(overload).text, overload.apart, overload.takes_self]
             parts += [python.__defaults__, python.__kwdefaults__]
-            for name, value in read.items():
+            for name, value in values_read(overload).items():
                 is_module = isinstance(value, ModuleType)
-                names = read.attributes.get(name, set())
-                parts += [name, value, attributes_of(value, names) if is_module else None]
+                read = attributes_read(overload, name, value) if is_module else None
+                parts += [name, value, read]
         return self.of(type(function).__name__, *parts)
 
 

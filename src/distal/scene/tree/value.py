@@ -24,8 +24,10 @@ from distal.scene.tree.former_names import renamed
 from distal.scene.tree.varying import VaryingNumber
 
 if TYPE_CHECKING:
+    from distal import library_stamp
     from distal.scene.tree import digests, texts
 else:
+    library_stamp = LazyModule("distal.library_stamp")  # needs hashlib
     texts = LazyModule("distal.scene.tree.texts")
     digests = LazyModule("distal.scene.tree.digests")  # needs hashlib and json
 
@@ -58,6 +60,23 @@ class CallRecord:
         self.made_with = ("", None, None)
         self._args, self._kwargs = args, kwargs
         self._given: Mapping[str, Any] | None = None
+
+    @property
+    def parts(self) -> tuple[Any, ...]:
+        """What it consists of, for pickles: the arguments of ``of_parts``."""
+        return self.factory, self._args, self._kwargs, self.kind, self.state, self.made_with
+
+    @classmethod
+    def of_parts(cls, *parts: Any) -> CallRecord:
+        """Return the record of ``parts``."""
+        *made, made_with = parts
+        record = cls(*made)
+        record.made_with = made_with
+        return record
+
+    def __reduce__(self) -> Any:
+        factory, args, kwargs, kind, state, made_with = self.parts
+        return CallRecord.of_parts, (factory, args, dict(kwargs), kind, dict(state), made_with)
 
     @property
     def given(self) -> Mapping[str, Any]:
@@ -174,6 +193,12 @@ class CalledValue(AuthorObject):
             {n: v if n in exclusive or n not in checked else checked[n] for n, v in given}
         )
 
+    def _pickled(self) -> Any:
+        kinds = [kind for kind in type(self).__mro__ if "__slots__" in vars(kind)]
+        names = {name for kind in kinds for name in vars(kind)["__slots__"]} - _NOT_PICKLED
+        state = {name: getattr(self, name) for name in sorted(names) if hasattr(self, name)}
+        return _called_value, (type(self), library_stamp.library_stamp(), state)
+
     @property
     def _origin_or_none(self) -> CallRecord | None:
         """The call that made the object; None for what a scene makes, such as its camera."""
@@ -225,6 +250,18 @@ class CalledValue(AuthorObject):
 
     def _record(self, origin: CallRecord) -> None:
         object.__setattr__(self, "_origin", origin)
+
+
+_NOT_PICKLED: Final = frozenset(("__weakref__", "_kept_digest"))
+
+
+def _called_value(kind: type[CalledValue], stamp: str, state: Mapping[str, Any]) -> CalledValue:
+    """Return a value from a pickle."""
+    library_stamp.check_stamp(stamp)
+    made = kind.__new__(kind)
+    for name, value in state.items():
+        object.__setattr__(made, name, value)
+    return made
 
 
 def recorded(made: Made) -> Made:
