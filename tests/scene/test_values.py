@@ -27,6 +27,7 @@ from distal.scene.lowering.parts.table import PARTS
 from distal.scene.lowering.smooth.cells import CELLS
 from distal.scene.objects import shapes
 from distal.scene.objects.materials import Material
+from distal.scene.tree import digests
 from distal.scene.tree.digests import digest_of, digest_of_node
 from distal.scene.tree.node import Node
 from distal.scene.tree.rules import name_of
@@ -381,8 +382,22 @@ def distal_node(like, child):
     return Node(like.rule, like.flat, (child,), like.numbers, like.constants)
 
 
+def test_nothing_is_digested_unless_it_is_compared(monkeypatch):
+    """Compiled functions are kept by identity: a digest of a large tree takes a second."""
+
+    def refused(*_):
+        raise AssertionError("it was hashed or compared")
+
+    monkeypatch.setattr(digests, "digest_of_node", refused)
+    monkeypatch.setattr(digests, "digest_of", refused)
+    shape = (Sphere(0.7).paint("red") | Box(slider("Side", 0.5, 0.1, 1.0))).translate(1, 0, 0)
+    assert shape((1.0, 0.0, 0.0)) == pytest.approx(-0.7)
+    assert shape.gradient((3.0, 0.0, 0.0))[0] == pytest.approx(1.0)
+    assert shape.heights((3, 3)).heights.shape == (3, 3)
+    assert distal.compile(Scene(shape, lights=[distal.PointLight((1, 2, 3))]), "wgsl").text
+
+
 def test_equal_objects_do_not_share_what_belongs_to_one():
-    """Compiled functions and source files are kept by identity."""
     first, second = Sphere(0.7), Sphere(0.7)
     assert first == second
     assert first((0.0, 0.0, 0.0)) == second((0.0, 0.0, 0.0)) == pytest.approx(-0.7)

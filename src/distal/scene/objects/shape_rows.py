@@ -45,7 +45,7 @@ class PackedShapes(NamedTuple):
 
 def packed(value: Any) -> PackedShapes:
     """Return a value that may contain shapes, for a pickle."""
-    writer = _Writer()
+    writer = _RowWriter()
     return PackedShapes(library_stamp(), writer.rows, writer.referring(value))
 
 
@@ -62,7 +62,7 @@ def unpacked(packed: PackedShapes) -> Any:
     return _with_shapes(packed.value, nodes)
 
 
-class _Writer:
+class _RowWriter:
     """Rows of nodes; a node that several shapes share has one."""
 
     def __init__(self) -> None:
