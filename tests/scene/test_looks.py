@@ -379,7 +379,7 @@ def test_a_look_does_not_change():
     look = studio()
     with pytest.raises(AttributeError, match="a look does not change"):
         look.name = "mine"
-    assert repr(look) == "<look studio>"
+    assert repr(look) == "studio()"
 
 
 def test_a_field_without_a_box_is_seen():

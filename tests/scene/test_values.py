@@ -7,8 +7,11 @@ Every shape of the library is made with random numbers, every operator by its ca
 from __future__ import annotations
 
 import copy
+import gc
 import inspect
 import math
+import pickle
+import re
 import sys
 
 import numpy as np
@@ -17,10 +20,17 @@ import pytest
 import distal
 from distal import Bolt, Box, Circle, Cylinder, Gear, Nut, Scene, Shape, Sphere, Text, choose
 from distal.diagnostics import CompileError
+from distal.fields.guarantees import Operator, Primitive
 from distal.fields.library import PRIMITIVES
 from distal.lang import func, integer, length, slider, vec3
+from distal.scene.lowering.parts.table import PARTS
+from distal.scene.lowering.smooth.cells import CELLS
 from distal.scene.objects import shapes
 from distal.scene.objects.materials import Material
+from distal.scene.tree import digests
+from distal.scene.tree.digests import digest_of, digest_of_node
+from distal.scene.tree.node import Node
+from distal.scene.tree.rules import name_of
 from tests.fields.drawing import default_sample, random_sample
 from tests.fields.seeds import seed_of
 from tests.scene.constructor_cases import CASES
@@ -35,6 +45,15 @@ def same(a, b):
     if isinstance(a, float | int | tuple | list) and isinstance(b, float | int | tuple | list):
         return np.shape(a) == np.shape(b) and np.allclose(a, b, rtol=1e-6, atol=1e-9)
     return a is b or bool(a == b)
+
+
+def evaluated(value):
+    """Return what the text of an object evaluates to; the object itself if it does not evaluate."""
+    text = repr(value)
+    return value if re.search("<[^|]", text) else eval(text, {"__builtins__": __builtins__}, NAMES)
+
+
+NAMES = {**vars(distal.lang), **{name: getattr(distal, name) for name in distal.__all__}}
 
 
 def field_of(shape):
@@ -62,6 +81,9 @@ def test_a_shape_of_the_library_shows_its_arguments(name):
     again = kind(**shape.arguments)
     assert dict(again.arguments) == dict(shape.arguments)
     assert (field_of(again) == field_of(shape)).all()
+    assert again == shape == evaluated(shape) and hash(again) == hash(shape)
+    other = pickle.loads(pickle.dumps(shape))
+    assert type(other) is kind and other == shape and (field_of(other) == field_of(shape)).all()
 
 
 @pytest.mark.parametrize("name", sorted(PRIMITIVES))
@@ -189,6 +211,11 @@ def test_called_objects_show_their_arguments(case):
         assert hasattr(value, name)
     again = value.replace()
     assert list(again.arguments) == list(value.arguments)
+    assert again == value and hash(again) == hash(value)
+    other = pickle.loads(pickle.dumps(value))
+    assert other == value and list(other.arguments) == list(value.arguments)
+    # A sky may be a light and a background.
+    assert repr(value).startswith("<") or evaluated(value) == value
     for name, given in value.arguments.items():
         changed = value.replace(**{name: given}) if given is not None else value
         assert same(changed.arguments[name], given), name
@@ -252,3 +279,137 @@ def test_scenes_are_replaced():
 def test_copy_replace():
     assert copy.replace(Sphere(1.0), radius=2.0).radius == 2.0  # type: ignore[attr-defined]
     assert copy.replace(Scene(Sphere()), glow=0.5).glow == 0.5  # type: ignore[attr-defined]
+
+
+# Equality by value
+
+
+def test_shapes_are_equal_by_value():
+    assert Sphere(1) == Sphere(1.0) and hash(Sphere(1)) == hash(Sphere(1.0))
+    assert Sphere(1.0) != Sphere(2.0) and Sphere(1.0) != Circle(1.0) and Sphere() != 1.0
+    assert Sphere().named("a") != Sphere().named("b")
+    assert Sphere().paint("red") == Sphere().paint("#ff0000") != Sphere().paint("blue")
+    assert {Sphere(1.0) | Box(): "here"}[Sphere(1.0) | Box()] == "here"
+    assert Box() | Sphere() != Sphere() | Box()
+    # What it was made by does not count, its class neither.
+    bolt = Bolt("M6", 25.0)
+    assert bolt == Bolt("M6", length=25.0) != Bolt("M6", 24.0)
+    assert Shape._of(bolt.node) == bolt
+    radius, same_radius = (slider("Radius", 1.0, 0.5, 2.0) for _ in range(2))
+    assert Sphere(2.0 * radius) == Sphere(2.0 * same_radius) != Sphere(3.0 * radius)
+    assert Sphere(radius) != Sphere(slider("Radius", 1.0, 0.5, 3.0))
+
+
+def test_textures_are_equal_by_content():
+    rows = np.random.default_rng(1).uniform(size=(8, 8, 3))
+    first, second = (distal.matte(distal.image_pattern(rows.copy())) for _ in range(2))
+    assert first == second and hash(first) == hash(second)
+    assert first != distal.matte(distal.image_pattern(rows + 0.1))
+    pictures = [distal.lang.Texture2D(rows.copy()) for _ in range(2)]
+    assert digest_of(pictures[0]) == digest_of(pictures[1])
+    files = [distal.lang.Texture2D(name) for name in ("a.png", "a.png", "b.png")]
+    assert digest_of(files[0]) == digest_of(files[1]) != digest_of(files[2])
+    opaque = [object(), object()]
+    assert digest_of(opaque[0]) == digest_of(opaque[0]) != digest_of(opaque[1])
+
+
+NEAR = 1.0
+
+
+def test_functions_are_equal_by_their_text_and_what_they_read():
+    def scaled(factor):
+        @func
+        def scaled_ball(p: vec3) -> float:
+            return (length(p) - NEAR) * factor
+
+        return Shape.from_function(scaled_ball)
+
+    assert scaled(0.5) == scaled(0.5) != scaled(0.25)
+    before = scaled(0.5)
+    assert before == scaled(0.5)
+    globals()["NEAR"] = 2.0
+    try:
+        assert before != scaled(0.5)
+    finally:
+        globals()["NEAR"] = 1.0
+    assert before == scaled(0.5)
+
+
+def test_lights_materials_scenes_and_curves_are_equal_by_value():
+    pairs = [
+        (lambda **k: distal.PointLight((1, 2, 3), **k), {"intensity": 2.0}),
+        (lambda **k: distal.Camera((0, 1, 4), **k), {"fov": 0.4}),
+        (lambda **k: distal.Sky(**k), {"light": True}),
+        (lambda **k: distal.glass(**k), {"ior": 1.4}),
+        (lambda **k: distal.checker("red", "blue", **k), {"size": 0.3}),
+        (lambda **k: distal.night(**k), {"exposure": 0.4}),
+        (lambda **k: Scene(Sphere(), **k), {"exposure": 0.4}),
+        (lambda **k: Scene(Sphere(), **k), {"shadows": False}),
+        (lambda **k: distal.Background((1, 0, 0)), {}),
+    ]
+    for make, other in pairs:
+        assert make() == make() and hash(make()) == hash(make())
+        assert not other or make() != make(**other)
+    assert distal.glass() != distal.PointLight((1, 2, 3))
+    assert distal.matte("red").replace(priority=2) != distal.matte("red")
+    circle = distal.Curve.from_function(lambda t: (math.cos(t), 0.0, math.sin(t)), 0, 3)
+    assert circle == circle.replace() != circle.replace(end=2.0)
+
+
+def test_parameters_are_no_numbers():
+    radius = slider("Radius", 1.0, 0.5, 2.0)
+    assert radius == slider("Radius", 1.0, 0.5, 2.0) != slider("Radius", 1.5, 0.5, 2.0)
+    assert 2.0 * radius == 2.0 * slider("Radius", 1.0, 0.5, 2.0)
+    with pytest.raises(TypeError, match="no value yet"):
+        _ = radius == 1.0
+
+
+def test_pictures_are_equal_by_their_pixels():
+    first, second = (Sphere().render((8, 6)) for _ in range(2))
+    assert first == second and hash(first) == hash(second)
+    assert first != Sphere().render((8, 6), view="normal") and first != first.array.tolist()
+
+
+def test_a_deep_tree_is_compared_without_recursion():
+    rule, first = Sphere().translate(1, 0, 0).node, Sphere().node
+    trees = [first, first]
+    for _ in range(5000):
+        trees = [distal_node(rule, tree) for tree in trees]
+    assert digest_of_node(trees[0]) == digest_of_node(trees[1]) != digest_of_node(first)
+
+
+def distal_node(like, child):
+    return Node(like.rule, like.flat, (child,), like.numbers, like.constants)
+
+
+def test_nothing_is_digested_unless_it_is_compared(monkeypatch):
+    """Compiled functions are kept by identity: a digest of a large tree takes a second."""
+
+    def refused(*_):
+        raise AssertionError("it was hashed or compared")
+
+    monkeypatch.setattr(digests, "digest_of_node", refused)
+    monkeypatch.setattr(digests, "digest_of", refused)
+    shape = (Sphere(0.7).paint("red") | Box(slider("Side", 0.5, 0.1, 1.0))).translate(1, 0, 0)
+    assert shape((1.0, 0.0, 0.0)) == pytest.approx(-0.7)
+    assert shape.gradient((3.0, 0.0, 0.0))[0] == pytest.approx(1.0)
+    assert shape.heights((3, 3)).heights.shape == (3, 3)
+    assert distal.compile(Scene(shape, lights=[distal.PointLight((1, 2, 3))]), "wgsl").text
+
+
+def test_equal_objects_do_not_share_what_belongs_to_one():
+    first, second = Sphere(0.7), Sphere(0.7)
+    assert first == second
+    assert first((0.0, 0.0, 0.0)) == second((0.0, 0.0, 0.0)) == pytest.approx(-0.7)
+    sky = distal.Sky(light=True)
+    scene = Scene(Sphere(), lights=[distal.Sky(light=True)], background=sky)
+    assert len(scene.lights) == 2  # two equal skies are two lights
+
+
+def test_every_rule_of_the_library_has_a_name():
+    for each in gc.get_objects():
+        if isinstance(each, Operator):
+            # Those of tables exist in compiled programs alone.
+            assert name_of(each) or each in (CELLS, PARTS), each.name
+        elif isinstance(each, Primitive) and each.distance.__module__.startswith("distal.fields"):
+            assert name_of(each), each.name

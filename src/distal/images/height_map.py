@@ -36,6 +36,21 @@ class HeightMap:
     provenance: Provenance = field(default_factory=Provenance)
     stats: Mapping[str, Any] = field(default_factory=dict)
 
+    def __eq__(self, other: object) -> bool:
+        """Return whether heights and normals are the same to the bit; how they came does not count.
+
+        NaN is equal to itself.
+        """
+        if not isinstance(other, HeightMap):
+            return NotImplemented
+        return self is other or self._contents() == other._contents()
+
+    def __hash__(self) -> int:
+        return hash(self._contents())
+
+    def _contents(self) -> tuple[Any, ...]:
+        return self.heights.shape, self.heights.tobytes(), self.normals.tobytes()
+
     def picture(self) -> Picture:
         """Return a picture of the normals, as ``view="normal"`` shows them.
 

@@ -98,6 +98,26 @@ class Picture:
         layers = {name: _layer(name, values, self.array) for name, values in self.layers.items()}
         object.__setattr__(self, "layers", MappingProxyType(layers))
 
+    def __reduce__(self) -> Any:
+        given = (self.array, self.provenance, dict(self.stats), self.light, dict(self.layers))
+        return _picture_of, (given, self.rounded)
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether pixels and layers are the same to the bit; how they came does not count.
+
+        NaN is equal to itself.
+        """
+        if not isinstance(other, Picture):
+            return NotImplemented
+        return self is other or self._contents() == other._contents()
+
+    def __hash__(self) -> int:
+        return hash(self.array.tobytes())
+
+    def _contents(self) -> list[tuple[str, tuple[int, ...], bytes]]:
+        arrays = {"": self.array, **self.layers}
+        return [(name, arrays[name].shape, arrays[name].tobytes()) for name in sorted(arrays)]
+
     @property
     def levels(self) -> NDArray[np.uint8]:
         """``array`` rounded to 256 levels, as saving does: uint8, (height, width, 4)."""
@@ -246,3 +266,10 @@ def _layer(name: str, values: NDArray[Any], array: NDArray[np.float32]) -> NDArr
     view = values.view()
     view.setflags(write=False)
     return view
+
+
+def _picture_of(given: tuple[Any, ...], rounded: NDArray[np.uint8] | None) -> Picture:
+    """Return a picture from a pickle."""
+    made = Picture(*given)
+    object.__setattr__(made, "rounded", rounded)
+    return made

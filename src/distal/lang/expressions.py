@@ -259,6 +259,9 @@ class Expression(Symbolic):
     def __deepcopy__(self, memo: Any) -> Expression:
         return self
 
+    def _pickled(self) -> Any:
+        return Expression, (self.node, self.parameters)
+
     def __repr__(self) -> str:
         return f"<expression {self.type}: {print_expression(self.node)}>"
 

@@ -11,14 +11,14 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import FunctionType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from distal.at_once import cached_property
 from distal.ir.limits import FRAME_SECONDS
 from distal.lang.live_textures import LastFrame
 from distal.lang.presentable import Presentable
 from distal.lang.render_options import Cancel, Progress, RenderOptions
-from distal.lang.runtime_access import executor, shown_buffers
+from distal.lang.runtime_access import executor, function_travel, shown_buffers
 from distal.lang.source import Source, capture
 
 if TYPE_CHECKING:
@@ -68,7 +68,10 @@ class Func:
 
     Attributes:
         overloads: One or more functions that differ in the types of their parameters.
+        remade: A function and the arguments that make it again, of one that is made of data.
     """
+
+    remade: tuple[Callable[..., Any], Any] | None = None
 
     def __init__(self, overload: Overload) -> None:
         python = overload.python
@@ -105,9 +108,15 @@ class Func:
         """Return the parameters (sliders and so on) that this and the functions it calls read."""
         return executor().parameters(self)
 
-    def __reduce__(self) -> str:
-        """Pickle by name, as for every Python function; therefore a copy is the same object."""
-        return self.__qualname__
+    def __reduce__(self) -> Any:
+        """Pickle by name if an import finds it; else as its source and the values it reads."""
+        return function_travel.reduced(self)
+
+    def __copy__(self) -> Self:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        return self
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__.lower()} {self.__qualname__}>"

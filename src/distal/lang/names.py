@@ -7,6 +7,7 @@ the right meaning.
 from __future__ import annotations
 
 import builtins
+import importlib
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,6 +23,9 @@ class LangFunction:
     """A built-in function and its intrinsic. A call from Python is evaluated by the executor."""
 
     row: Intrinsic
+
+    def __reduce__(self) -> Any:
+        return _of_language, (self.row.name,)
 
     @property
     def __name__(self) -> str:
@@ -54,6 +58,11 @@ class LangFunction:
         return f"<built-in {self.row.name}>"
 
 
+def _of_language(name: str) -> Any:
+    """Return a built-in or a form by its name, for pickles."""
+    return getattr(importlib.import_module("distal.lang"), name)
+
+
 def _means_python(args: tuple[Any, ...]) -> bool:
     """Return whether Python's built-in of the same name is meant: there are no vectors."""
     if any(isinstance(arg, VectorValue) for arg in args):
@@ -78,6 +87,9 @@ class LangForm:
     name: str
     signature: str
     doc: str
+
+    def __reduce__(self) -> Any:
+        return _of_language, (self.name,)
 
     @property
     def __name__(self) -> str:

@@ -81,14 +81,22 @@ class Parameter(Symbolic):
     span: Span | None = field(default_factory=author_place, compare=False)
 
     def __repr__(self) -> str:
-        match self.kind:
-            case ParameterKind.CHOICE if isinstance(self.default, int):
-                shown = f"'{self.options[self.default]}' of {', '.join(self.options)}"
-            case ParameterKind.SLIDER | ParameterKind.INTEGER if self.high is not None:
-                shown = f"{self.default}, {self.low} to {self.high}"
-            case _:
-                shown = f"{self.default}"
-        return f"<{self.kind.value} '{self.label}': {shown}>"
+        """Return the call that declares it, without what it has by default."""
+        given = [repr(self.label)]
+        if self.kind is ParameterKind.CHOICE and isinstance(self.default, int):
+            given += [repr(list(self.options)), repr(self.options[self.default])]
+        else:
+            given.append(repr(self.default))
+        if self.kind in (ParameterKind.SLIDER, ParameterKind.INTEGER):
+            given += [repr(self.low), repr(self.high)]
+            if self.step != (1 if self.kind is ParameterKind.INTEGER else None):
+                given.append(repr(self.step))
+        for name in ("log", "group", "help"):
+            if value := getattr(self, name):
+                given.append(f"{name}={value!r}")
+        if self.name != _usual_name(self.label):
+            given.append(f"name={self.name!r}")
+        return f"{self.kind.value}({', '.join(given)})"
 
     def as_expression(self) -> Expression:
         """Return its value as an expression."""
@@ -101,6 +109,9 @@ class Parameter(Symbolic):
         if isinstance(other, int | float) or other in self.options:
             refuse_comparison("==")
         return NotImplemented
+
+    def _pickled(self) -> Any:
+        return Parameter, tuple(getattr(self, each.name) for each in fields(self))
 
     def __hash__(self) -> int:
         return hash((self.name, self.label, self.kind))
@@ -491,6 +502,13 @@ def parameter_name(label: object, name: object = None) -> str:
             f"the label '{label}' has no letter or digit to make a name of; choose one: name=\"…\""
         )
     return derived if derived.isidentifier() else f"p_{derived}"
+
+
+def _usual_name(label: str) -> str | None:
+    try:
+        return parameter_name(label)
+    except ValueError:  # it has no letter to make one of
+        return None
 
 
 def _chosen_name(label: str, name: object) -> str:

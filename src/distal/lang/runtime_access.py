@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from distal.runtime import standard_executor
     from distal.runtime.executor import PythonExecutor
     from distal.scene.objects import alternatives
+    from distal.scene.tree import function_travel
     from distal.scene.viewing import viewable as viewing
     from distal.video import recording
 else:
@@ -34,6 +35,7 @@ else:
     alternatives = LazyModule("distal.scene.objects.alternatives")
     constant_evaluation = LazyModule("distal.compiler.constant_evaluation")
     exports = LazyModule("distal.export.registry")
+    function_travel = LazyModule("distal.scene.tree.function_travel")
     measuring = LazyModule("distal.mesh.measuring")
     mesh_cell = LazyModule("distal.notebook.mesh_cell")
     meshing = LazyModule("distal.mesh.meshing")
@@ -72,6 +74,7 @@ __all__ = [
     "constant_evaluation",
     "executor",
     "exports",
+    "function_travel",
     "measuring",
     "mesh_cell",
     "meshing",

@@ -61,6 +61,11 @@ def struct(cls: C) -> C:
     return made
 
 
+def is_struct(value: object) -> bool:
+    """Return whether an object is the class of a struct."""
+    return isinstance(value, type) and "__distal_struct__" in vars(value)
+
+
 def _adopt_methods(cls: type, enclosing: Mapping[str, Any]) -> None:
     """Make each ``@func`` of the class a method of the struct."""
     methods: dict[str, Func] = {}

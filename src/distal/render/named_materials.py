@@ -126,7 +126,7 @@ def _declare_metal(name: str, row: Row) -> None:
 
     lines = "    roughness: 0 mirrors sharply, 1 hardly mirrors.\n"
     surface_of.__doc__ = _documented(row, "a metal.", lines)
-    material(name, reflects=True)(named(name, surface_of))
+    globals()[name] = material(name, reflects=True)(named(name, surface_of))
 
 
 def _declare_coated(name: str, row: Row) -> None:
@@ -141,7 +141,7 @@ def _declare_coated(name: str, row: Row) -> None:
         "    ior: Index of refraction of its surface.\n"
     )
     surface_of.__doc__ = _documented(row, "it scatters light below a reflecting surface.", lines)
-    material(name, reflects=True)(named(name, surface_of))
+    globals()[name] = material(name, reflects=True)(named(name, surface_of))
 
 
 def _declare_clear(name: str, row: Row) -> None:
@@ -156,7 +156,7 @@ def _declare_clear(name: str, row: Row) -> None:
         "    ior: Index of refraction.\n"
     )
     surface_of.__doc__ = _documented(row, "transparent, it refracts light.", lines)
-    material(name, reflects=True, refracts=True)(named(name, surface_of))
+    globals()[name] = material(name, reflects=True, refracts=True)(named(name, surface_of))
 
 
 for _name, _row in METALS.items():

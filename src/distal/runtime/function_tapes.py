@@ -67,7 +67,7 @@ class FunctionTapes:
             self._known[function] = _Known(None, None, {}, program)
             return program
 
-        return self._at_once.result(function, found, made)
+        return self._at_once.result(id(function), found, made)
 
     def program(
         self, function: Composed, lowered: Lowered, uniforms: Mapping[str, Any]
@@ -104,7 +104,7 @@ class FunctionTapes:
             self._known[function] = _Known(lowered, module, dict(uniforms), program)
             return program
 
-        return self._at_once.result(function, found, made)
+        return self._at_once.result(id(function), found, made)
 
 
 def _module_of(lowered: Lowered) -> Module:

@@ -177,7 +177,7 @@ class StandardExecutor:
             lowered = known[types] = Lowered.of(function, types)
             return lowered
 
-        return self._at_once.result((function, types), found, made)
+        return self._at_once.result((id(function), types), found, made)
 
 
 class ValueOf(Composed):

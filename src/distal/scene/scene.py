@@ -47,7 +47,6 @@ from distal.scene.scene_arguments import (
 )
 from distal.scene.scene_values import SceneValue
 from distal.scene.steering import Steering
-from distal.scene.tree.shown_numbers import placed
 from distal.scene.view_options import MODES, ViewOptions
 
 if TYPE_CHECKING:
@@ -59,6 +58,7 @@ if TYPE_CHECKING:
     from distal.mesh.scene_parts import SceneParts
     from distal.scene import rendering
     from distal.scene.looks.look import Look
+    from distal.scene.objects import shape_rows
     from distal.scene.objects.argument_types import Color, Number, ParameterValues, Varying, Vector
     from distal.scene.objects.backgrounds import Background, Surroundings
     from distal.scene.objects.cameras import BaseCamera
@@ -66,6 +66,7 @@ if TYPE_CHECKING:
     from distal.scene.objects.materials import Material
     from distal.scene.objects.shape import Shape
 else:
+    shape_rows = LazyModule("distal.scene.objects.shape_rows")
     rendering = LazyModule("distal.scene.rendering")  # needs NumPy
 
 
@@ -77,6 +78,10 @@ WORDS: Final[Mapping[str, tuple[str, ...]]] = {
     "march": ("sphere", "heightfield"),
     "mode": MODES,
 }
+
+
+# What a scene computes of its arguments when it is first asked, and what marks it as complete.
+_COMPUTED: Final = ("_whole", "_kept_digest", "sectioned", "renderer")
 
 
 class Scene(SceneValue, Composed, Presentable):
@@ -274,18 +279,17 @@ class Scene(SceneValue, Composed, Presentable):
         copy_loaded_from(self, made)
         return made
 
+    def _pickled(self) -> Any:
+        computed = (*_COMPUTED, "display", "_pictures")
+        state = {n: v for n, v in self.__dict__.items() if n not in computed}
+        return _scene_of, (type(self), shape_rows.packed(state))
+
     # The kernel is compiled once: a later change would have no effect.
 
     def __setattr__(self, name: str, value: object) -> None:
-        if "_whole" in self.__dict__:
+        if "_whole" in self.__dict__ and name != "_kept_digest":
             raise AttributeError("a scene does not change; make another: Scene(shape, …)")
         object.__setattr__(self, name, value)
-
-    def __repr__(self) -> str:
-        parts, lights = self.shape.node.parts, len(self.lights)
-        made = f"{parts} part{'s' * (parts != 1)}, {lights} light{'s' * (lights != 1)}"
-        place = "" if self.place is None else f", {placed(self.place)}"
-        return f"<Scene '{self.name}': {made}, {type(self.camera).__name__}{place}>"
 
     @cached_property
     def renderer(self) -> str:
@@ -608,8 +612,7 @@ class Scene(SceneValue, Composed, Presentable):
     def _copied(self) -> Scene:
         """Return a copy that can be changed, without what was computed of this scene."""
         made = Scene.__new__(Scene)
-        computed = ("_whole", "sectioned", "renderer")
-        made.__dict__.update({n: v for n, v in self.__dict__.items() if n not in computed})
+        made.__dict__.update({n: v for n, v in self.__dict__.items() if n not in _COMPUTED})
         made.display = DisplayEncoding(made)
         made._pictures = {}
         copy_loaded_from(self, made)
@@ -630,3 +633,11 @@ class Scene(SceneValue, Composed, Presentable):
         parts: list[Any] = [*self.lights, self.camera, self.background, self.material]
         for part in parts:
             yield from part.functions()
+
+
+def _scene_of(kind: type[Scene], packed: shape_rows.PackedShapes) -> Scene:
+    """Return a scene from a pickle."""
+    made = kind.__new__(kind)
+    made.__dict__.update(shape_rows.unpacked(packed))
+    made.__dict__.update(display=DisplayEncoding(made), _pictures={}, _whole=True)
+    return made

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from distal.scene.looks.look import Look
     from distal.scene.objects.materials import Material
     from distal.scene.tree.conversion import Number
+    from distal.scene.tree.texts import TextWriter
 
 
 class SceneValue(AuthorObject):
@@ -49,6 +50,20 @@ class SceneValue(AuthorObject):
         "far",
         "stride",
         "stride_growth",
+    )
+
+    # The arguments that are settings.
+    setting_names: ClassVar[tuple[str, ...]] = (
+        "tone_map",
+        "glow",
+        "shadows",
+        "mode",
+        "bounces",
+        "shutter",
+        "normals",
+        "march",
+        "steps",
+        "acceleration",
     )
 
     @property
@@ -82,6 +97,22 @@ class SceneValue(AuthorObject):
                 hint = did_you_mean(name, self._given) or f"it takes {', '.join(self._given)}"
                 refuse_kind(f"a scene has no '{name}'", hint, place)
         return self._remade(changes, place)
+
+    def _written(self, writer: TextWriter) -> str:
+        parameters = inspect.signature(type(self)).parameters
+        defaults = {name: parameter.default for name, parameter in parameters.items()}
+        # Types first: a parameter cannot be compared with a number.
+        given = {
+            n: v
+            for n, v in self.arguments.items()
+            if type(v) is not type(defaults[n]) or v != defaults[n]
+        }
+        return writer.call(type(self), given)
+
+    def _compared(self) -> tuple[Any, ...]:
+        names = ("name", "subject", "shape", "lights", "camera", "background", "material", "look")
+        drawn = tuple(getattr(self, name) for name in (*names, "numbers", *self.setting_names))
+        return "scene", *drawn
 
     def _remade(self, changes: Mapping[str, Any], place: Span | None) -> Self:
         """Return the scene of other arguments; ``place`` is the line of its messages."""

@@ -25,7 +25,7 @@ class VmFunction(Func):
     """
 
     def __init__(self, program: VmProgram) -> None:
-        self.program = program
+        self.program, self.remade = program, (VmFunction, program)
         name = f"{_identifier(program.name)}_operations"
         self.__name__ = self.__qualname__ = name
         self.__module__ = __name__
@@ -50,7 +50,7 @@ def point_function(program: VmProgram) -> Func:
     name = _identifier(program.name)
     text = f"def {name}(p: {point}) -> float:\n    return {inner.name}(p)\n"
     made = Func(overload_of(text, name, {inner.name: inner}))
-    made.__dict__["program"] = program
+    made.__dict__.update(program=program, remade=(point_function, program))
     return made
 
 

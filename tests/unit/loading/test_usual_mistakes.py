@@ -95,7 +95,7 @@ error: a scene shows shapes, not None
     "a scene in a scene": (
         "from distal import *\nscene = Scene(Scene(Sphere(1.0)))\n",
         """\
-error: a scene shows shapes, not <Scene 'scene': 2 parts, 3 lights, FramingCamera, scene.py:2
+error: a scene shows shapes, not Scene(shape=Sphere(radius=1.0))
   --> scene.py:2:9
    |
  2 | scene = Scene(Scene(Sphere(1.0)))

@@ -19,6 +19,9 @@ from distal.lang.source_places import author_place
 from distal.scene.tree.arguments import arguments
 from distal.scene.tree.value import AuthorObject, value_of
 
+if TYPE_CHECKING:
+    from distal.scene.tree.texts import TextWriter
+
 # How the main light shines: as a lamp at some distance, or as the sun.
 Shining: TypeAlias = Literal["lamp", "sun"]
 
@@ -141,7 +144,7 @@ class Look(AuthorObject, Immutable):
         numbers: All numbers, checked, by name.
     """
 
-    __slots__ = ("_changed", "name", "numbers", "row")
+    __slots__ = ("_changed", "_kept_digest", "name", "numbers", "row")
 
     name: str
     row: LookRow
@@ -160,20 +163,31 @@ class Look(AuthorObject, Immutable):
             colors=COLORS,
             place=place,
         )
-        made = {"name": name, "row": row, "numbers": numbers, "_changed": changed}
-        for attribute, value in made.items():
-            object.__setattr__(self, attribute, value)
+        self._keep(name=name, row=row, numbers=numbers, _changed=changed)
+
+    def _keep(self, **attributes: Any) -> None:
+        """Set attributes, on construction only."""
+        for name, value in attributes.items():
+            object.__setattr__(self, name, value)
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a look does not change; make another: {self.name}(…)")
-
-    def __repr__(self) -> str:
-        return f"<look {self.name}>"
 
     @property
     def arguments(self) -> Mapping[str, Any]:
         """All numbers of the look, checked, by name."""
         return MappingProxyType({name: value_of(v) for name, v in self.numbers.items()})
+
+    def _written(self, writer: TextWriter) -> str:
+        numbers = self.arguments
+        changed = {name: numbers[name] for name in self._changed}
+        return writer.call(self.name, changed)
+
+    def _pickled(self) -> Any:
+        return _look_of, (self.name, self.row, dict(self._changed), dict(self.numbers))
+
+    def _compared(self) -> tuple[Any, ...]:
+        return "look", self.name, self.row, self.numbers
 
     def replace(self, **changes: Any) -> Look:
         """Return the look with other numbers: ``look.replace(exposure=1.2)``.
@@ -197,3 +211,12 @@ class Look(AuthorObject, Immutable):
     def __getitem__(self, name: str) -> Any:
         """Return one of the numbers: a float, a tuple, or an expression."""
         return self.numbers[name].value
+
+
+def _look_of(
+    name: str, row: LookRow, changed: Mapping[str, Any], numbers: Mapping[str, Any]
+) -> Look:
+    """Return a look from a pickle."""
+    made = Look.__new__(Look)
+    made._keep(name=name, row=row, numbers=numbers, _changed=changed)
+    return made

@@ -7,7 +7,7 @@ are. A parameter that changes shows another one without a new compilation; the o
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from distal.diagnostics import Span
 from distal.fields.combine.alternatives import NOTHING, NOTHING_FLAT, SELECT
@@ -90,6 +90,9 @@ def selected(condition: Any, yes: Any, no: Any) -> Any:
         return _shape(yes if test else no, flat=flat)
     first, second = (_node(shape, flat=flat, place=place) for shape in (no, yes))
     return BaseShape._of(_of_two(first, second, test, place))
+
+
+cast("Any", selected).written_as, cast("Any", selected).by_position = "select", True
 
 
 def _listed(which: Any, shapes: Any, place: Span | None) -> Sequence[Any]:

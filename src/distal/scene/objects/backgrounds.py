@@ -79,6 +79,9 @@ class Background(CalledObject):
             call = _plain({"color": what, **numbers}, place)
         self._keep(call=call, light=None)
 
+    def _compared(self) -> tuple[Any, ...]:
+        return self.noun, self.call, self.light
+
     @classmethod
     def of(cls, call: FunctionCall, light: Light | None = None) -> Background:
         """Return the background of a scene function of a direction."""
@@ -115,6 +118,10 @@ class Surroundings(Light):
 
     def _checked(self) -> Iterator[Mapping[str, Any]]:
         yield self.background.values
+
+    def _compared(self) -> tuple[Any, ...]:
+        # What they are as a light follows from the background.
+        return self.noun, self.background, self.light
 
 
 @recorded

@@ -76,6 +76,9 @@ class BaseCamera(CalledObject):
     def _checked(self) -> Iterator[Mapping[str, Any]]:
         yield from (call.values for call in (self.call, self.lens) if call is not None)
 
+    def _compared(self) -> tuple[Any, ...]:
+        return self.noun, self.call, self.lens
+
     def functions(self) -> Iterator[Func]:
         """Yield the scene functions that the camera calls."""
         yield from self.call.functions()
@@ -110,6 +113,7 @@ class TurnedCamera(BaseCamera):
     __slots__ = ()
 
     alternatives: ClassVar = (("screen_distance", "fov", "fov_deg"),)
+    written_as: ClassVar = "Camera.yaw_pitch_roll"
 
     def __init__(
         self,

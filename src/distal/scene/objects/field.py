@@ -43,7 +43,6 @@ from distal.scene.objects.vm_shapes import vm_node
 from distal.scene.tree.arguments import RESERVED, slots_of
 from distal.scene.tree.conversion import Asked, number, plain_choice
 from distal.scene.tree.conversion import Number as Checked
-from distal.scene.tree.described import described
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.node import Node
 from distal.scene.tree.value import recorded
@@ -109,9 +108,6 @@ class BaseShape(ShapeValue, Composed, Presentable):
             of_others = not name.startswith("_") and hasattr(PLAIN[not self.flat], name)
             message = instead(type(self).__name__, name, flat=self.flat, of_others=of_others)
             raise AttributeError(message, name=name, obj=self)
-
-    def __repr__(self) -> str:
-        return described(type(self).__name__, self.node)
 
     @property
     def name(self) -> str:  # type: ignore[override]

@@ -57,11 +57,6 @@ class Light(SceneObject):
             radiance=call_of_part(call, self.declaration.radiance),
         )
 
-    def __repr__(self) -> str:
-        call = self.sample or self.ambient
-        what = type(self).__name__ if call is None else call.described
-        return f"<light {what}>"
-
     @property
     def directions(self) -> tuple[FunctionCall, FunctionCall] | None:
         """Random directions for ``radiance``, if it is too uneven for those of a surface.
@@ -74,6 +69,9 @@ class Light(SceneObject):
         yield from (
             call.values for call in (self.radiance, self.sample, self.ambient) if call is not None
         )
+
+    def _compared(self) -> tuple[Any, ...]:
+        return self.noun, self.sample, self.ambient, self.radiance
 
     def functions(self) -> Iterator[Func]:
         """Yield the scene functions that the light calls."""

@@ -35,6 +35,7 @@ from distal.scene.tree.value import CallRecord, recorded, value_of
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Color, Number, Varying
+    from distal.scene.tree.texts import TextWriter
 
 _WEIGHTS: Final = ("diffuse", "specular", "transmission")
 # The sum of weights like 0.85, 0.05 and 0.1 is slightly above 1 in floats.
@@ -173,6 +174,14 @@ class Material(CalledObject):
             made._record(origin)
         return made
 
+    def _written(self, writer: TextWriter) -> str:
+        text = super()._written(writer)
+        return f"{text}.replace(priority={self.priority})" if self.priority else text
+
+    def _compared(self) -> tuple[Any, ...]:
+        rays = (self.reflects, self.refracts, self.emits)
+        return self.noun, self.call, rays, self.priority
+
     @property
     def uses(self) -> frozenset[str]:
         """Which of ``declarations.PLACE_NAMES`` the material depends on."""
@@ -229,6 +238,9 @@ def _bumped(surface: Material, height: Number | Varying) -> Material:
     return surface.bump(height)
 
 
+cast("Any", _bumped).written_as = ".bump"
+
+
 @func
 def surface(
     color: vec3,
@@ -278,7 +290,10 @@ def accept(value: Any, asked: Asked) -> Any:
     if value.result is asked.type:
         return value
     if asked.type is VEC3 and value.result is FLOAT:
-        return Pattern("grey", grey, {"amount": value}, value.place)
+        made = Pattern("grey", grey, {"amount": value}, value.place)
+        if (origin := value._origin_or_none) is not None:
+            made._record(origin)
+        return made
     refuse_kind(
         f"'{asked.label}' takes a {asked.type}; {value.what} gives a {value.result}",
         place=asked.place,
@@ -321,6 +336,9 @@ def pattern_of(function: Func, **numbers: Any) -> Pattern | Material:
     return own_pattern(function, (), numbers, author_place())
 
 
+cast("Any", pattern_of).written_as = "pattern"
+
+
 def mixed(a: Material, b: Material, t: Any, what: str, place: Span | None) -> Material:
     """Return a mixture of two materials.
 
@@ -353,6 +371,9 @@ def mixed(a: Material, b: Material, t: Any, what: str, place: Span | None) -> Ma
 
 def _mixed_again(a: Material, b: Material, t: Number | Varying) -> Material:
     return a.mix(b, t)
+
+
+cast("Any", _mixed_again).written_as = ".mix"
 
 
 def as_material(value: Any, place: Span | None = None) -> Material:

@@ -26,7 +26,7 @@ class SceneObject(CalledValue, Immutable):
         declaration: The declaration that the class was made from, if it was made from one.
     """
 
-    __slots__ = ("__weakref__", "_origin")
+    __slots__ = ("__weakref__", "_kept_digest", "_origin")
 
     noun: ClassVar[str]
     declaration: ClassVar[Declaration]
@@ -38,9 +38,6 @@ class SceneObject(CalledValue, Immutable):
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"a {self.noun} does not change; make another")
-
-    def __repr__(self) -> str:
-        return f"<{self.noun} {type(self).__name__}>"
 
 
 class CalledObject(SceneObject):
@@ -54,11 +51,11 @@ class CalledObject(SceneObject):
 
     call: FunctionCall
 
-    def __repr__(self) -> str:
-        return f"<{self.noun} {self.call.described}>"
-
     def _checked(self) -> Iterator[Mapping[str, Any]]:
         yield self.call.values
+
+    def _compared(self) -> tuple[Any, ...]:
+        return self.noun, self.call
 
     def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
         """Emit the call. ``site`` provides the function's other arguments (point, normal, cell)."""

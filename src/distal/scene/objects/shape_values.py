@@ -16,6 +16,7 @@ from distal.fields.guarantees import Operator, Primitive
 from distal.fields.library import OPERATORS
 from distal.fields.repeat.varied import IN_CELLS
 from distal.lang.functions import Func
+from distal.lang.lazy_module import LazyModule
 from distal.lang.source_places import author_place
 from distal.scene.tree.arguments import RESERVED, RESERVED_OF_SHAPES, slots_of
 from distal.scene.tree.errors import refuse, refuse_kind
@@ -24,11 +25,18 @@ from distal.scene.tree.value import AuthorObject, CallRecord, state_of, value_of
 from distal.scene.tree.varying import holds
 
 if TYPE_CHECKING:
+    from distal.scene.objects import shape_rows, shape_texts
     from distal.scene.objects.field import BaseShape
     from distal.scene.objects.materials import Material
+    from distal.scene.tree import digests
+    from distal.scene.tree.texts import TextWriter
+else:
+    shape_rows = LazyModule("distal.scene.objects.shape_rows")
+    shape_texts = LazyModule("distal.scene.objects.shape_texts")
+    digests = LazyModule("distal.scene.tree.digests")  # needs hashlib and json
 
 # The key in a node's derived values of the call that it was made by.
-_ORIGIN: Final = "origin"
+ORIGIN: Final = "origin"
 # The class of each primitive of the library, by the identity of its rule; ``shapes`` fills it.
 CLASSES_OF_RULES: Final[dict[int, type[BaseShape]]] = {}
 # The class of an operator's result, by ``flat``; the module ``shape`` fills it.
@@ -47,9 +55,8 @@ class ShapeValue(AuthorObject):
 
         A number that is a slider or an expression comes back as that.
         """
-        node = authored(self.node)
-        origin = _origin_of(node)
-        return _arguments_of(node) if origin is None else origin.arguments
+        origin = self._origin
+        return _arguments_of(authored(self.node)) if origin is None else origin.arguments
 
     @property
     def operator(self) -> str | None:
@@ -72,6 +79,22 @@ class ShapeValue(AuthorObject):
         """The material that ``paint`` has set; None if there is none."""
         found: Material | None = self.node.material
         return found
+
+    @property
+    def _origin(self) -> CallRecord | None:
+        """The call that made the shape; None for shapes of the library, and operators' results."""
+        return _origin_of(authored(self.node))
+
+    @property
+    def _class(self) -> type[BaseShape] | None:
+        """The class of a shape of the library; None for others."""
+        return CLASSES_OF_RULES.get(id(authored(self.node).rule))
+
+    @property
+    def _made_with(self) -> tuple[str, Any, Any]:
+        """The name, the material and the cut material that the call that made it has given it."""
+        origin = self._origin
+        return ("", None, None) if origin is None else origin.made_with
 
     @property
     def _operator(self) -> Operator | None:
@@ -130,7 +153,7 @@ class ShapeValue(AuthorObject):
         """Return the same shape with another material or name: what it was made from is kept."""
         origin = _origin_of(authored(self.node))
         if origin is not None and _origin_of(authored(node)) is None:
-            node.derived(_ORIGIN, lambda: origin)
+            node.derived(ORIGIN, lambda: origin)
         return type(self)._of_node(node, state_of(self))
 
     @classmethod
@@ -146,11 +169,29 @@ class ShapeValue(AuthorObject):
         made._set_node(node)
         return made
 
+    @classmethod
+    def _of_tree(cls, node: Node, state: Mapping[str, Any]) -> Self:
+        """Return a shape of a tree that was checked and made shallow before."""
+        made = cls.__new__(cls)
+        made.__dict__.update(state, node=node)
+        return made
+
     def _set_node(self, node: Node) -> None:
         raise NotImplementedError
 
+    def _digest(self) -> bytes:
+        return digests.digest_of_node(self.node)
+
+    def _pickled(self) -> Any:
+        return shape_rows.unpacked, (shape_rows.packed(self),)
+
     def _record(self, origin: CallRecord) -> None:
-        authored(self.node).derived(_ORIGIN, lambda: origin)
+        node = authored(self.node)
+        origin.made_with = (node.label, node.material, node.cut_material)
+        node.derived(ORIGIN, lambda: origin)
+
+    def _written(self, writer: TextWriter) -> str:
+        return shape_texts.text_of_shape(self, writer)
 
 
 def authored(node: Node) -> Node:
@@ -211,5 +252,5 @@ def _checked_children(
 
 
 def _origin_of(node: Node) -> CallRecord | None:
-    found: CallRecord | None = node.known(_ORIGIN)
+    found: CallRecord | None = node.known(ORIGIN)
     return found

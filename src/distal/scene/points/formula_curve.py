@@ -7,7 +7,7 @@ evaluated when the curve is made; parameters and time do not change it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -28,10 +28,12 @@ from distal.scene.points.parabolas import Parabolas, parabolas_of
 from distal.scene.points.requests import positive
 from distal.scene.tree.conversion import Asked, number
 from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.value import AuthorObject, CallRecord, recorded
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Number, Vector
     from distal.scene.objects.shape import Shape, Shape2D
+    from distal.scene.tree.texts import TextWriter
 
 Floats = NDArray[np.float64]
 
@@ -45,7 +47,7 @@ _LEAST_STEPS: Final = 512
 _UP: Final = (0.0, 1.0, 0.0)
 
 
-class Curve(Immutable):
+class Curve(AuthorObject, Immutable):
     """A curve in space, given by a formula; followed by parabolas within a tolerance.
 
     Attributes:
@@ -55,11 +57,12 @@ class Curve(Immutable):
         pieces: The number of parabolas.
     """
 
-    __slots__ = ("_parabolas", "_place")
+    __slots__ = ("_kept_digest", "_origin", "_parabolas", "_place")
 
     def __init__(self, parabolas: Parabolas, place: Span | None) -> None:
         self._parabolas, self._place = parabolas, place
 
+    @recorded
     @classmethod
     def from_function(
         cls,
@@ -107,6 +110,32 @@ class Curve(Immutable):
         return cls(parabolas_of(function, first, last, allowed, place), place)
 
     @property
+    def arguments(self) -> Mapping[str, Any]:
+        """The arguments by name; none of a curve that another process made."""
+        origin: CallRecord | None = getattr(self, "_origin", None)
+        return {} if origin is None else origin.arguments
+
+    def replace(self, **changes: Any) -> Curve:
+        """Return the curve with other arguments: ``curve.replace(end=2.0)``.
+
+        Args:
+            changes: The arguments of ``from_function`` that change, by name.
+
+        Raises as ``from_function``.
+        """
+        return Curve.from_function(**{**self.arguments, **changes})
+
+    def _record(self, origin: CallRecord) -> None:
+        self._origin = origin
+
+    def _pickled(self) -> Any:
+        # Without its formula, which may be any function of Python.
+        return Curve, (self._parabolas, self._place)
+
+    def _compared(self) -> tuple[Any, ...]:
+        return "curve", self._parabolas.points, self.closed
+
+    @property
     def closed(self) -> bool:
         """Whether its end is its start."""
         return self._parabolas.closed
@@ -121,7 +150,7 @@ class Curve(Immutable):
         """The number of parabolas."""
         return (len(self._parabolas.points) - 1) // 2
 
-    def __repr__(self) -> str:
+    def _written(self, writer: TextWriter) -> str:
         kind = "closed " if self.closed else ""
         return f"<{kind}curve of {self.pieces} parabolas, error {self.error:.2g}>"
 

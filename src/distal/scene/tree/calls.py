@@ -24,7 +24,6 @@ from distal.render.declarations import PLACE_NAMES
 from distal.render.footprint import footprint_length
 from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.conversion import NO_VALUES, Number
-from distal.scene.tree.shown_numbers import listed, placed
 from distal.scene.tree.value import CalledValue
 from distal.scene.tree.varying import Composer, expression_of
 
@@ -69,11 +68,8 @@ class FunctionCall(Immutable):
         _set_values(self, values)
         _set_place(self, place)
 
-    @property
-    def described(self) -> str:
-        """Its text: what it is, its numbers, the author's line."""
-        place = "" if self.place is None else f", {placed(self.place)}"
-        return f"{self.what}{listed(self.values)}{place}"
+    def _pickled(self) -> Any:
+        return FunctionCall, (self.what, self.func, dict(self.values), self.place)
 
     def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
         """Emit the call. ``site`` provides the function's other arguments (point, normal, cell)."""
@@ -164,12 +160,12 @@ class Pattern(CalledValue, FunctionCall):
     A material accepts it instead of a color or a number.
     """
 
-    __slots__ = ("_origin",)
+    __slots__ = ("_kept_digest", "_origin")
 
     noun = "pattern"
 
-    def __repr__(self) -> str:
-        return f"<pattern {self.described}>"
-
     def _checked(self) -> Iterator[Mapping[str, Any]]:
         yield self.values
+
+    def _compared(self) -> tuple[Any, ...]:
+        return self.noun, self.func, self.values

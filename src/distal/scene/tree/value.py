@@ -16,11 +16,20 @@ from distal.fields.guarantees import ended
 from distal.frontend.problems import did_you_mean
 from distal.ir.nodes import Cast, Uniform
 from distal.lang.expressions import Expression
+from distal.lang.lazy_module import LazyModule
 from distal.lang.source_places import author_place
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.former_names import renamed
 from distal.scene.tree.varying import VaryingNumber
+
+if TYPE_CHECKING:
+    from distal import library_stamp
+    from distal.scene.tree import digests, texts
+else:
+    library_stamp = LazyModule("distal.library_stamp")  # needs hashlib
+    texts = LazyModule("distal.scene.tree.texts")
+    digests = LazyModule("distal.scene.tree.digests")  # needs hashlib and json
 
 Made = TypeVar("Made")
 
@@ -32,9 +41,12 @@ class CallRecord:
         factory: The class or the function.
         kind: The class of the object.
         state: The public attributes of a shape besides its node.
+        made_with: The name, the material and the cut material of a shape that was made.
     """
 
-    __slots__ = ("_args", "_given", "_kwargs", "factory", "kind", "state")
+    __slots__ = ("_args", "_given", "_kwargs", "factory", "kind", "made_with", "state")
+
+    made_with: tuple[str, Any, Any]
 
     def __init__(
         self,
@@ -45,8 +57,26 @@ class CallRecord:
         state: Mapping[str, Any] = MappingProxyType({}),
     ) -> None:
         self.factory, self.kind, self.state = factory, kind, state
+        self.made_with = ("", None, None)
         self._args, self._kwargs = args, kwargs
         self._given: Mapping[str, Any] | None = None
+
+    @property
+    def parts(self) -> tuple[Any, ...]:
+        """What it consists of, for pickles: the arguments of ``of_parts``."""
+        return self.factory, self._args, self._kwargs, self.kind, self.state, self.made_with
+
+    @classmethod
+    def of_parts(cls, *parts: Any) -> CallRecord:
+        """Return the record of ``parts``."""
+        *made, made_with = parts
+        record = cls(*made)
+        record.made_with = made_with
+        return record
+
+    def __reduce__(self) -> Any:
+        factory, args, kwargs, kind, state, made_with = self.parts
+        return CallRecord.of_parts, (factory, args, dict(kwargs), kind, dict(state), made_with)
 
     @property
     def given(self) -> Mapping[str, Any]:
@@ -101,6 +131,36 @@ class AuthorObject:
     def __replace__(self, /, **changes: Any) -> Self:
         return self.replace(**changes)
 
+    def __eq__(self, other: object) -> bool:
+        """Return whether an object is the same by value; where it was written does not count."""
+        if self is other:
+            return True
+        if not isinstance(other, AuthorObject):
+            return NotImplemented
+        return self._digest() == other._digest()
+
+    def __hash__(self) -> int:
+        return int.from_bytes(self._digest()[:8], "little", signed=True)
+
+    def __repr__(self) -> str:
+        return texts.TextWriter().text(self)
+
+    def _written(self, writer: texts.TextWriter) -> str:
+        """Return the object as text that evaluates to an equal one, as far as there is one."""
+        raise NotImplementedError
+
+    def _compared(self) -> tuple[Any, ...]:
+        """Return what equal objects have in common: the word for their kind, and values."""
+        raise NotImplementedError
+
+    def _digest(self) -> bytes:
+        """Return 16 bytes that equal objects have in common; kept when they are first needed."""
+        found: bytes | None = getattr(self, "_kept_digest", None)
+        if found is None:
+            found = digests.digest_of(*self._compared())
+            object.__setattr__(self, "_kept_digest", found)
+        return found
+
     def _record(self, origin: CallRecord) -> None:
         """Keep the call that made the object."""
         raise NotImplementedError
@@ -133,10 +193,23 @@ class CalledValue(AuthorObject):
             {n: v if n in exclusive or n not in checked else checked[n] for n, v in given}
         )
 
+    def _pickled(self) -> Any:
+        kinds = [kind for kind in type(self).__mro__ if "__slots__" in vars(kind)]
+        names = {name for kind in kinds for name in vars(kind)["__slots__"]} - _NOT_PICKLED
+        state = {name: getattr(self, name) for name in sorted(names) if hasattr(self, name)}
+        return _called_value, (type(self), library_stamp.library_stamp(), state)
+
     @property
     def _origin_or_none(self) -> CallRecord | None:
         """The call that made the object; None for what a scene makes, such as its camera."""
         return getattr(self, "_origin", None)
+
+    def _written(self, writer: texts.TextWriter) -> str:
+        origin = self._origin_or_none
+        if origin is None:
+            return f"<{self.noun} of the scene>"
+        arguments = self.arguments
+        return writer.call(origin.factory, {name: arguments[name] for name in origin.given})
 
     def replace(self, **changes: Any) -> Self:
         """Return the object with other arguments: ``light.replace(intensity=2)``.
@@ -177,6 +250,18 @@ class CalledValue(AuthorObject):
 
     def _record(self, origin: CallRecord) -> None:
         object.__setattr__(self, "_origin", origin)
+
+
+_NOT_PICKLED: Final = frozenset(("__weakref__", "_kept_digest"))
+
+
+def _called_value(kind: type[CalledValue], stamp: str, state: Mapping[str, Any]) -> CalledValue:
+    """Return a value from a pickle."""
+    library_stamp.check_stamp(stamp)
+    made = kind.__new__(kind)
+    for name, value in state.items():
+        object.__setattr__(made, name, value)
+    return made
 
 
 def recorded(made: Made) -> Made:
