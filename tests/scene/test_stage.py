@@ -56,7 +56,7 @@ def test_the_frame_follows_parameters():
 def test_a_cut_scene_is_developed_too():
     scene = stage(Sphere())
     assert scene.sectioned.tone_map == scene.tone_map  # is kept by the scene
-    developed = scene.developed(exposure=3.0, tone_map="aces")
+    developed = scene.replace(exposure=3.0, tone_map="aces")
     assert developed.sectioned.tone_map == "aces"
     assert developed.sectioned.numbers["exposure"].value == 3.0
 
@@ -65,7 +65,7 @@ def test_light_is_developed_anew_and_the_scene_stays():
     scene = stage(Sphere())
     # Without a number of samples, the display values decide where more are taken.
     before = scene.render(size=(8, 6), samples=1).array
-    darker = scene.developed(exposure=0.25, tone_map="aces").render(size=(8, 6), samples=1)
+    darker = scene.replace(exposure=0.25, tone_map="aces").render(size=(8, 6), samples=1)
     assert darker.array[..., :3].mean() < before[..., :3].mean() - 0.1
     assert np.array_equal(scene.render(size=(8, 6), samples=1).array, before)
     assert np.array_equal(darker.linear, scene.render(size=(8, 6), samples=1).linear)

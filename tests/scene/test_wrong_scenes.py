@@ -174,7 +174,7 @@ def test_a_scene_does_not_change():
     scene = Scene(Sphere())
     with pytest.raises(AttributeError, match="a scene does not change"):
         scene.camera = Camera((0, 0, 2))
-    developed = scene.developed(exposure=2.0, tone_map="aces")
+    developed = scene.replace(exposure=2.0, tone_map="aces")
     assert developed.tone_map == "aces"
     with pytest.raises(AttributeError, match="a scene does not change"):
         developed.tone_map = "none"

@@ -422,7 +422,7 @@ def rendered_picture(
 
     if seen.scene is None:
         return seen.render(options, view=arguments.view)
-    scene = seen.scene.developed(exposure=arguments.exposure, tone_map=arguments.tone_map)
+    scene = seen.scene.with_display(exposure=arguments.exposure, tone_map=arguments.tone_map)
     paths = arguments.paths
     try:
         view = ViewOptions(

@@ -321,7 +321,7 @@ def _slots(name: str) -> tuple[str, ...]:
 def _options(node: ast.expr, around: _Around) -> tuple[str, ...]:
     """Return the words that an argument takes: those of the library, or of a declared choice."""
     called = _public(around.call)
-    if called is Scene or around.call == "in_look":
+    if called is Scene or around.call == "with_display":
         return WORDS.get(around.slot, ())
     if around.slot == "wrap" and isinstance(called, type) and issubclass(called, TextureValue):
         return WRAPS

@@ -186,7 +186,7 @@ def _rendered(obj: SceneCode, origin: Provenance, options: RenderOptions) -> Pic
     seen = viewable(obj, *(origin.stage or ({}, 0.0)), origin.look)
     if seen.scene is None:
         return seen.render(options, view=origin.view)
-    scene = seen.scene.developed(exposure=origin.exposure, tone_map=origin.tone_map)
+    scene = seen.scene.with_display(exposure=origin.exposure, tone_map=origin.tone_map)
     moved = None
     if origin.steering is not None:
         yaw, pitch, zoom, *pan = origin.steering

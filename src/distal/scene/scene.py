@@ -79,6 +79,9 @@ WORDS: Final[Mapping[str, tuple[str, ...]]] = {
     "mode": MODES,
 }
 
+# Arguments that only the encoding for display reads.
+_OF_DISPLAY: Final = frozenset({"exposure", "tone_map"})
+
 
 # What a scene computes of its arguments when it is first asked, and what marks it as complete.
 _COMPUTED: Final = ("_whole", "_kept_digest", "sectioned", "renderer")
@@ -215,7 +218,7 @@ class Scene(SceneValue, Composed, Presentable):
             place, **made.numbers, stride=stride, stride_growth=stride_growth
         )
         self.display = DisplayEncoding(self)
-        # Recorded in pictures: the arguments of ``developed`` and of ``of_shape``.
+        # Recorded in pictures: the arguments of ``with_display`` and of ``of_shape``.
         self.asked_display: Mapping[str, Any] = {}
         self.staged: tuple[Mapping[str, Any], float] | None = self.__dict__.get("staged")
         self._pictures: dict[tuple[Any, ...], Composed] = {}
@@ -263,15 +266,25 @@ class Scene(SceneValue, Composed, Presentable):
         copy_loaded_from(shape, made)
         return made
 
-    def in_look(self, look: str | None) -> Scene:
-        """Return the scene in another look; what its author gave stays. None keeps the look."""
-        if look is None:
+    def with_display(
+        self,
+        *,
+        look: str | None = None,
+        exposure: float | None = None,
+        tone_map: str | None = None,
+    ) -> Scene:
+        """Return the scene as a command shows it, which its pictures record; None keeps its own."""
+        given = {"look": look, "exposure": exposure, "tone_map": tone_map}
+        asked = {name: value for name, value in given.items() if value is not None}
+        if not asked:
             return self
-        made = self._remade({"look": look}, self.place)
-        made.__dict__["asked_display"] = {**self.asked_display, "look": look}
+        made = self.replace(**asked)
+        made.__dict__["asked_display"] = {**self.asked_display, **asked}
         return made
 
     def _remade(self, changes: Mapping[str, Any], place: Span | None) -> Scene:
+        if changes.keys() <= _OF_DISPLAY and None not in changes.values():
+            return self._developed(changes, place)
         made = Scene.__new__(Scene)
         made.__dict__.update(staged=self.staged, place=place)
         Scene.__init__(made, **{**self._given, **changes})
@@ -582,18 +595,15 @@ class Scene(SceneValue, Composed, Presentable):
         )
         return scene_parts.saved(self, path, request, unit=unit, bed=bed)
 
-    def developed(self, *, exposure: float | None = None, tone_map: str | None = None) -> Scene:
-        """Return the scene with another exposure or tone map; None keeps the scene's own value."""
-        if exposure is None and tone_map is None:
-            return self
+    def _developed(self, changes: Mapping[str, Any], place: Span | None) -> Scene:
+        """Return the scene with another exposure or tone map, without dressing it again."""
         made = self._copied()
-        if exposure is not None:
-            made.numbers = {**self.numbers, "exposure": checked_exposure(exposure, self.place)}
-        if tone_map is not None:
-            made.tone_map = one_of("tone map", tone_map, WORDS["tone_map"], self.place)
-        given = {"exposure": exposure, "tone_map": tone_map}
-        said = {name: value for name, value in given.items() if value is not None}
-        made.asked_display = {**self.asked_display, **said}
+        if "exposure" in changes:
+            exposure = checked_exposure(changes["exposure"], place)
+            made.numbers = {**self.numbers, "exposure": exposure}
+        if "tone_map" in changes:
+            made.tone_map = one_of("tone map", changes["tone_map"], WORDS["tone_map"], place)
+        made._given = {**self._given, **changes}
         made._whole = True
         return made
 

@@ -82,21 +82,22 @@ class SceneValue(AuthorObject):
         """The material of shapes without ``paint``."""
         return self.material
 
-    def replace(self, **changes: Any) -> Self:
-        """Return the scene with other arguments: ``scene.replace(exposure=2, floor=False)``.
-
-        Args:
-            changes: The arguments of ``Scene`` that change, by name.
-
-        Raises:
-            CompileError: At the author's line, as for ``Scene``.
-        """
+    def _replaced(self, changes: dict[str, Any]) -> Self:
+        """Return the scene with other arguments."""
         place = author_place()
         for name in changes:
             if name not in self._given:
                 hint = did_you_mean(name, self._given) or f"it takes {', '.join(self._given)}"
                 refuse_kind(f"a scene has no '{name}'", hint, place)
         return self._remade(changes, place)
+
+    def _parts(self) -> Mapping[str, Any]:
+        """Return the arguments that were given, and the numbers that the look has chosen."""
+        arguments = {
+            name: getattr(self, name) if value is None and name in self.number_names else value
+            for name, value in self.arguments.items()
+        }
+        return {name: value for name, value in arguments.items() if value is not None}
 
     def _written(self, writer: TextWriter) -> str:
         parameters = inspect.signature(type(self)).parameters

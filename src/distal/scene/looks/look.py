@@ -189,16 +189,8 @@ class Look(AuthorObject, Immutable):
     def _compared(self) -> tuple[Any, ...]:
         return "look", self.name, self.row, self.numbers
 
-    def replace(self, **changes: Any) -> Look:
-        """Return the look with other numbers: ``look.replace(exposure=1.2)``.
-
-        Args:
-            changes: The numbers that change, by name.
-
-        Raises:
-            SceneTypeError: There is no such number, or it is of another kind.
-            SceneValueError: A number is out of its range.
-        """
+    def _replaced(self, changes: dict[str, Any]) -> Look:
+        """Return the look with other numbers."""
         return Look(self.name, self.row, {**self._changed, **changes}, author_place())
 
     if not TYPE_CHECKING:  # a checker reports an unknown name itself

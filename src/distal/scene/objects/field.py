@@ -477,7 +477,7 @@ class BaseShape(ShapeValue, Composed, Presentable):
         made = as_material(material)
         asked = Asked("priority", "paint", INT, Limit.ANY, place=author_place())
         if rank := plain_choice(priority, asked):
-            made = made.with_priority(rank)
+            made = made.replace(priority=rank)
         return self._again(self.node.with_material(made))
 
     def cut_material(self: S, material: Painted) -> S:

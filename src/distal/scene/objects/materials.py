@@ -145,22 +145,15 @@ class Material(CalledObject):
         made._keep(call=call, reflects=reflects, refracts=refracts, emits=emits, priority=priority)
         return made
 
-    def replace(self, **changes: Any) -> Material:
-        """Return the material with other arguments; ``priority`` too, as ``paint`` sets it.
-
-        Raises as the function that makes it.
-        """
+    def _replaced(self, changes: dict[str, Any]) -> Material:
+        """Return the material with other arguments; ``priority`` too, as ``paint`` sets it."""
         priority = changes.pop("priority", self.priority)
-        made = super().replace(**changes) if changes else self
-        return made if made.priority == priority else made.with_priority(priority)
+        made = super()._replaced(changes) if changes else self
+        return made if made.priority == priority else made._with(made.call, priority)
 
     def with_call(self, call: FunctionCall) -> Material:
         """Return the material with other values of the same function."""
         return self._with(call, self.priority)
-
-    def with_priority(self, priority: int) -> Material:
-        """Return the material for a solid that displaces others of a lower priority."""
-        return self._with(self.call, priority)
 
     def _with(self, call: FunctionCall, priority: int) -> Material:
         made = Material.of(

@@ -80,6 +80,11 @@ class ShapeValue(AuthorObject):
         found: Material | None = self.node.material
         return found
 
+    def _parts(self) -> Mapping[str, Any]:
+        of_node = {"material": self.material, "cut_material": self.node.cut_material}
+        parts = {name: material for name, material in of_node.items() if material is not None}
+        return {**self.arguments, "children": self.children, **parts}
+
     @property
     def _origin(self) -> CallRecord | None:
         """The call that made the shape; None for shapes of the library, and operators' results."""
@@ -102,18 +107,11 @@ class ShapeValue(AuthorObject):
         made = isinstance(node.rule, Primitive) or _origin_of(node) is not None
         return None if made else cast("Operator", node.rule)
 
-    def replace(self, **changes: Any) -> Self:
-        """Return the shape with other arguments: ``Sphere(2).replace(radius=3)``.
+    def _replaced(self, changes: dict[str, Any]) -> Self:
+        """Return the shape with other arguments; materials and names are kept.
 
-        Materials and names are kept.
-
-        Args:
-            changes: The arguments that change, by name; besides, ``children`` (the shapes that the
-                operator is applied to), ``material`` and ``name``.
-
-        Raises:
-            SceneTypeError: An argument is unknown or of another type.
-            SceneValueError: A number is beyond its limit, or there are more or fewer children.
+        Besides its arguments ``children`` may change, the shapes that the operator is applied to,
+        ``material``, ``cut_material`` and ``name``.
         """
         place = author_place()
         node: Any = self.node

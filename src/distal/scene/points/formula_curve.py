@@ -115,14 +115,8 @@ class Curve(AuthorObject, Immutable):
         origin: CallRecord | None = getattr(self, "_origin", None)
         return {} if origin is None else origin.arguments
 
-    def replace(self, **changes: Any) -> Curve:
-        """Return the curve with other arguments: ``curve.replace(end=2.0)``.
-
-        Args:
-            changes: The arguments of ``from_function`` that change, by name.
-
-        Raises as ``from_function``.
-        """
+    def _replaced(self, changes: dict[str, Any]) -> Curve:
+        """Return the curve with other arguments of ``from_function``."""
         return Curve.from_function(**{**self.arguments, **changes})
 
     def _record(self, origin: CallRecord) -> None:

@@ -25,9 +25,10 @@ from distal.scene.tree.varying import VaryingNumber
 
 if TYPE_CHECKING:
     from distal import library_stamp
-    from distal.scene.tree import digests, texts
+    from distal.scene.tree import digests, paths, texts
 else:
     library_stamp = LazyModule("distal.library_stamp")  # needs hashlib
+    paths = LazyModule("distal.scene.tree.paths")
     texts = LazyModule("distal.scene.tree.texts")
     digests = LazyModule("distal.scene.tree.digests")  # needs hashlib and json
 
@@ -117,16 +118,35 @@ class AuthorObject:
         raise NotImplementedError
 
     def replace(self, **changes: Any) -> Self:
-        """Return the object with other arguments.
+        """Return the object with other arguments, or with other arguments of its parts.
 
         Args:
-            changes: The arguments that change, by name.
+            changes: The arguments that change, by name, or by path as ``paths`` shows them:
+                ``scene.replace(**{"shape.children.0.radius": 2})``.
 
         Raises:
             SceneTypeError: An argument is unknown or of another type.
-            SceneValueError: A number is beyond its limit.
+            SceneValueError: A number is beyond its limit, or there is no such part.
         """
+        changed = self
+        for path in [name for name in changes if "." in name]:
+            changed = paths.replaced(changed, path, changes.pop(path))
+        return changed._replaced(changes) if changes else changed
+
+    def paths(self) -> dict[str, Any]:
+        """Return the numbers and vectors of the object and of its parts, by path.
+
+        ``replace`` takes the paths: ``{"children.0.radius": 1.0, "material.color": (1, 0, 0)}``.
+        """
+        return paths.numbers_of(self)
+
+    def _replaced(self, changes: dict[str, Any]) -> Self:
+        """Return the object with other arguments."""
         raise NotImplementedError
+
+    def _parts(self) -> Mapping[str, Any]:
+        """Return what a path leads to from here, by the name of the step."""
+        return self.arguments
 
     def __replace__(self, /, **changes: Any) -> Self:
         return self.replace(**changes)
@@ -211,16 +231,10 @@ class CalledValue(AuthorObject):
         arguments = self.arguments
         return writer.call(origin.factory, {name: arguments[name] for name in origin.given})
 
-    def replace(self, **changes: Any) -> Self:
-        """Return the object with other arguments: ``light.replace(intensity=2)``.
+    def _replaced(self, changes: dict[str, Any]) -> Self:
+        """Return the object with other arguments.
 
-        Args:
-            changes: The arguments that change, by name. One that is instead of another, as ``fov``
-                of ``fov_deg``, displaces it.
-
-        Raises:
-            SceneTypeError: An argument is unknown or of another type.
-            SceneValueError: A number is beyond its limit.
+        One that is instead of another, as ``fov`` of ``fov_deg``, displaces it.
         """
         origin = self._origin_or_none
         if origin is None:

@@ -355,7 +355,7 @@ def viewable(
     if isinstance(picture, BaseShape):
         return Viewable(picture.name, stage(picture, params, time, look))
     if isinstance(picture, Scene):
-        return Viewable(picture.name, picture.in_look(look))
+        return Viewable(picture.name, picture.with_display(look=look))
     if look is not None:
         raise LoadError(f"looks are for scenes and shapes; '{picture.name}' is an @image")
     return Viewable(picture.name, picture)
