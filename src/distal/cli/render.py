@@ -87,8 +87,8 @@ class PathArguments:
     preview: Callable[[Picture], Any]
     caustics: bool = True
 
-    def view_options(self, scene_mode: str) -> dict[str, Any]:
-        """Return the arguments of ``ViewOptions``.
+    def options(self, scene_mode: str) -> dict[str, Any]:
+        """Return the arguments of ``RenderOptions``.
 
         Args:
             scene_mode: The mode of the scene.
@@ -418,25 +418,26 @@ def rendered_picture(
         options: The other options.
     """
     from distal.scene.rendering import render_scene
-    from distal.scene.view_options import ViewOptions
+    from distal.scene.view_options import refinement_of
 
     if seen.scene is None:
-        return seen.render(options, view=arguments.view)
+        return seen.render(replace(options, view=arguments.view))
     scene = seen.scene.developed(exposure=arguments.exposure, tone_map=arguments.tone_map)
     paths = arguments.paths
     try:
-        view = ViewOptions(
+        options = replace(
+            options,
             view=arguments.view,
             transparent=arguments.transparent,
             layers=layers,
             steering=arguments.steering,
-            **({} if paths is None else paths.view_options(scene.mode)),
+            **({} if paths is None else paths.options(scene.mode)),
         )
-        refinement = view.refinement(scene.mode, options.samples)
+        refinement = refinement_of(options, scene.mode)
     except ValueError as error:
         raise UsageError(str(error)) from None
     if arguments.plane is not None:
-        view = replace(view, plane=arguments.plane)
+        options = replace(options, plane=arguments.plane)
     if paths is not None and refinement is not None:
         paths.forget()
-    return render_scene(scene, view, options)
+    return render_scene(scene, options)
