@@ -8,13 +8,17 @@ import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
 import pytest
+import typer
+from typer.testing import CliRunner
 
 import distal
+from distal.cli.options import FORMS, NOTHING_ASKED, Asked, flag_name, flags, requesting
 from distal.export.page_options import PageOptions
 from distal.lang import Image
-from distal.lang.options import option, rows
+from distal.lang.options import Flag, option, rows
 from distal.lang.presentable import Presentable
 from distal.lang.render_options import RenderOptions
 from distal.scene.objects.field import BaseShape
@@ -55,7 +59,12 @@ class WithGrain(RenderOptions):
     """The options of a picture, and one that somebody adds: a row, and nothing else."""
 
     grain: float | None = option(
-        None, "The strength of the grain.", "scene sweep", of_paths=True, recorded=True
+        None,
+        "The strength of the grain.",
+        "scene",
+        of_paths=True,
+        recorded=True,
+        flag=Flag(metavar="X"),
     )
 
 
@@ -102,3 +111,38 @@ def test_an_added_row_is_an_argument_with_its_documentation():
     assert '\n            grain: In mode "path": the strength of the grain.\n' in text
     assert "\n            grain=grain,\n" in text
     assert "grain" not in TOOL.render_text("lang/functions.py", "Image", "image", WithGrain)
+
+
+def test_an_added_row_is_an_option_of_the_command():
+    application, found = typer.Typer(), {}
+
+    @application.command()
+    @requesting("scene", WithGrain)
+    def render(asked: Asked = NOTHING_ASKED, stats: Annotated[bool, typer.Option()] = False):
+        found.update(asked)
+
+    run = CliRunner().invoke
+    assert run(application, ["--grain", "0.3", "--size", "4x3", "--no-caustics"]).exit_code == 0
+    defaults = {"time": 0.0, "denoise": False, "transparent": False}
+    assert found == {**defaults, "grain": 0.3, "size": (4, 3), "caustics": False}
+    assert WithGrain(**found).grain == 0.3
+    text = re.sub(r"[^\w.:-]+", " ", run(application, ["--help"], env={"COLUMNS": "200"}).output)
+    assert "--grain X In mode path: the strength of the grain." in text
+
+
+def test_a_command_shows_the_default_that_it_reads():
+    for method in ("scene", "video", "sweep"):
+        for row in flags(method):
+            form = FORMS.get(row.option.flag.form)
+            if form is not None and form.written is not None:
+                assert form.read(form.written(row.default_of(method))) == row.default_of(method)
+
+
+def test_every_form_of_a_row_exists_and_is_used():
+    assert {row.option.flag.form for row in flags("scene")} - {None} == FORMS.keys()
+
+
+def test_the_switch_that_changes_an_option_is_the_one_that_is_named():
+    named = {row.name: flag_name(row) for row in flags("scene")}
+    assert named["caustics"] == "--no-caustics"
+    assert (named["plane"], named["time_limit"]) == ("--slice", "--time-limit")

@@ -23,19 +23,17 @@ class Flag:
         help: Its text in ``--help``; "" for the documentation of the row.
         names: Its names with hyphens; empty for the name of the option.
         metavar: What stands for its value in ``--help``.
-        read: The name of the reader of its text (``distal.cli.options.READERS``).
+        form: The form of its text (``distal.cli.options.FORMS``).
         limits: The least and the largest number.
-        default: What is taken if it is not given, as it is written; None leaves the request's.
-        shown: What ``--help`` shows as the default where ``default`` is None.
+        shown: What ``--help`` shows as the default of an option that is None.
         helps: ``help`` for the commands of some methods.
     """
 
     help: str = ""
     names: tuple[str, ...] = ()
     metavar: str | None = None
-    read: str | None = None
+    form: str | None = None
     limits: tuple[int | None, int | None] = (None, None)
-    default: Any = None
     shown: str | None = None
     helps: Mapping[str, str] = field(default_factory=dict)
 

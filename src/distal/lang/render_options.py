@@ -221,7 +221,7 @@ class RenderOptions:
         "scene image shape video sweep",
         positional=True,
         check=checked_size,
-        flag=Flag(metavar="WxH", read="size", default="640x480"),
+        flag=Flag(metavar="WxH", form="size", helps={"sweep": "Of each picture, in pixels."}),
         docs={
             "video": "Width and height in pixels; even for mp4 and webm unless they are lossless.",
             "sweep": "Width and height of each picture in pixels.",
@@ -235,7 +235,7 @@ class RenderOptions:
         positional=True,
         check=checked_time,
         docs={"shape": "Time in seconds.", "sweep": "Seconds, if it is none of the values."},
-        flag=Flag("Seconds.", metavar="S", read="time", default="0"),
+        flag=Flag("Seconds.", metavar="S", form="seconds"),
     )
     params: Mapping[str, Any] = option(
         dict,
@@ -451,7 +451,7 @@ class RenderOptions:
             "The plane of the view slice.",
             names=("--slice",),
             metavar="AXIS=OFFSET",
-            read="plane",
+            form="plane",
         ),
     )
     freeze: bool = option(
@@ -466,7 +466,7 @@ class RenderOptions:
         flag=Flag(
             "How the camera is moved, like yaw=0.3,pitch=0.1,zoom=0.8,pan_x=0,pan_y=0.",
             metavar="NAME=X,…",
-            read="steering",
+            form="steering",
         ),
     )
     layers: Sequence[str] = option(
