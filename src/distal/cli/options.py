@@ -60,13 +60,14 @@ def typer_option(row: OptionRow, method: str) -> Any:
     flag = row.option.flag
     assert flag is not None
     least, largest = flag.limits
+    default = row.default_of(method)
     return typer.Option(
         *_names(row),
         help=row.help(method),
         metavar=flag.metavar,
         min=least,
         max=largest,
-        show_default=flag.shown or True,
+        show_default=flag.shown or (default if isinstance(default, str) else True),
     )
 
 

@@ -231,7 +231,7 @@ class RenderOptions:
     time: float = option(
         0.0,
         "Time in seconds; ``frame.time`` of an ``@image``.",
-        "scene image shape sweep",
+        "scene image shape sweep window",
         positional=True,
         check=checked_time,
         docs={"shape": "Time in seconds.", "sweep": "Seconds, if it is none of the values."},
@@ -313,7 +313,7 @@ class RenderOptions:
     mode: str | None = option(
         None,
         'How light is computed: "direct" or "path"; None: as the scene says.',
-        "scene shape video sweep",
+        "scene shape video sweep window",
         check=_checked_mode,
         flag=Flag(
             "direct: from each light to the first surface; path: exact, by many random paths."
@@ -324,7 +324,7 @@ class RenderOptions:
         True,
         "Whether light that glass, mirrors and metals bundle is found by photons: much faster, "
         "with a small error that goes to 0. False: by paths alone.",
-        "scene",
+        "scene window",
         of_paths=True,
         recorded=True,
         flag=Flag(
@@ -429,11 +429,14 @@ class RenderOptions:
         "color",
         'What to show: "color", "coordinate", "signal", "distance", "normal", "depth", "steps", '
         '"material", "slope" or "slice".',
-        "scene shape video sweep",
+        "scene shape video sweep window",
         flag=Flag(
             "color, coordinate, signal, distance, normal, depth, steps, material, slope, slice; of "
             "an @image color, coordinate, signal, local:NAME.",
-            helps=dict.fromkeys(("video", "sweep"), "What to show, as in distal render."),
+            helps={
+                **dict.fromkeys(("video", "sweep"), "What to show, as in distal render."),
+                "window": "The first view; V shows the others.",
+            },
         ),
     )
     transparent: bool = option(
