@@ -54,7 +54,7 @@ def test_an_entry_of_a_docstring_names_every_device_or_none(place, text):
     "place",
     [
         *("lang/option_methods.py:render", "lang/option_methods.py:video"),
-        "sweeps/sweep_function.py:sweep",
+        "lang/option_methods.py:sweep",
     ],
 )
 def test_what_authors_call_names_every_device(place):

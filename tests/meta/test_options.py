@@ -68,9 +68,9 @@ class WithGrain(RenderOptions):
     )
 
 
-@pytest.mark.parametrize("path", TOOL.texts(), ids=lambda path: path.name)
-def test_generated_methods_are_fresh(path):
-    assert path.read_text(encoding="utf-8") == TOOL.texts()[path], "run tools/gen_option_methods.py"
+def test_generated_methods_are_fresh():
+    written = TOOL.FILE.read_text(encoding="utf-8")
+    assert written == TOOL.file_text(), "run tools/gen_option_methods.py"
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -107,12 +107,21 @@ def test_exports_and_cells_take_the_options_of_what_makes_them():
     assert inspect.signature(Presentable.show).parameters.keys() - {"self"} == cell - {"obj"}
 
 
+def test_workers_get_all_options_of_images_but_those_of_a_process():
+    whole_pictures = pytest.importorskip("distal.cluster.whole_pictures")
+    of_process = {"device", "threads", "progress", "cancel", "cluster"}
+    of_each = {"time", "index", "params"}
+    of_images = {row.name for row in rows(RenderOptions, "image")}
+    assert of_images - of_process - of_each <= set(whole_pictures._SENT)
+    assert set(whole_pictures._SENT) <= {row.name for row in rows(RenderOptions)}
+
+
 def test_an_added_row_is_an_argument_with_its_documentation():
-    text = TOOL.render_text("scene/scene.py", "Scene", "scene", WithGrain)
+    text = TOOL.render_text(Scene, "scene", WithGrain)
     assert "\n        grain: float | None = None,\n" in text
     assert '\n            grain: In mode "path": the strength of the grain.\n' in text
     assert "\n            grain=grain,\n" in text
-    assert "grain" not in TOOL.render_text("lang/functions.py", "Image", "image", WithGrain)
+    assert "grain" not in TOOL.render_text(Image, "image", WithGrain)
 
 
 def test_an_added_row_is_an_option_of_the_command():

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from distal.scene.lowering import layers as layers_of_scenes
     from distal.scene.objects import alternatives
     from distal.scene.viewing import viewable as viewing
+    from distal.sweeps import sweeping
     from distal.video import recording
 else:
     cluster_kernels = LazyModule("distal.cluster.kernels")
@@ -50,6 +51,7 @@ else:
     scene_parts = LazyModule("distal.mesh.scene_parts")
     shown_buffers = LazyModule("distal.lang.shown_buffers")
     standard_executor = LazyModule("distal.runtime.standard_executor")
+    sweeping = LazyModule("distal.sweeps.sweeping")
     viewing = LazyModule("distal.scene.viewing.viewable")
     widget = LazyModule("distal.notebook.widget")
 
@@ -101,6 +103,7 @@ __all__ = [
     "recording",
     "scene_parts",
     "shown_buffers",
+    "sweeping",
     "viewing",
     "widget",
 ]

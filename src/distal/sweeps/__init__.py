@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from distal.lang.option_methods import sweep
 from distal.sweeps.drawing import parameter_sets
-from distal.sweeps.sweep_function import sweep
 from distal.sweeps.sweeping import FinishedSweep
 from distal.sweeps.table import SweepRow
 
