@@ -63,6 +63,7 @@ ADDITIONS: Final = (
     Addition("a view", "slope", ("view_slope",)),
     Addition("a pass", "specialise", ("specialise",)),
     Addition("a text target", "glsl-330", ("glsl-330",)),
+    Addition("an option of a picture", "spp", ("spp",)),
     Addition("a command", "rerender", ("rerender",), users=("scene/rerender.py",)),
 )
 

@@ -11,15 +11,11 @@ import inspect
 import re
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any, Final
 
 from distal import Scene, Shape
 from distal.cli.exit_codes import ExitCode
-from distal.export.page_options import PageOptions
-from distal.notebook.widget import LiveView
-from distal.video.recording import video
 
 PAGE: Final = Path(__file__).parents[1] / "docs/reference/options.md"
 HEAD: Final = """\
@@ -34,9 +30,9 @@ and hyphens: `distal render --help`. An option after the first ones is passed by
 TAKEN_BY: Final[Mapping[str, tuple[Callable[..., Any], str]]] = {
     "Scene": (Scene, "`Scene(shape, ...)`: what belongs to the scene, however it is shown."),
     "Pictures": (Scene.render, "`scene.render(...)`."),
-    "Videos": (video, '`scene.video("film.mp4", ...)`.'),
-    "Pages": (PageOptions, '`scene.export("page.html", ...)`.'),
-    "Notebooks": (LiveView, "`scene.show(...)`."),
+    "Videos": (Scene.video, '`scene.video("film.mp4", ...)`.'),
+    "Pages": (Scene.export, '`scene.export("page.html", ...)`.'),
+    "Notebooks": (Scene.show, "`scene.show(...)`."),
     "Heights": (Shape.heights, "`shape.heights(...)`."),
     "Meshes": (Shape.mesh, "`shape.mesh(...)`."),
 }
@@ -59,7 +55,7 @@ def _exit_codes() -> str:
 def _section(title: str, takes: Callable[..., Any], about: str) -> str:
     texts = _meanings(takes)
     rows = [
-        f"| `{p.name}` | {_type(p)} | {_default(takes, p)} | {texts.get(p.name, '')} |\n"
+        f"| `{p.name}` | {_type(p)} | {_default(p)} | {texts.get(p.name, '')} |\n"
         for p in inspect.signature(takes).parameters.values()
         if p.name not in _LEFT_OUT
     ]
@@ -85,12 +81,8 @@ def _type(parameter: inspect.Parameter) -> str:
     return f"`{parameter.annotation}`".replace("|", "\\|")
 
 
-def _default(takes: Callable[..., Any], parameter: inspect.Parameter) -> str:
+def _default(parameter: inspect.Parameter) -> str:
     value = parameter.default
-    if isinstance(takes, type) and takes is PageOptions:
-        field = next(f for f in fields(PageOptions) if f.name == parameter.name)
-        if field.default_factory is not MISSING:
-            value = field.default_factory()
     if value is inspect.Parameter.empty:
         return "required"
     return f'`"{value}"`' if isinstance(value, str) else f"`{value}`"

@@ -45,7 +45,7 @@ _HAND_WRITTEN = {
     "distal.scene.scene": ("Scene",),
     "distal.scene.steering": ("Steering",),
     "distal.sweeps.drawing": ("parameter_sets",),
-    "distal.sweeps.sweeping": ("sweep",),
+    "distal.lang.option_methods": ("sweep",),
 }
 _MODULE_OF = {
     **{name: module for module, names in _HAND_WRITTEN.items() for name in names},

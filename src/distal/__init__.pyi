@@ -56,7 +56,7 @@ from distal.scene.points.scatter import points_on as points_on
 from distal.scene.scene import Scene as Scene
 from distal.scene.steering import Steering as Steering
 from distal.sweeps.drawing import parameter_sets as parameter_sets
-from distal.sweeps.sweeping import sweep as sweep
+from distal.lang.option_methods import sweep as sweep
 from distal.scene.objects.backgrounds import DeclaredBackground as _DeclaredBackground
 from distal.scene.objects.backgrounds import DeclaredSurroundings as _DeclaredSurroundings
 from distal.scene.objects.cameras import BaseCamera as _BaseCamera

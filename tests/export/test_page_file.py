@@ -335,7 +335,7 @@ def test_mistakes_are_one_clear_line_and_leave_no_file(rings, tmp_path, words, c
 def test_a_mistake_in_python_too(rings, tmp_path):
     obj = distal.load(rings)
     with pytest.raises(LoadError, match="is a @func"):
-        export(distal.load(rings, "ring"), tmp_path / "a.html")
+        export(distal.load(rings, "ring"), tmp_path / "a.html", None, {})
     with pytest.raises(SaveError, match="suffix"):
         obj.export(tmp_path / "a.xyz")
     with pytest.raises(TypeError, match="'embed' is no option of shadertoy; options: params, "):

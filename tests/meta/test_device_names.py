@@ -1,7 +1,6 @@
 """What is written of devices is what the code takes: docstrings, the guide, the command line."""
 
 import ast
-import inspect
 import re
 from pathlib import Path
 
@@ -9,6 +8,7 @@ import pytest
 
 import distal
 from distal.cli.base import Device
+from distal.lang.options import rows
 from distal.lang.render_options import RenderOptions
 from distal.runtime.device_names import AUTO, DEVICE_NAMES
 from distal.runtime.kernels import DEVICES
@@ -53,8 +53,8 @@ def test_an_entry_of_a_docstring_names_every_device_or_none(place, text):
 @pytest.mark.parametrize(
     "place",
     [
-        *("scene/scene.py:render", "lang/functions.py:render"),
-        "video/recording.py:video",
+        *("lang/option_methods.py:render", "lang/option_methods.py:video"),
+        "lang/option_methods.py:sweep",
     ],
 )
 def test_what_authors_call_names_every_device(place):
@@ -65,9 +65,8 @@ def test_what_authors_call_names_every_device(place):
 
 
 def test_the_declaration_of_the_options_names_every_device():
-    entry = ENTRY.search(inspect.getdoc(RenderOptions) or "")
-    assert entry is not None
-    assert re.findall(r'"([a-z-]+)"', entry[2]) == list(DEVICE_NAMES)
+    row = next(row for row in rows(RenderOptions) if row.name == "device")
+    assert re.findall(r'"([a-z-]+)"', row.doc("scene")) == list(DEVICE_NAMES)
 
 
 @pytest.mark.parametrize("page", ["command-line.md", "window.md"])

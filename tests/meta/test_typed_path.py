@@ -1,25 +1,16 @@
-"""A type checker follows ``Scene.render`` to the device; each option has one declaration."""
+"""A type checker follows ``Scene.render`` to the device."""
 
 from __future__ import annotations
 
 import ast
-import inspect
 import re
 import subprocess
 import sys
-from dataclasses import MISSING, fields
 from pathlib import Path
 
 import pytest
 
 import distal
-from distal.export.page_options import PageOptions
-from distal.lang import Image
-from distal.lang.presentable import ExportOptions, ShowOptions, VideoOptions
-from distal.lang.render_options import RenderOptions
-from distal.scene.scene import Scene
-from distal.scene.view_options import ViewOptions
-from distal.video import recording
 
 ROOT = Path(__file__).parents[2]
 SOURCE = Path(distal.__file__).parent
@@ -27,9 +18,8 @@ SOURCE = Path(distal.__file__).parent
 CHAIN = {
     "scene.render()": "distal.images.picture.Picture",
     "image.render()": "distal.images.picture.Picture",
-    "scene_module.rendering.render_scene": "def (scene: distal.scene.scene.Scene, view: "
-    "distal.scene.view_options.ViewOptions, options: distal.lang.render_options.RenderOptions) -> "
-    "distal.images.picture.Picture",
+    "scene_module.rendering.render_scene": "def (scene: distal.scene.scene.Scene, "
+    "options: distal.lang.render_options.RenderOptions) -> distal.images.picture.Picture",
     "executor()": "distal.runtime.executor.PythonExecutor",
     "executor().render": "def (image: distal.lang.functions.Image | "
     "distal.lang.composed.Composed, options: distal.lang.render_options.RenderOptions) -> "
@@ -86,63 +76,6 @@ def revealed(tmp_path_factory):
 @pytest.mark.parametrize("expression", CHAIN)
 def test_the_type_is_known(revealed, expression):
     assert revealed[expression] == CHAIN[expression]
-
-
-def declared(*classes):
-    return {field.name: field for one in classes for field in fields(one)}
-
-
-def default_of(field):
-    return None if field.default is MISSING else field.default
-
-
-@pytest.mark.parametrize(
-    ("method", "options"),
-    [
-        (Image.render, declared(RenderOptions)),
-        (Scene.render, declared(RenderOptions, ViewOptions)),
-    ],
-)
-def test_a_public_method_takes_the_declared_options(method, options):
-    parameters = dict(inspect.signature(method).parameters)
-    del parameters["self"]
-    for name, parameter in parameters.items():
-        assert parameter.default == default_of(options[name]), name
-    # The numbers of a scene are set by the views that read them.
-    # A section is what a person cuts away in a window.
-    # Hosts that draw frame after frame set the date and the frames so far. A scene reads no keys.
-    left_out = {"settings", "refinement", "date", "history"}
-    of_images = {"keys", "buttons", "delta"}
-    left_out |= {"section", *of_images} if method is Scene.render else {"freeze"}
-    assert options.keys() - parameters.keys() == left_out
-
-
-def entries(documented, section):
-    """The entries of a section of a docstring, by name, with folded white space."""
-    text = inspect.getdoc(documented) or ""
-    section = text.partition(f"{section}:\n")[2].partition("\n\n")[0]
-    found = re.findall(r"^    (\w+): (.*(?:\n {6,}.*)*)", section, re.MULTILINE)
-    return {name: " ".join(words.split()) for name, words in found}
-
-
-@pytest.mark.parametrize("method", [Image.render, Scene.render])
-def test_a_public_method_documents_options_as_they_are_declared(method):
-    texts = {**entries(RenderOptions, "Attributes"), **entries(ViewOptions, "Attributes")}
-    documented = entries(method, "Args")
-    assert documented.keys() == inspect.signature(method).parameters.keys() - {"self"}
-    assert documented == {name: texts[name] for name in documented}
-
-
-def test_exports_take_the_options_of_pages():
-    assert ExportOptions.__annotations__.keys() == declared(PageOptions).keys()
-
-
-def test_videos_and_widgets_take_the_options_of_what_makes_them():
-    video = inspect.signature(recording.video).parameters.keys()
-    assert VideoOptions.__annotations__.keys() == video - {"obj", "path", "duration"}
-    widget = pytest.importorskip("distal.notebook.widget")
-    live_view = inspect.signature(widget.LiveView).parameters.keys()
-    assert ShowOptions.__annotations__.keys() == live_view - {"obj"}
 
 
 def test_nothing_passes_untyped_options():

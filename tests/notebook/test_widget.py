@@ -19,7 +19,7 @@ from distal.export import page_programs
 from distal.export.payload import name_of
 from distal.lang import Frame, choice, color, func, image, slider, vec3
 from distal.lang.render_options import RenderOptions
-from distal.notebook.widget import LiveView, show
+from distal.notebook.widget import LiveView
 from distal.scene.steering import Steering
 from distal.scene.viewing.viewable import viewable
 
@@ -68,7 +68,7 @@ def test_images_and_shapes_are_shown_too():
     assert drawn.show().payload["steering"] is None
     assert Sphere().show().payload["steering"] is not None
     with pytest.raises(distal.LoadError, match="'distance' is a @func"):
-        show(distance)
+        LiveView(distance)
 
 
 def test_what_moves_plays_unless_told_otherwise():
@@ -142,11 +142,7 @@ def test_a_time_that_no_message_can_carry_is_refused():
 @pytest.mark.parametrize(
     ("options", "error", "message"),
     [
-        (
-            {"widht": 3},
-            TypeError,
-            "'widht' is no option of show; options: mode, panel, params, playing,",
-        ),
+        ({"widht": 3}, TypeError, "unexpected keyword argument 'widht'"),
         ({"size": 3}, TypeError, "size is .width, height. in pixels, not 3"),
         ({"size": (0, -3)}, ValueError, "each side has 1 to"),
         ({"time": "a"}, TypeError, "time is a number of seconds, not 'a'"),
@@ -183,8 +179,11 @@ def test_the_picture_as_it_stands_is_computed_by_python():
     )
     found = widget.render()
     wanted = distal.scene.viewing.viewable.viewable(scene).render(
-        RenderOptions(size=(48, 36), params={"softness": 0.2}),
-        steering=Steering(0.7, 0.2, 0.8, (0.1, 0.0)),
+        RenderOptions(
+            size=(48, 36),
+            params={"softness": 0.2},
+            steering=Steering(0.7, 0.2, 0.8, (0.1, 0.0)),
+        )
     )
     assert (found.array == wanted.array).all()
     assert not np.allclose(found.array, scene.render(size=(48, 36)).array, atol=0.05)

@@ -11,7 +11,7 @@ import base64
 import io
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -100,7 +100,7 @@ class Looked:
         rendering = RenderOptions(
             size=(width, height), time=state["time"], params=state["parameters"], samples=1
         )
-        expected = seen.render(rendering, view=state["view"], **options)
+        expected = seen.render(replace(rendering, view=state["view"], **options))
         return difference(expected.array, shown)
 
 

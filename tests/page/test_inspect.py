@@ -7,6 +7,7 @@ import io
 import math
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -153,7 +154,9 @@ def of_cpu(file: Path, section: CutPlane, view: str = "color") -> NDArray[np.flo
     """The same picture by the CPU, of the shape that is cut by the plane."""
     seen = viewable(distal.load(file.with_name("part.py")))
     options = RenderOptions(size=SIZE, samples=16 if view == "color" else 1)
-    return np.asarray(seen.render(options, view=view, section=section).array[..., :3], np.float64)
+    return np.asarray(
+        seen.render(replace(options, view=view, section=section)).array[..., :3], np.float64
+    )
 
 
 def test_a_cut_picture_is_that_of_the_cpu(pictured: Inspected, page_file: Path) -> None:

@@ -210,5 +210,5 @@ def test_a_video_traces_paths_if_asked(tmp_path):
     scene.render((16, 16), mode="path", spp=8).save(tmp_path / "still.png")
     found, still = (np.asarray(Image.open(tmp_path / name)) for name in ("0.png", "still.png"))
     assert np.array_equal(found[..., :3], still[..., :3])
-    with pytest.raises(VideoError, match="there is no mode 'paths'; modes: direct, path"):
+    with pytest.raises(ValueError, match="there is no mode 'paths'; modes: direct, path"):
         scene.video(tmp_path / "%d.png", mode="paths", **shots)

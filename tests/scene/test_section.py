@@ -1,6 +1,7 @@
 """A scene cut open by a plane: the same as a shape that its author cuts, and a marked face."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -40,12 +41,12 @@ def scene(shape) -> Scene:
 @pytest.mark.parametrize("offset", [-0.3, 0.1, 9.0])
 def test_a_section_without_lines_is_the_shape_that_its_author_cuts(view: str, offset: float):
     seen = viewable(scene(part()))
-    found = seen.render(OPTIONS, view=view, section=CutPlane(NORMAL, offset)).array
+    found = seen.render(replace(OPTIONS, view=view, section=CutPlane(NORMAL, offset))).array
     bored, ball = (solid.split(NORMAL, offset)[0] for solid in parts())
     author = scene(bored | ball if offset < 9.0 else part())
-    expected = viewable(author).render(OPTIONS, view=view).array
+    expected = viewable(author).render(replace(OPTIONS, view=view)).array
     assert np.abs(found - expected).max() < 1e-5
-    whole = seen.render(OPTIONS, view=view).array
+    whole = seen.render(replace(OPTIONS, view=view)).array
     assert (np.abs(found - whole).max() > 0.1) == (offset < 9.0)
 
 
@@ -53,15 +54,19 @@ def test_a_cut_face_has_the_color_of_its_part_and_lines():
     camera = Camera((0.0, 0.0, 5.0), (0.0, 0.0, 0.0))
     seen = viewable(Scene(Box(2.0, 2.0, 2.0).paint("#c04020"), camera=camera, floor=False))
     plain, lined = (
-        seen.render(OPTIONS, section=CutPlane((0.0, 0.0, 1.0), 0.0, hatch)).array[24, :, :3]
+        seen.render(replace(OPTIONS, section=CutPlane((0.0, 0.0, 1.0), 0.0, hatch))).array[
+            24, :, :3
+        ]
         for hatch in (0.0, 0.4)
     )
     on_face = plain[32], lined[24:40]
     assert on_face[1][:, 0].min() < 0.8 * on_face[1][:, 0].max()  # lines are darker
     for color in on_face[1]:
         assert color[0] > 1.8 * color[2]  # and of the same color
-    beside = seen.render(OPTIONS, section=CutPlane((0.0, 0.0, 1.0), 1.5, 0.4)).array
-    assert np.array_equal(beside, seen.render(OPTIONS, section=CutPlane((0, 0, 1), 1.5)).array)
+    beside = seen.render(replace(OPTIONS, section=CutPlane((0.0, 0.0, 1.0), 1.5, 0.4))).array
+    assert np.array_equal(
+        beside, seen.render(replace(OPTIONS, section=CutPlane((0, 0, 1), 1.5))).array
+    )
 
 
 def test_the_whole_picture_is_not_changed_by_the_cut_program():
@@ -75,8 +80,10 @@ def test_the_whole_picture_is_not_changed_by_the_cut_program():
 
 def test_a_section_moves_with_the_camera():
     seen = viewable(scene(part()))
-    turned = seen.render(OPTIONS, steering=Steering(0.5), section=CutPlane(NORMAL, 0.1)).array
-    still = seen.render(OPTIONS, steering=STILL, section=CutPlane(NORMAL, 0.1)).array
+    turned = seen.render(
+        replace(OPTIONS, steering=Steering(0.5), section=CutPlane(NORMAL, 0.1))
+    ).array
+    still = seen.render(replace(OPTIONS, steering=STILL, section=CutPlane(NORMAL, 0.1))).array
     assert np.abs(turned - still).max() > 0.1
 
 
@@ -129,7 +136,7 @@ def test_a_saved_picture_is_rendered_again_with_its_section(tmp_path: Path):
         "from distal import Box, Scene\n\nscene = Scene(Box(2, 1, 1).paint('#c04020'))\n"
     )
     section = CutPlane(NORMAL, 0.25, 0.1)
-    made = viewable(distal.load(str(file))).render(OPTIONS, section=section)
+    made = viewable(distal.load(str(file))).render(replace(OPTIONS, section=section))
     made.save(tmp_path / "cut.png")
     found = plan_rerender(tmp_path / "cut.png", source=str(file))
     assert found.record.provenance.section == section.numbers

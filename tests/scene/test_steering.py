@@ -1,6 +1,7 @@
 """A camera moved by hand is the camera that stands where the hand moved it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -40,7 +41,7 @@ def scene_of(camera):
 
 def picture(camera, steering=None, view="color"):
     seen = viewable(scene_of(camera))
-    return seen.render(RenderOptions(size=SIZE), view=view, steering=steering).array
+    return seen.render(RenderOptions(size=SIZE, view=view, steering=steering)).array
 
 
 def assert_alike(a, b):
@@ -137,7 +138,7 @@ def test_a_target_that_is_a_parameter_is_what_it_turns_around():
     camera = Camera((0.0, height, 4.0), (0.0, height, 0.0), fov=FOV)
     seen = viewable(scene_of(camera))
     options = RenderOptions(size=SIZE, params={"height": 1.0})
-    found = seen.render(options, steering=Steering(yaw=0.9))
+    found = seen.render(replace(options, steering=Steering(yaw=0.9)))
     wanted = OrbitCamera(4.0, azimuth=0.9, target=(0.0, 1.0, 0.0), fov=FOV)
     assert_alike(found.array, picture(wanted))
 

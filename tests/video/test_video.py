@@ -8,7 +8,6 @@ import pytest
 
 import distal
 from distal.video import video
-from distal.video.formats import VideoError
 from tests.video.moving import (
     PATCHES,
     PATCHES_SCENE,
@@ -173,7 +172,7 @@ def test_a_wish_without_sense_is_refused_before_anything_is_written(
     message,
 ):
     given = {"duration": 1, "size": SIZE, **wishes}
-    with pytest.raises(VideoError) as caught:
+    with pytest.raises(ValueError) as caught:
         video(moving, tmp_path / "out.mp4", **given)
     assert message in str(caught.value)
     assert "\n" not in str(caught.value) or "view" in message

@@ -177,7 +177,7 @@ def test_a_gpu_has_the_same_light(device: str) -> None:
         pytest.skip("no adapter")
     shot, small = shot_of(SEEN), (32, 24)
     made = FilmRenderer(device).render(SEEN, shot, small, threading.Event())
-    exact = SEEN.render(RenderOptions(size=small, samples=made.samples), steering=shot.steering)
+    exact = SEEN.render(RenderOptions(size=small, samples=made.samples, steering=shot.steering))
     assert made.pixels is not None
     off = np.abs(made.pixels.astype(int) - quantise(exact.array))[..., :3]
     # The same random numbers; few paths turn off where floats differ in the last bit.

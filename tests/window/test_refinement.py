@@ -143,7 +143,7 @@ def pixels_of(texture: Any) -> NDArray[np.uint8]:
 
 def on_cpu(shot: Shot, samples: int) -> NDArray[np.float32]:
     options = RenderOptions(size=SIZE, samples=samples, params=dict(shot.parameters))
-    return SCENE.render(options, steering=shot.steering).array
+    return SCENE.render(replace(options, steering=shot.steering)).array
 
 
 def test_edges_approach_those_of_many_samples(gpu_renderer: TextureRenderer) -> None:

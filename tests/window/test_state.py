@@ -5,6 +5,7 @@ import os
 import queue
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -154,7 +155,7 @@ def test_what_is_grabbed_follows_the_pointer_on_the_picture() -> None:
     session.release(0.0)
     shot = session.shot(0.0)
     options = RenderOptions(size=(160, 120))
-    depth = session.viewable.render(options, view="material", steering=shot.steering).array
+    depth = session.viewable.render(replace(options, view="material", steering=shot.steering)).array
     rows, columns = np.nonzero(np.abs(depth[..., :3] - depth[0, 0, :3]).max(axis=-1) > 0.05)
     # A sphere beside the middle is drawn out by perspective: a few pixels to the outside.
     assert columns.mean() == pytest.approx(110, abs=4)

@@ -72,7 +72,9 @@ def expected(
     options = RenderOptions(size=size, time=shown["time"], params=shown["parameters"])
     options = replace(options, samples=samples_of(device, shown["view"]))
     moved = told(shown) if shown["steering"] else None
-    pixels: NDArray[np.float32] = scene.render(options, view=shown["view"], steering=moved).array
+    pixels: NDArray[np.float32] = scene.render(
+        replace(options, view=shown["view"], steering=moved)
+    ).array
     return pixels
 
 
@@ -366,7 +368,7 @@ def test_keys_cut_a_scene_open(display: str, tmp_path: Path, device: str) -> Non
         plane = CutPlane((0.0, 1.0, 0.0), section["Section_offset"], section["Section_hatch"])
         options = RenderOptions(size=SIZE, samples=samples_of(device))
         seen = viewable(distal.load(path))
-        asked = seen.render(options, steering=told(shown), section=plane).array
+        asked = seen.render(replace(options, steering=told(shown), section=plane)).array
         screen = window.screenshot(SIZE)
         assert difference(screen, asked).is_agreement
         assert difference(screen, seen.render(options).array).mean > 5

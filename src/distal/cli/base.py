@@ -18,6 +18,7 @@ import typer
 from distal.cli.arguments import UsageError, read_assignments, read_scene
 from distal.cli.exit_codes import ExitCode
 from distal.cli.messages import say
+from distal.cli.options import option_of
 from distal.cli.surroundings import check_processor, check_working_folder, prepare_for_arrays
 from distal.diagnostics import CompileError, DeviceError, LoadError, readable
 from distal.file_writer import SaveError
@@ -146,37 +147,17 @@ SceneArgument = Annotated[
     ),
 ]
 
-SizeOption = Annotated[
-    str, typer.Option("--size", metavar="WxH", help="Width and height in pixels.")
-]
+SizeOption = Annotated[str, option_of("size")]
+TimeOption = Annotated[str, option_of("time")]
+ModeOption = Annotated[str | None, option_of("mode")]
+CausticsOption = Annotated[bool, option_of("caustics")]
+ThreadsOption = Annotated[int | None, option_of("threads")]
+ClusterOption = Annotated[str | None, option_of("cluster")]
+DeviceOption = Annotated[Device, option_of("device")]
 LookOption = Annotated[
     str | None,
     typer.Option(
         help="studio, outdoor, sunset, night or blueprint; what the scene gives itself stays.",
-        show_default=False,
-    ),
-]
-ModeOption = Annotated[
-    str | None,
-    typer.Option(
-        "--mode",
-        help="direct: from each light to the first surface; path: exact, by many random paths.",
-        show_default=False,
-    ),
-]
-CausticsOption = Annotated[
-    bool,
-    typer.Option(
-        "--caustics/--no-caustics",
-        help="In mode path: whether photons find the light that glass and mirrors bundle.",
-    ),
-]
-SteeringOption = Annotated[
-    str | None,
-    typer.Option(
-        "--steering",
-        metavar="NAME=X,…",
-        help="How the camera is moved, like yaw=0.3,pitch=0.1,zoom=0.8,pan_x=0,pan_y=0.",
         show_default=False,
     ),
 ]
@@ -187,7 +168,6 @@ ProgressOption = Annotated[
         help="bar: on a terminal; json: for other programs, a line of JSON for each step.",
     ),
 ]
-TimeOption = Annotated[str, typer.Option("--time", metavar="S", help="Seconds.")]
 SetOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter; may be repeated."),
@@ -211,19 +191,6 @@ FeatureOption = Annotated[
         show_default=False,
     ),
 ]
-ThreadsOption = Annotated[
-    int | None, typer.Option(min=1, max=1024, help="CPU threads; one per core if not given.")
-]
-ClusterOption = Annotated[
-    str | None,
-    typer.Option(
-        "--cluster",
-        metavar="WHERE",
-        help="Render on the workers of Dask: local, local:N, tcp://HOST:PORT or a scheduler's "
-        "file.",
-        show_default=False,
-    ),
-]
 TimeoutOption = Annotated[
     float,
     typer.Option(
@@ -232,20 +199,6 @@ TimeoutOption = Annotated[
         min=1.0,
         help="With --cluster: give a task that takes longer to another worker.",
     ),
-]
-SamplesOption = Annotated[
-    int | None,
-    typer.Option(
-        "--samples",
-        "--spp",
-        min=1,
-        max=65536,
-        help="Samples in each pixel; if not given, one of an @image; one of a scene, and eight "
-        "more where the pixel differs from its neighbours; 64 in mode path.",
-    ),
-]
-DeviceOption = Annotated[
-    Device, typer.Option("--device", help="What renders; auto: a GPU, else the CPU.")
 ]
 AdapterOption = Annotated[
     str | None,

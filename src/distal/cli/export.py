@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, cast
+from typing import Annotated, Any
 
 import typer
 
@@ -28,9 +28,6 @@ from distal.cli.base import (
 )
 from distal.cli.messages import say
 from distal.cli.surroundings import check_processor
-
-if TYPE_CHECKING:
-    from distal.lang.presentable import ExportOptions
 
 _SUFFIXES = [f"{t.suffix} {t.place.partition(',')[0]}" for t in TEXT_TARGETS.values() if t.suffix]
 
@@ -144,8 +141,7 @@ def export(
     }
     given = {flag: entry for flag, entry in flags.items() if entry[1] is not None}
     # The names in ``flags`` are fields of PageOptions, which checks the values.
-    options: ExportOptions = {"view": view or "color", "time": read_time(at)}
-    options.update(cast("ExportOptions", dict(given.values())))
+    options = {"view": view or "color", "time": read_time(at), **dict(given.values())}
     if poster is not None:
         _check_poster(poster, is_left_out=no_poster)
     if scene.endswith(".md"):
@@ -248,7 +244,7 @@ def _write(
     target: str | None,
     assignments: list[str],
     look: str | None,
-    options: ExportOptions,
+    options: dict[str, Any],
 ) -> None:
     from distal.export.registry import export as write
     from distal.scene.viewing.viewable import viewable
@@ -269,7 +265,7 @@ def _write(
     for name in (options["view"], *(options.get("views") or ())):
         check_view(seen, name)
     options["params"] = values
-    made = write(seen, output, target=target, **options)
+    made = write(seen, output, target, options)
     for view, reason in made.omitted.items():
         say(f"warning: the view '{view}' is left out: {reason}")
     for part in made.unprinted:

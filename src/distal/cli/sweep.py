@@ -10,19 +10,15 @@ from typing import Annotated, Any
 
 import typer
 
-from distal.cli.arguments import UsageError, read_size, read_time
+from distal.cli.arguments import UsageError
 from distal.cli.base import (
     AdapterOption,
     ClusterOption,
     Device,
     DeviceOption,
-    ModeOption,
     ProgressKind,
     ProgressOption,
-    SamplesOption,
     SceneArgument,
-    ThreadsOption,
-    TimeOption,
     TimeoutOption,
     application,
     chosen_device,
@@ -30,11 +26,13 @@ from distal.cli.base import (
     load_picture,
     reporting,
 )
+from distal.cli.options import NOTHING_ASKED, Asked, request_of, requesting
 from distal.lang.progress_lines import COMPILING, LOADING
 
 
 @application.command()
 @reporting
+@requesting("sweep")
 def sweep(
     scene: SceneArgument,
     output: Annotated[
@@ -75,16 +73,9 @@ def sweep(
         ),
     ] = None,
     seed: Annotated[int | None, typer.Option(help="Of --draw; 0 if left out.")] = None,
-    size: Annotated[
-        str, typer.Option("--size", metavar="WxH", help="Of each picture, in pixels.")
-    ] = "160x120",
-    at: TimeOption = "0",
-    samples: SamplesOption = None,
-    mode: ModeOption = None,
-    view: Annotated[str, typer.Option(help="What to show, as in distal render.")] = "color",
+    asked: Asked = NOTHING_ASKED,
     device: DeviceOption = Device.CPU,
     adapter: AdapterOption = None,
-    threads: ThreadsOption = None,
     cluster: ClusterOption = None,
     task_timeout: TimeoutOption = 600.0,
     measure: Annotated[
@@ -100,11 +91,9 @@ def sweep(
     """Render and measure a scene for many sets of values of its parameters."""
     from distal.cli.messages import say
     from distal.cli.report import frame_progress
-    from distal.lang.render_options import LARGEST_SIDE_PX
     from distal.sweeps import parameter_sets
-    from distal.sweeps import sweep as run
+    from distal.sweeps.sweeping import swept
 
-    width_height, seconds = read_size(size, LARGEST_SIDE_PX), read_time(at)
     device_name = chosen_device(device, adapter)
     grid = _assigned(assignments or [])
     if values_file is not None and (grid or draw is not None):
@@ -122,22 +111,8 @@ def sweep(
             if drawn is not None:
                 method, count = drawn
                 values = parameter_sets(obj, count, grid or None, method=method, seed=seed or 0)
-            made = run(
-                obj,
-                values,
-                output,
-                size=width_height,
-                time=seconds,
-                samples=samples,
-                mode=mode,
-                view=view,
-                device=device_name,
-                threads=threads,
-                cluster=pool,
-                measure=measure,
-                fresh=fresh,
-                progress=bar,
-            )
+            options = request_of(asked, device=device_name, cluster=pool)
+            made = swept(obj, values, output, options, measure=measure, fresh=fresh, progress=bar)
         except ValueError as error:
             raise UsageError(str(error)) from None
     say(str(made))

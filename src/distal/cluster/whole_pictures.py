@@ -26,10 +26,13 @@ from distal.lang.runtime_access import executor
 from distal.runtime.device_names import AUTO, CPU
 from distal.runtime.uniform_values import chosen_uniforms
 
-# Options of ``RenderOptions`` that workers do not get.
-_OF_THIS_PROCESS: Final = (
-    *("device", "threads", "progress", "cancel", "refinement", "cluster", "history"),
+# Options that all pictures of a task have; the others are of this process, or a scene's, whose
+# program is sent.
+_SENT: Final = (
+    *("size", "mouse", "seed", "samples", "freeze", "keys", "buttons", "delta", "date"),
 )
+# What workers do not get of a refinement.
+_FUNCTIONS: Final = ("film", "preview", "finish")
 # The most bytes of pictures, as levels of 8 bits, in one task.
 _MOST_BYTES: Final = 2**25
 
@@ -142,16 +145,12 @@ def _plain_options(asked: Sequence[RenderOptions]) -> Plain:
     refinement = first.refinement
     if refinement is not None and (refinement.finish is not None or refinement.film is not None):
         raise ClusterError("denoise and film are not for whole pictures on workers")
-    plain = _fields_but(first, *_OF_THIS_PROCESS, "time", "index")
+    plain = {name: getattr(first, name) for name in _SENT}
     plain |= {"params": dict(first.params), "settings": dict(first.settings or {})}
     if refinement is not None:
-        plain["refinement"] = _fields_but(refinement, "film", "preview", "finish")
+        kept = (f.name for f in fields(refinement) if f.name not in _FUNCTIONS)
+        plain["refinement"] = {name: getattr(refinement, name) for name in kept}
     return {"options": plain, "moments": [(each.time, each.index) for each in asked]}
-
-
-def _fields_but(given: Any, *names: str) -> Plain:
-    """Return the fields of a dataclass by name, without some."""
-    return {f.name: getattr(given, f.name) for f in fields(given) if f.name not in names}
 
 
 def _picture(image: Image | Composed, options: RenderOptions, found: Mapping[str, Any]) -> Picture:

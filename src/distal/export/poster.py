@@ -40,9 +40,10 @@ def poster(seen: Viewable, options: PageOptions) -> bytes:
         time=options.time,
         params=options.params or {},
         device=options.device,
+        view=options.view,
         refinement=PATHS if seen.is_traced(options.view) else None,
     )
-    picture = seen.render(small, view=options.view)
+    picture = seen.render(small)
     levels = quantise(picture.array)[..., :3]
     if options.poster == TRIANGLE_POSTER:
         work = TriangleEncoding(levels)

@@ -6,17 +6,17 @@ the declarations of targets. To add another format, write a module with ``write`
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Unpack
+from typing import TYPE_CHECKING, Any, Final
 
 from distal.backends import TEXT_TARGETS
 from distal.export.exported import Exported
 from distal.export.page_options import PageOptions, TextOptions
 from distal.file_writer import SaveError, check_destination
 from distal.lang.lazy_module import LazyModule
-from distal.lang.presentable import ExportOptions
 from distal.scene.viewing.viewable import viewable
 
 if TYPE_CHECKING:
@@ -53,13 +53,12 @@ FORMATS: Final = {
 
 
 def export(
-    obj: Any,
-    path: str | PathLike[str],
-    *,
-    target: str | None = None,
-    **options: Unpack[ExportOptions],
+    obj: Any, path: str | PathLike[str], target: str | None, options: Mapping[str, Any]
 ) -> Exported:
-    """Write a scene, a shape or an ``@image`` to a file that other programs can show.
+    """Write a web page or the text of a shader, depending on the suffix or ``target``.
+
+    A page is one file that needs no network: a live picture with controls. A text takes ``params``,
+    ``view`` and ``time`` alone.
 
     Args:
         obj: The object to show.
@@ -79,11 +78,13 @@ def export(
     destination = Path(path)
     name = kind_of(destination, target)
     taken = FORMATS[name].option_names
-    if unknown := sorted(set(options) - taken):
+    defaults = {each.name: each.default for each in fields(PageOptions)}
+    given = {name: value for name, value in options.items() if value != defaults[name]}
+    if unknown := sorted(set(given) - taken):
         known = ", ".join(sorted(taken))
         raise TypeError(f"'{unknown[0]}' is no option of {name}; options: {known}")
     check_destination(destination)
-    chosen = PageOptions(**options)
+    chosen = PageOptions(**given)
     if chosen.printable:
         printing.check_solid(obj)
     seen = viewable(obj, chosen.params, chosen.time)

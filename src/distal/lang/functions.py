@@ -8,23 +8,20 @@ from __future__ import annotations
 
 import itertools
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import FunctionType
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from distal.at_once import cached_property
-from distal.ir.limits import FRAME_SECONDS
 from distal.lang.live_textures import LastFrame
+from distal.lang.option_methods import RenderedImage
 from distal.lang.presentable import Presentable
-from distal.lang.render_options import Cancel, Progress, RenderOptions
+from distal.lang.render_options import RenderOptions
 from distal.lang.runtime_access import executor, function_travel, shown_buffers
 from distal.lang.source import Source, capture
 
 if TYPE_CHECKING:
-    from distributed import Client
-
-    from distal.cluster.pool import WorkerPool
     from distal.images.picture import Picture
     from distal.lang.parameters import Parameter
 
@@ -125,7 +122,7 @@ class Func:
 _numbers = itertools.count()
 
 
-class Image(Func, Presentable):
+class Image(RenderedImage, Func, Presentable):
     """A picture: a function from a Frame to the color of one pixel."""
 
     @cached_property
@@ -138,50 +135,8 @@ class Image(Func, Presentable):
         """The image to render: itself."""
         return self
 
-    def render(
-        self,
-        size: tuple[int, int] = (640, 480),
-        time: float = 0.0,
-        params: Mapping[str, Any] | None = None,
-        device: str = "cpu",
-        threads: int | None = None,
-        progress: Progress | None = None,
-        cancel: Cancel | None = None,
-        mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
-        index: int | None = None,
-        seed: int = 0,
-        *,
-        samples: int | None = None,
-        cluster: Client | WorkerPool | None = None,
-        keys: Any = (),
-        buttons: int = 0,
-        delta: float = FRAME_SECONDS,
-    ) -> Picture:
+    def _rendered(self, options: RenderOptions) -> Picture:
         """Render the picture.
-
-        Args:
-            size: Width and height in pixels.
-            time: Time in seconds; ``frame.time`` of an ``@image``.
-            params: Values of parameters by name; the others have their defaults.
-            device: The device to render on: "auto" (a hardware GPU if there is one, else the CPU),
-                "cpu", "gpu", "gpu-fragment" or "reference"; "gpu:NAME" selects the adapter.
-            threads: Number of CPU threads; None uses all that the process may use.
-            progress: Called with the finished share, from 0 to 1.
-            cancel: An event, or a function without arguments, that ends the work early.
-            mouse: ``frame.mouse``: x and y in pixels from the lower left, then the click position
-                as in Shadertoy.
-            index: ``frame.index``, the frame number; wraps at 32 bits. A picture that reads
-                earlier frames is rendered from frame 0 to this one. None: as many frames as
-                ``time`` has steps of ``delta`` for such a picture, else 0.
-            seed: ``frame.seed``, the seed of random numbers; wraps at 32 bits.
-            samples: Samples in each pixel, which are averaged. None: one of an ``@image``; one of a
-                scene, and eight more where the pixel differs from its neighbours.
-            cluster: A ``dask.distributed.Client`` whose workers render it, with the same bits; None
-                renders it in this process. Needs ``distal[cluster]``.
-            keys: The codes of the keys that are down, or a ``Keys``.
-            buttons: ``frame.buttons``: 1 for the left button of the mouse, 2 for the right one and
-                4 for the middle one, added.
-            delta: ``frame.delta``, the seconds between two frames.
 
         Raises:
             CompileError: The scene code has mistakes.
@@ -189,23 +144,6 @@ class Image(Func, Presentable):
             TypeError: A value has the wrong type.
             ValueError: A value is out of range, or there is no such parameter or device.
         """
-        options = RenderOptions(
-            size=size,
-            time=time,
-            params=params or {},
-            device=device,
-            threads=threads,
-            progress=progress,
-            cancel=cancel,
-            mouse=mouse,
-            index=index,
-            seed=seed,
-            samples=samples,
-            cluster=cluster,
-            keys=keys,
-            buttons=buttons,
-            delta=delta,
-        )
         return executor().render(self.shown, options)
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 from distal.lang.lazy_module import LazyModule
-from distal.packages import is_installed
+from distal.packages import explained, is_installed
 from distal.session import SESSION
 
 if TYPE_CHECKING:
@@ -22,13 +22,17 @@ if TYPE_CHECKING:
     from distal.mesh import measuring, meshing, scene_parts
     from distal.mesh.outlines import outlining
     from distal.notebook import mesh_cell, widget
+    from distal.notebook.widget import LiveView
+    from distal.render import filters
     from distal.runtime import executor as runtime_executor
     from distal.runtime import heights as ray_views
     from distal.runtime import standard_executor
     from distal.runtime.executor import PythonExecutor
+    from distal.scene.lowering import layers as layers_of_scenes
     from distal.scene.objects import alternatives
     from distal.scene.tree import function_travel
     from distal.scene.viewing import viewable as viewing
+    from distal.sweeps import sweeping
     from distal.video import recording
 else:
     cluster_kernels = LazyModule("distal.cluster.kernels")
@@ -36,6 +40,8 @@ else:
     constant_evaluation = LazyModule("distal.compiler.constant_evaluation")
     exports = LazyModule("distal.export.registry")
     function_travel = LazyModule("distal.scene.tree.function_travel")
+    filters = LazyModule("distal.render.filters")
+    layers_of_scenes = LazyModule("distal.scene.lowering.layers")
     measuring = LazyModule("distal.mesh.measuring")
     mesh_cell = LazyModule("distal.notebook.mesh_cell")
     meshing = LazyModule("distal.mesh.meshing")
@@ -47,6 +53,7 @@ else:
     scene_parts = LazyModule("distal.mesh.scene_parts")
     shown_buffers = LazyModule("distal.lang.shown_buffers")
     standard_executor = LazyModule("distal.runtime.standard_executor")
+    sweeping = LazyModule("distal.sweeps.sweeping")
     viewing = LazyModule("distal.scene.viewing.viewable")
     widget = LazyModule("distal.notebook.widget")
 
@@ -62,6 +69,18 @@ def executor() -> PythonExecutor:
 _EXECUTOR: dict[str, PythonExecutor] = SESSION.keep("executor", {})
 
 
+def live_view() -> type[LiveView]:
+    """Return the class of live pictures in notebooks.
+
+    Raises:
+        MissingPackageError: The extra ``notebook`` is not installed, or broken.
+    """
+    try:
+        return widget.LiveView
+    except Exception as error:
+        raise explained(error) or error from None
+
+
 def _new_executor() -> PythonExecutor:
     if not is_installed("numpy"):
         return cast("PythonExecutor", standard_executor.StandardExecutor())
@@ -74,7 +93,10 @@ __all__ = [
     "constant_evaluation",
     "executor",
     "exports",
+    "filters",
     "function_travel",
+    "layers_of_scenes",
+    "live_view",
     "measuring",
     "mesh_cell",
     "meshing",
@@ -84,6 +106,7 @@ __all__ = [
     "recording",
     "scene_parts",
     "shown_buffers",
+    "sweeping",
     "viewing",
     "widget",
 ]

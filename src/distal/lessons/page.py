@@ -145,8 +145,8 @@ def still(
     params: Mapping[str, Value] | None = None,
 ) -> Any:
     """Return a still picture as an array of bytes, (height, width, 3)."""
-    options = RenderOptions(size=size, time=time, params=dict(params or {}), device="cpu")
-    return quantise(seen.render(options, view=view).array)[..., :3]
+    options = RenderOptions(size=size, time=time, params=dict(params or {}), view=view)
+    return quantise(seen.render(options).array)[..., :3]
 
 
 def _image(pixels: Any, *, lossless: bool = False) -> str:

@@ -7,11 +7,11 @@ the browser draws.
 
 from __future__ import annotations
 
-import inspect
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, Unpack
+from typing import Any
 
 import anywidget
 import traitlets
@@ -22,7 +22,6 @@ from distal.export.page_options import PageOptions
 from distal.export.payload import payload
 from distal.images.picture import Picture
 from distal.lang.chosen_values import checked_values
-from distal.lang.presentable import ShowOptions
 from distal.lang.render_options import (
     Cancel,
     Progress,
@@ -31,7 +30,7 @@ from distal.lang.render_options import (
     checked_time,
 )
 from distal.scene.steering import Steering
-from distal.scene.view_options import ViewOptions
+from distal.scene.view_options import refinement_of
 from distal.scene.viewing.viewable import Viewable, viewable
 
 
@@ -70,7 +69,10 @@ class LiveView(anywidget.AnyWidget):
         panel: bool = True,
         mode: str | None = None,
     ) -> None:
-        """Show a scene, a shape or an ``@image`` as a live picture.
+        """Show a live picture in a notebook, with a control for every parameter.
+
+        The widget's ``params``, ``time``, ``view`` and ``steering`` are bound both ways: controls
+        change them, and setting them changes the picture. Needs the extra ``notebook``.
 
         Args:
             obj: The object to show.
@@ -149,7 +151,6 @@ class LiveView(anywidget.AnyWidget):
             time_limit: In mode "path": seconds after which no more samples are begun.
             freeze: Compile all numbers as constants.
         """
-        limits = ViewOptions(view=self.view, time_limit=time_limit)
         options = RenderOptions(
             size=size or self._size,
             time=self.time,
@@ -162,11 +163,13 @@ class LiveView(anywidget.AnyWidget):
             index=index,
             seed=seed,
             samples=samples,
+            time_limit=time_limit,
+            view=self.view,
+            steering=_as_steering(self.steering) if self._seen.steers else None,
             freeze=freeze,
-            refinement=limits.refinement(self._seen.mode, samples),
         )
-        moved = _as_steering(self.steering) if self._seen.steers else None
-        return self._seen.render(options, view=self.view, steering=moved)
+        refinement = refinement_of(options, self._seen.mode)
+        return self._seen.render(replace(options, refinement=refinement))
 
     def _checked(self, values: Mapping[str, Any] | None) -> dict[str, Any]:
         chosen = checked_values(self._seen.parameters, values)
@@ -243,15 +246,3 @@ def _as_dict(steering: Steering) -> dict[str, Any]:
 def _plain(value: Any) -> Any:
     """Return a parameter's value in the form for JSON."""
     return list(value) if isinstance(value, tuple) else value
-
-
-def show(obj: Any, **options: Unpack[ShowOptions]) -> LiveView:
-    """Show a scene, a shape or an ``@image`` as a live picture; see ``LiveView``.
-
-    Raises:
-        TypeError: There is no such option.
-    """
-    known = sorted(inspect.signature(LiveView).parameters.keys() - {"obj"})
-    if unknown := sorted(set(options) - set(known)):
-        raise TypeError(f"'{unknown[0]}' is no option of show; options: {', '.join(known)}")
-    return LiveView(obj, **options)

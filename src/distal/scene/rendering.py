@@ -1,6 +1,6 @@
 """Rendering of a scene: runs its programs and gives warnings.
 
-Input: a scene, its view options and render options. Output: a ``Picture`` with its layers and a
+Input: a scene and the options of a picture. Output: a ``Picture`` with its layers and a
 record of how it was made. Needs NumPy; scenes compile without this module.
 """
 
@@ -26,7 +26,13 @@ from distal.scene.checks.warnings import (
 from distal.scene.lowering.layers import OF_SAMPLES, values
 from distal.scene.lowering.picture import PATH_LAYERS
 from distal.scene.tree.errors import refuse
-from distal.scene.view_options import ViewOptions
+from distal.scene.view_options import (
+    path_settings,
+    recorded,
+    refinement_of,
+    slice_settings,
+    steering_settings,
+)
 from distal.scene.view_ranges import with_range
 
 if TYPE_CHECKING:
@@ -37,94 +43,90 @@ if TYPE_CHECKING:
 LAYER_SAMPLES: Final = 64
 
 
-def render_scene(scene: Scene, view: ViewOptions, options: RenderOptions) -> Picture:
+def render_scene(scene: Scene, options: RenderOptions) -> Picture:
     """Render a scene and its layers.
 
     Args:
         scene: The scene.
-        view: What is shown of the scene.
-        options: How it is rendered.
+        options: What is shown of it, and how it is rendered.
 
     Raises:
         CompileError: The scene has mistakes, or its camera is inside a solid.
         DeviceError: The device is missing or was lost.
     """
-    sliced, moved = view.slice_settings, view.steering_settings
+    sliced, moved = slice_settings(options), steering_settings(options)
     check_slopes(scene.shape, options.params, options.time)
     warn_of_functions(scene.shape, options.params, options.time)
     warn_of_darkness(scene)
-    refinement = view.refinement(scene.mode, options.samples, scene.shutter)
-    computed = [name for name in view.layers if name not in OF_SAMPLES]
+    refinement = refinement_of(options, scene.mode, scene.shutter)
+    computed = [name for name in options.layers if name not in OF_SAMPLES]
     shares = _shares(options.progress, 1 + len(computed))
-    steered = view.steering is not None
-    shown = {"transparent": view.transparent, "steered": steered}
     image, sampled = scene.program(
-        view.view,
+        options.view,
         options.samples,
-        mode=view.mode,
-        filter=view.filter,
-        caustics=view.caustics,
-        **shown,
+        mode=options.mode,
+        filter=options.filter,
+        caustics=options.caustics,
+        transparent=options.transparent,
+        steered=options.steering is not None,
     )
     settings = {**sampled, **sliced, **moved}
-    if refinement is None and view.view == "color":
+    if refinement is None and options.view == "color":
         warn_of_camera(scene)
     else:
-        settings |= view.path_settings
-    if refinement is not None and view.denoise:
+        settings |= path_settings(options)
+    if refinement is not None and options.denoise:
         check_denoiser()
         guided = replace(options, settings=moved, progress=None, refinement=refinement)
-        refinement = replace(refinement, finish=partial(_denoised, scene, view, guided))
+        refinement = replace(refinement, finish=partial(_denoised, scene, guided))
     asked = replace(options, settings=settings, progress=shares[0], refinement=refinement)
     asked = with_range(image, asked)
     picture = executor().render(image, asked)
-    if view.view == "color":
-        _check_visible(scene, view, picture, options)
+    if options.view == "color":
+        _check_visible(scene, picture, options)
         warn_of_lost_rays(scene, picture.stats["lost"])
-    of_samples = {name: picture.layers[name] for name in view.layers if name in OF_SAMPLES}
+    of_samples = {name: picture.layers[name] for name in options.layers if name in OF_SAMPLES}
     layers = {
-        name: _layer(scene, name, view, replace(asked, settings=moved, progress=share))
+        name: _layer(scene, name, replace(asked, settings=moved, progress=share))
         for name, share in zip(computed, shares[1:], strict=True)
     } | of_samples
-    if refinement is not None and view.clamp is not None:
-        picture = replace(picture, stats={**picture.stats, "clamp": view.clamp})
+    if refinement is not None and options.clamp is not None:
+        picture = replace(picture, stats={**picture.stats, "clamp": options.clamp})
     return picture.with_layers(layers).with_provenance(
-        view=view.view,
+        view=options.view,
         mode="direct" if refinement is None else "path",
-        paths={} if refinement is None else view.recorded,
-        transparent=view.transparent,
+        paths={} if refinement is None else recorded(options),
+        transparent=options.transparent,
         plane=tuple(sliced.values()) or None,
-        section=None if view.section is None else view.section.numbers,
-        steering=None if view.steering is None else view.steering.numbers,
+        section=None if options.section is None else options.section.numbers,
+        steering=None if options.steering is None else options.steering.numbers,
         stage=scene.staged,
-        layers=view.layers,
+        layers=options.layers,
         **scene.asked_display,
     )
 
 
-def _check_visible(
-    scene: Scene, view: ViewOptions, picture: Picture, options: RenderOptions
-) -> None:
+def _check_visible(scene: Scene, picture: Picture, options: RenderOptions) -> None:
     """Refuse a picture taken from inside a solid; warn of a black picture."""
-    if not view.transparent and not shows(picture.array[..., 3]):
+    if not options.transparent and not shows(picture.array[..., 3]):
         where, hint = hidden_camera(scene)
         refuse(f"the camera is {where}, and no ray finds a way out", hint, scene.place)
     warn_of_black(scene, picture, options.params, options.time)
 
 
-def _denoised(scene: Scene, view: ViewOptions, options: RenderOptions, light: Any) -> Any:
+def _denoised(scene: Scene, options: RenderOptions, light: Any) -> Any:
     """Return linear light without noise, guided by layers of the same samples."""
-    albedo, normal = (_layer(scene, name, view, options) for name in ("albedo", "normal"))
+    albedo, normal = (_layer(scene, name, options) for name in ("albedo", "normal"))
     return denoised(light, albedo, normal)
 
 
-def _layer(scene: Scene, name: str, view: ViewOptions, options: RenderOptions) -> Any:
+def _layer(scene: Scene, name: str, options: RenderOptions) -> Any:
     """Return the values of a layer."""
-    steered, refinement = view.steering is not None, options.refinement
+    steered, refinement = options.steering is not None, options.refinement
     if refinement is None or name not in PATH_LAYERS:
         layer = scene.layer(name, steered=steered)
     else:
-        layer = scene.path_layer(name, view.filter, steered=steered)
+        layer = scene.path_layer(name, options.filter, steered=steered)
         count = min(refinement.samples, LAYER_SAMPLES)
         alike = Refinement(samples=count, shutter=refinement.shutter, signed=refinement.signed)
         found = executor().render(layer, replace(options, refinement=alike)).linear

@@ -26,7 +26,7 @@ from distal.loading import SceneCode, digest_of, load, split_source
 from distal.scene.rendering import render_scene
 from distal.scene.section import CutPlane
 from distal.scene.steering import Steering
-from distal.scene.view_options import RECORDED, ViewOptions
+from distal.scene.view_options import RECORDED
 from distal.scene.viewing.viewable import viewable
 from distal.version import __version__
 
@@ -175,6 +175,7 @@ def rerender(
             index=origin.index,
             seed=origin.seed,
             samples=origin.samples if samples is None else samples,
+            view=origin.view,
         )
         made = _rendered(obj, origin, options)
     except (ValueError, TypeError, OverflowError) as error:  # the scene no longer has it
@@ -185,27 +186,20 @@ def rerender(
 def _rendered(obj: SceneCode, origin: Provenance, options: RenderOptions) -> Picture:
     seen = viewable(obj, *(origin.stage or ({}, 0.0)), origin.look)
     if seen.scene is None:
-        return seen.render(options, view=origin.view)
+        return seen.render(options)
     scene = seen.scene.with_display(exposure=origin.exposure, tone_map=origin.tone_map)
-    moved = None
+    shown: dict[str, Any] = {"transparent": origin.transparent, "layers": origin.layers}
+    if origin.view == "color":
+        shown["mode"] = origin.mode
     if origin.steering is not None:
         yaw, pitch, zoom, *pan = origin.steering
-        moved = Steering(yaw, pitch, zoom, (pan[0], pan[1]))
-    section = None
+        shown["steering"] = Steering(yaw, pitch, zoom, (pan[0], pan[1]))
     if origin.section is not None:
-        section, scene = CutPlane.of(origin.section), scene.sectioned
-    view = ViewOptions(
-        mode=origin.mode if origin.view == "color" else None,
-        view=origin.view,
-        transparent=origin.transparent,
-        steering=moved,
-        section=section,
-        layers=origin.layers,
-        **_recorded(origin),
-    )
+        shown["section"], scene = CutPlane.of(origin.section), scene.sectioned
     if origin.plane is not None:
-        view = replace(view, plane=origin.plane)
-    return render_scene(scene, view, replace(options, freeze=origin.freeze))
+        shown["plane"] = origin.plane
+    asked = replace(options, freeze=origin.freeze, **shown, **_recorded(origin))
+    return render_scene(scene, asked)
 
 
 def _recorded(origin: Provenance) -> dict[str, Any]:
@@ -215,7 +209,7 @@ def _recorded(origin: Provenance) -> dict[str, Any]:
         RerenderError: There is no such option.
     """
     for name in origin.paths:
-        if name not in RECORDED:
+        if name not in {row.name for row in RECORDED}:
             raise RerenderError(f"the picture names an option '{printable(name, 40)}' of paths")
     return dict(origin.paths)
 

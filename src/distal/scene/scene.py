@@ -7,9 +7,8 @@ that encodes light for display. The cheapest renderer that supports all material
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from distal.at_once import cached_property
@@ -21,8 +20,9 @@ from distal.ir.types import FRAME, VEC4
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.lazy_module import LazyModule
+from distal.lang.option_methods import RenderedScene
 from distal.lang.presentable import Presentable
-from distal.lang.render_options import Cancel, Progress, RenderOptions
+from distal.lang.render_options import MODES, Cancel, Progress, RenderOptions
 from distal.lang.runtime_access import meshing, scene_parts
 from distal.lang.source_places import author_place
 from distal.loading import copy_loaded_from
@@ -46,20 +46,15 @@ from distal.scene.scene_arguments import (
     whole,
 )
 from distal.scene.scene_values import SceneValue
-from distal.scene.steering import Steering
-from distal.scene.view_options import MODES, ViewOptions
 
 if TYPE_CHECKING:
-    from distributed import Client
-
-    from distal.cluster.pool import WorkerPool
     from distal.diagnostics import Span
     from distal.images.picture import Picture
     from distal.mesh.scene_parts import SceneParts
     from distal.scene import rendering
     from distal.scene.looks.look import Look
     from distal.scene.objects import shape_rows
-    from distal.scene.objects.argument_types import Color, Number, ParameterValues, Varying, Vector
+    from distal.scene.objects.argument_types import Color, Number, ParameterValues, Varying
     from distal.scene.objects.backgrounds import Background, Surroundings
     from distal.scene.objects.cameras import BaseCamera
     from distal.scene.objects.lights import Light
@@ -87,7 +82,7 @@ _OF_DISPLAY: Final = frozenset({"exposure", "tone_map"})
 _COMPUTED: Final = ("_whole", "_kept_digest", "sectioned", "renderer")
 
 
-class Scene(SceneValue, Composed, Presentable):
+class Scene(RenderedScene, SceneValue, Composed, Presentable):
     """Shapes, lights and a camera.
 
     What is not given comes from a look: lights, background, camera, floor, exposure, tone map,
@@ -315,90 +310,8 @@ class Scene(SceneValue, Composed, Presentable):
             return "refracted"
         return "mirrored" if any(m.reflects for m in found) else "plain"
 
-    def render(
-        self,
-        size: tuple[int, int] = (640, 480),
-        time: float = 0.0,
-        params: ParameterValues | None = None,
-        device: str = "cpu",
-        threads: int | None = None,
-        progress: Progress | None = None,
-        cancel: Cancel | None = None,
-        mouse: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
-        index: int | None = None,
-        seed: int = 0,
-        *,
-        samples: int | None = None,
-        mode: str | None = None,
-        caustics: bool = True,
-        spp: int | None = None,
-        time_limit: float | None = None,
-        noise: float | None = None,
-        film: str | Path | None = None,
-        filter: str | None = None,
-        shutter: float | None = None,
-        clamp: float | None = None,
-        denoise: bool = False,
-        preview: Callable[[Picture], object] | None = None,
-        view: str = "color",
-        transparent: bool = False,
-        plane: tuple[Vector, float] = ((0.0, 0.0, 1.0), 0.0),
-        freeze: bool = False,
-        steering: Steering | None = None,
-        layers: Sequence[str] = (),
-        cluster: Client | WorkerPool | None = None,
-    ) -> Picture:
+    def _rendered(self, options: RenderOptions) -> Picture:
         """Render the picture.
-
-        Args:
-            size: Width and height in pixels.
-            time: Time in seconds; ``frame.time`` of an ``@image``.
-            params: Values of parameters by name; the others have their defaults.
-            device: The device to render on: "auto" (a hardware GPU if there is one, else the CPU),
-                "cpu", "gpu", "gpu-fragment" or "reference"; "gpu:NAME" selects the adapter.
-            threads: Number of CPU threads; None uses all that the process may use.
-            progress: Called with the finished share, from 0 to 1.
-            cancel: An event, or a function without arguments, that ends the work early.
-            mouse: ``frame.mouse``: x and y in pixels from the lower left, then the click position
-                as in Shadertoy.
-            index: ``frame.index``, the frame number; wraps at 32 bits. A picture that reads
-                earlier frames is rendered from frame 0 to this one. None: as many frames as
-                ``time`` has steps of ``delta`` for such a picture, else 0.
-            seed: ``frame.seed``, the seed of random numbers; wraps at 32 bits.
-            samples: Samples in each pixel, which are averaged. None: one of an ``@image``; one of a
-                scene, and eight more where the pixel differs from its neighbours.
-            mode: How light is computed: "direct" or "path"; None: as the scene says.
-            caustics: In mode "path": whether light that glass, mirrors and metals bundle is found
-                by photons: much faster, with a small error that goes to 0. False: by paths alone.
-            spp: In mode "path": samples in each pixel, the same as ``samples``. None: 64, or as
-                many as a limit of time or noise takes.
-            time_limit: In mode "path": seconds after which no more samples are begun.
-            noise: In mode "path": the estimated error at which the picture is finished: the
-                standard error of a pixel's light, as a root mean square (1 is white).
-            film: In mode "path": a file that keeps the samples so far; if it exists, rendering goes
-                on from them.
-            filter: In mode "path": the reconstruction filter, "tent", "box", "gaussian",
-                "blackman-harris" or "mitchell"; None: "tent".
-            shutter: In mode "path": seconds that the shutter is open, from ``time`` on; what moves
-                is blurred. None: as the scene says.
-            clamp: In mode "path": the largest light of a sample; brighter ones are scaled to it.
-                That removes single bright pixels, and some light: the picture is biased. None has
-                no limit.
-            denoise: In mode "path": whether Open Image Denoise removes the noise that is left,
-                guided by albedo and normal; needs ``distal[denoise]``. It may remove fine detail.
-            preview: In mode "path": called with the picture so far, at most every few seconds, and
-                when the work is broken off.
-            view: What to show: "color", "coordinate", "signal", "distance", "normal", "depth",
-                "steps", "material", "slope" or "slice".
-            transparent: Whether alpha is 0 where a ray hits nothing.
-            plane: The plane that the view "slice" shows: its normal, of length 1, and its distance
-                from the origin along the normal.
-            freeze: Compile all numbers as constants: slower to compile, a little faster to run.
-            steering: How a person has moved the camera; None if it was not moved.
-            layers: Layers to compute for ``Picture.layers``: "depth", "normal", "albedo",
-                "material"; in mode "path" also "samples" and "variance".
-            cluster: A ``dask.distributed.Client`` whose workers render it, with the same bits; None
-                renders it in this process. Needs ``distal[cluster]``.
 
         Raises:
             CompileError: The scene has mistakes, or its camera is inside a solid.
@@ -406,40 +319,7 @@ class Scene(SceneValue, Composed, Presentable):
             TypeError: A value has the wrong type.
             ValueError: A value is out of range, or the view, parameter or device does not exist.
         """
-        shown = ViewOptions(
-            mode=mode,
-            caustics=caustics,
-            spp=spp,
-            time_limit=time_limit,
-            noise=noise,
-            film=film,
-            filter=filter,
-            shutter=shutter,
-            clamp=clamp,
-            denoise=denoise,
-            preview=preview,
-            view=view,
-            transparent=transparent,
-            plane=plane,
-            steering=steering,
-            layers=layers,
-        )
-        options = RenderOptions(
-            size=size,
-            time=time,
-            params=params or {},
-            device=device,
-            threads=threads,
-            progress=progress,
-            cancel=cancel,
-            mouse=mouse,
-            index=index,
-            seed=seed,
-            samples=samples,
-            freeze=freeze,
-            cluster=cluster,
-        )
-        return rendering.render_scene(self, shown, options)
+        return rendering.render_scene(self, options)
 
     def view(
         self,

@@ -28,7 +28,7 @@ from distal.images.png import encode_levels
 from distal.lang.chosen_values import checked_values
 from distal.lang.lazy_module import LazyModule
 from distal.lang.presentable import Presentable
-from distal.lang.render_options import Cancel, RenderOptions
+from distal.lang.render_options import FrameProgress, RenderOptions
 from distal.loading import loaded_from
 from distal.scene.viewing.viewable import Viewable, viewable
 from distal.sweeps.inputs import Inputs, inputs_of
@@ -55,8 +55,6 @@ _TABLE: Final = "sweep.csv"
 _FIGURES: Final = ("seconds", "brightness", "samples", "noise")
 _DIGITS: Final = 16  # of a hash in a table
 _NOTHING: Final[Mapping[int, SweepRow]] = {}
-# Called with the finished pictures, all pictures, and the kind of work.
-Progress = Callable[[int, int, str], Any]
 # Values by parameter, all combinations of which are taken; a list of sets of values; a CSV file.
 Values = Mapping[str, Any] | Iterable[Any] | str | PathLike[str]
 
@@ -90,24 +88,15 @@ class FinishedSweep:
         return f"{self.path}: {count}; {self.table}; {self.seconds:.1f} s"
 
 
-def sweep(
+def swept(
     obj: Presentable,
     values: Values,
     path: str | PathLike[str],
+    options: RenderOptions,
     *,
-    size: tuple[int, int] = (160, 120),
-    time: float = 0.0,
-    params: Mapping[str, Any] | None = None,
-    view: str = "color",
-    samples: int | None = None,
-    mode: str | None = None,
-    device: str = "cpu",
-    threads: int | None = None,
-    cluster: Client | WorkerPool | None = None,
     measure: bool = False,
     fresh: bool = False,
-    progress: Progress | None = None,
-    cancel: Cancel | None = None,
+    progress: FrameProgress | None = None,
 ) -> FinishedSweep:
     """Render, or only measure, a scene for many sets of values.
 
@@ -124,22 +113,12 @@ def sweep(
             in .csv, for a table of measures without pictures; or a folder, for numbered pictures,
             each with all that is needed to render it again. The table is beside the sheet, or in
             the folder.
-        size: Width and height of each picture in pixels.
-        time: Seconds, if it is none of the values.
-        params: Values of the other parameters by name.
-        view: The view to show; see ``Scene.render``.
-        samples: Samples in each pixel, as for ``render``.
-        mode: How light is computed: "direct" or "path"; None: as the scene says.
-        device: The device to render on, as for ``render``.
-        threads: Number of CPU threads; None for all.
-        cluster: A ``dask.distributed.Client`` whose workers render the pictures and measure the
-            solids, with the same bits; None does that in this process. Needs ``distal[cluster]``.
+        options: How each picture is rendered.
         measure: Whether the table has the volume, area, box and thinnest wall of each solid too, as
             ``Shape.measure`` finds them; a table without pictures always has.
         fresh: Do all work again, also what an earlier sweep left, and replace a table of other
             inputs.
         progress: Called with the finished pictures, all pictures, and the kind of work.
-        cancel: An event, or a function without arguments, that stops the work early.
 
     Raises:
         CompileError: The scene has mistakes.
@@ -148,29 +127,23 @@ def sweep(
             too many pictures.
     """
     begin = clock.perf_counter()
-    stop, is_cancelled = threading.Event(), cancel_test(cancel)
-    options = RenderOptions(
-        size=size,
-        time=time,
-        params=params or {},
-        device=device,
-        samples=samples,
-        threads=threads,
-        cluster=cluster,
-        cancel=lambda: stop.is_set() or is_cancelled(),
-    )
+    stop, is_cancelled = threading.Event(), cancel_test(options.cancel)
     shown = viewable(obj, options.params, options.time)
     inputs = inputs_of(values, shown.parameters)
     # By the names of the parameters, also if a label was given: measuring reads names.
-    options = replace(options, params=checked_values(shown.parameters, options.params))
+    options = replace(
+        options,
+        params=checked_values(shown.parameters, options.params),
+        cancel=lambda: stop.is_set() or is_cancelled(),
+    )
     both = {column.name for column in inputs.columns} & set(options.params)
     if both:
         label = next(column.label for column in inputs.columns if column.name in both)
         raise ValueError(f"'{label}' has values of the sweep, and another one")
     output = Path(path)
     kind = output.suffix.lower()
-    solid = _measures(shown, cluster) if measure or kind == ".csv" else None
-    job = _Sweep(obj, inputs, options, view, mode, stop, progress or _silent, solid)
+    solid = _measures(shown, options.cluster) if measure or kind == ".csv" else None
+    job = _Sweep(obj, inputs, options, stop, progress or _silent, solid)
     if kind == ".csv":
         found = job.measures(output, fresh)
     elif kind == ".png":
@@ -188,10 +161,8 @@ class _Sweep:
     obj: Any
     inputs: Inputs
     options: RenderOptions
-    view: str
-    mode: str | None
     stop: threading.Event
-    progress: Progress
+    progress: FrameProgress
     solid: SolidMeasures | None = None
     failed: dict[int, PartError] = field(default_factory=dict)
     measured: int = 0
@@ -287,7 +258,7 @@ class _Sweep:
     def _moving(self, index: int) -> moving_picture.MovingPicture:
         """Return the picture of a set of values."""
         options = replace(self.options, time=self._time(index), params=self._params(index))
-        return moving_picture.moving_picture(self.obj, options, self.view, self.mode)
+        return moving_picture.moving_picture(self.obj, options)
 
     def _params(self, index: int) -> dict[str, Any]:
         return {**self.options.params, **self.inputs.params(index)}
@@ -397,8 +368,8 @@ class _Sweep:
             **self.inputs.recipe,
             "parameters": dict(self.options.params),
             "time": self.options.time,
-            "view": self.view,
-            "mode": self.mode,
+            "view": self.options.view,
+            "mode": self.options.mode,
             "samples": self.options.samples,
             "size": list(self.options.size),
         }

@@ -5,6 +5,9 @@ Input: a viewable object and a duration. Output: mp4, webm, gif, apng, webp or n
 
 from __future__ import annotations
 
-from distal.video.recording import FinishedSequence, video
+from distal.lang.presentable import Presentable
+from distal.video.recording import FinishedSequence
+
+video = Presentable.video
 
 __all__ = ["FinishedSequence", "video"]

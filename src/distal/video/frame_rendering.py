@@ -12,11 +12,12 @@ import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
-from typing import Any, Final, Generic, TypeVar
+from typing import Final, Generic, TypeVar
 
 from distal.devices.base import PartError
 from distal.diagnostics import DeviceError
 from distal.images.picture import Picture
+from distal.lang.render_options import FrameProgress
 from distal.video.moving_picture import MovingPicture
 from distal.video.overlap import made_ahead, taking
 from distal.video.store import Tell
@@ -24,7 +25,6 @@ from distal.video.timing import Timing
 
 Item = TypeVar("Item")
 # Called with (finished frames, all frames, "rendering" or "encoding").
-Progress = Callable[[int, int, str], Any]
 # So many failures in a row have one reason, which the other frames have too.
 _MOST_IN_A_ROW: Final = 8
 # Failed frames whose reasons a message gives, and that it names.
@@ -83,7 +83,7 @@ class FrameRendering:
 
     moving: MovingPicture
     timing: Timing
-    progress: Progress
+    progress: FrameProgress
     tell: Tell
     stop: threading.Event
     failed: dict[int, PartError] = field(default_factory=dict)

@@ -27,8 +27,7 @@ from distal.scene.checks.warnings import (
     warn_of_camera,
     warn_of_functions,
 )
-from distal.scene.steering import Steering
-from distal.scene.view_options import ViewOptions
+from distal.scene.view_options import refinement_of, steering_settings
 from distal.scene.view_ranges import with_range
 from distal.scene.viewing.viewable import COLOR, Viewable, viewable
 from distal.sounds.reading import Samples, read
@@ -61,8 +60,6 @@ class MovingPicture:
     source_hash: str
     _image: Image | Composed = field(repr=False)
     _scene: Scene | None = field(repr=False)
-    _view: str = COLOR
-    _steering: Steering | None = None
 
     @property
     def size(self) -> tuple[int, int]:
@@ -127,9 +124,9 @@ class MovingPicture:
 
     def _described(self, made: Picture) -> Picture:
         return made.with_provenance(
-            view=self._view,
+            view=self.options.view,
             stage=None if self._scene is None else self._scene.staged,
-            steering=None if self._steering is None else self._steering.numbers,
+            steering=None if self.options.steering is None else self.options.steering.numbers,
         )
 
     @property
@@ -159,39 +156,28 @@ class MovingPicture:
 
     def warn_if_black(self, picture: Picture, time: float) -> None:
         """Warn if the first picture is black, as rendering a still picture does."""
-        if self._scene is not None and self._view == COLOR:
+        if self._scene is not None and self.options.view == COLOR:
             warn_of_black(self._scene, picture, self.parameters, time)
 
 
-def moving_picture(
-    obj: Any,
-    options: RenderOptions,
-    view: str,
-    mode: str | None = None,
-    shutter: float | None = None,
-    steering: Steering | None = None,
-) -> MovingPicture:
+def moving_picture(obj: Any, options: RenderOptions) -> MovingPicture:
     """Return the animated picture of an object.
 
     Args:
         obj: A scene, a shape or an ``@image``.
         options: How to render each frame. The default scene of a single shape fits the size of
             the shape at this time and for these parameters.
-        view: One of its views.
-        mode: How light is computed; None: as the scene says.
-        shutter: Seconds that the shutter is open; None: as the scene says.
-        steering: How a person has moved the camera; None if it was not moved.
 
     Raises:
         LoadError: The object is not a picture.
         VideoError: There is no such view, mode or parameter.
     """
     try:
-        shown = viewable(obj, options.params, options.time).in_mode(mode)
+        shown = viewable(obj, options.params, options.time).in_mode(options.mode)
     except ValueError as error:
         raise VideoError(str(error)) from None
-    image, settings = _image(shown, view, options.samples, steering)
-    refinement = _refinement(shown, view, options.samples, shutter)
+    image, settings = _image(shown, options)
+    refinement = _refinement(shown, options)
     lowered = Lowered.of(image, None)
     programs = (lowered, *executor().parts(image).frames)
     values = _values(shown, programs, options.params)
@@ -201,7 +187,7 @@ def moving_picture(
     if shown.scene is not None:
         check_slopes(shown.scene.shape, values, options.time)
         warn_of_functions(shown.scene.shape, values, options.time)
-        if refinement is None and view == COLOR:
+        if refinement is None and options.view == COLOR:
             warn_of_camera(shown.scene)
     return MovingPicture(
         name=shown.name,
@@ -210,50 +196,39 @@ def moving_picture(
         source_hash=lowered.source_hash,
         _image=image,
         _scene=shown.scene,
-        _view=view,
-        _steering=steering,
     )
 
 
-def _image(
-    shown: Viewable, view: str, samples: int | None, steering: Steering | None
-) -> tuple[Image | Composed, Mapping[str, Any]]:
+def _image(shown: Viewable, options: RenderOptions) -> tuple[Image | Composed, Mapping[str, Any]]:
     """Return the program of the frames, and its settings.
 
     It computes display values where it can, because a second pass for each frame is slower.
     """
     try:
         if shown.scene is None:
-            if steering is not None:
+            if options.steering is not None:
                 raise VideoError(f"'{shown.name}' is an @image: it has no camera to move")
-            return shown.image(view), {}
-        moved = steering is not None
+            return shown.image(options.view), {}
         image, settings = shown.scene.program(
-            view, samples, encoded=True, mode=shown.mode, steered=moved
+            options.view,
+            options.samples,
+            encoded=True,
+            mode=shown.mode,
+            steered=options.steering is not None,
         )
-        return image, {**settings, **({} if steering is None else steering.settings)}
+        return image, {**settings, **steering_settings(options)}
     except ValueError as error:
         raise VideoError(str(error)) from None
 
 
-def _refinement(
-    shown: Viewable, view: str, samples: int | None, shutter: float | None
-) -> Refinement | None:
-    """Return when a frame in mode "path" is finished; None in mode "direct".
-
-    Args:
-        shown: The object.
-        view: One of its views.
-        samples: Samples in each pixel, or None.
-        shutter: Seconds that the shutter is open; None: as the scene says.
-    """
+def _refinement(shown: Viewable, options: RenderOptions) -> Refinement | None:
+    """Return when a frame in mode "path" is finished; None in mode "direct"."""
     if shown.scene is None:
-        if shutter is not None:
+        if options.shutter is not None:
             raise VideoError("shutter is for scenes in mode 'path'")
         return None
     try:
-        asked = ViewOptions(view=view, shutter=shutter)
-        return asked.refinement(shown.mode, samples, shown.scene.shutter)
+        return refinement_of(replace(options, mode=None), shown.mode, shown.scene.shutter)
     except ValueError as error:
         raise VideoError(str(error)) from None
 

@@ -11,7 +11,7 @@ import json
 import threading
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from os import PathLike
 from pathlib import Path
@@ -23,8 +23,7 @@ from distal.devices.base import cancel_test
 from distal.devices.threads import usable_threads
 from distal.file_writer import check_destination
 from distal.images.picture import Picture
-from distal.lang.render_options import Cancel, RenderOptions, checked_samples, checked_size
-from distal.scene.steering import Steering
+from distal.lang.render_options import FrameProgress, RenderOptions
 from distal.version import __version__
 from distal.video.animation import Animation, animate
 from distal.video.encoding import Encoding, piece_name
@@ -41,7 +40,7 @@ from distal.video.formats import (
     numbered,
     read_quality,
 )
-from distal.video.frame_rendering import FrameRendering, FrameSteps, Progress
+from distal.video.frame_rendering import FrameRendering, FrameSteps
 from distal.video.frames import Frames, make_folder
 from distal.video.moving_picture import MovingPicture, moving_picture
 from distal.video.segments import join
@@ -85,64 +84,41 @@ class FinishedSequence:
         )
 
 
-def video(
+def record(
     obj: Any,
     path: str | PathLike[str],
+    options: RenderOptions,
     *,
     duration: float | Fraction | str,
     fps: float | Fraction | str = 30,
-    size: tuple[int, int] = (640, 480),
     start: float | Fraction | str = 0.0,
-    params: Mapping[str, Any] | None = None,
-    view: str = "color",
-    samples: int | None = None,
-    mode: str | None = None,
-    shutter: float | None = None,
-    steering: Steering | None = None,
     loop: bool = False,
     quality: str | float = "high",
-    device: str = "cpu",
-    threads: int | None = None,
     keep_frames: str | PathLike[str] | None = None,
     fresh: bool = False,
-    progress: Progress | None = None,
-    cancel: Cancel | None = None,
+    progress: FrameProgress | None = None,
     tell: Tell | None = None,
-    cluster: Any = None,
 ) -> FinishedSequence:
-    """Render an animated picture and write it.
+    """Render a video or a sequence of pictures, depending on the suffix.
 
     Frame i of ``round(duration * fps)`` shows the time ``start + i / fps``: with a duration of one
-    period the last frame is one step before the first.
+    period the last frame is one step before the first. An interrupted run continues where it
+    stopped. Needs the extra ``video`` for mp4 and webm.
 
     Args:
         obj: A scene, a shape or an ``@image``.
         path: Ends in .mp4, .webm, .gif, .apng or .webp, or is like ``frames/%05d.png``, whose
             folder is created.
+        options: How each frame is rendered.
         duration: Seconds.
         fps: Frames per second: 30, 29.97 or "30000/1001".
-        size: Width and height in pixels; even for mp4 and webm unless they are lossless.
         start: The time of the first frame in seconds.
-        params: Values of parameters by name.
-        view: The view to show; see ``Scene.render``.
-        samples: Samples in each pixel, as for ``render``.
-        mode: How light is computed: "direct" or "path"; None: as the scene says.
-        shutter: In mode "path": seconds that the shutter is open in each frame, from its time on;
-            ``0.5 / fps`` is a shutter of 180 degrees. None: as the scene says.
-        steering: How a person has moved the camera; None if it was not moved.
         loop: Whether gif, apng and webp repeat forever; otherwise they are played once.
         quality: "low", "medium", "high", a number from 0 to 100, or "lossless".
-        device: The device to render on: "auto" (a hardware GPU, else the CPU), "cpu", "gpu",
-            "gpu-fragment" or "reference"; "gpu:NAME" selects the adapter.
-        threads: Number of CPU threads for rendering; None for all.
         keep_frames: A folder to which every frame is also written as a PNG file; it is created.
         fresh: Render all frames again, even after an interrupted call.
         progress: Called with the finished frames, all frames, and the kind of work.
-        cancel: An event, or a function without arguments, that stops the work early; it is called
-            by the threads that render.
         tell: Called with a line of text, for example that an interrupted run continues.
-        cluster: A ``dask.distributed.Client`` whose workers render the frames, with the same bits;
-            None renders them in this process. Needs ``distal[cluster]``.
 
     Raises:
         SaveError: The file cannot be written, or PyAV is missing.
@@ -155,7 +131,7 @@ def video(
     when = timing(start, duration, fps)
     check_rate(when.rate, format)
     chosen = read_quality(quality, format)
-    check_size(checked_size(size), format, chosen)
+    check_size(options.size, format, chosen)
     folder = None if keep_frames is None else Path(keep_frames)
     if format is FRAMES:
         if folder is not None:
@@ -163,29 +139,20 @@ def video(
     else:
         library()
         check_destination(output)
-    try:
-        checked_samples(samples)
-    except ValueError as error:
-        raise VideoError(str(error)) from None
-    stop, is_cancelled = threading.Event(), cancel_test(cancel)
-    options = RenderOptions(
-        size=size,
+    stop, is_cancelled = threading.Event(), cancel_test(options.cancel)
+    options = replace(
+        options,
         time=when.time(0),
         delta=float(1 / when.rate),
-        params=params or {},
-        device=device,
-        samples=samples,
-        threads=threads,
         cancel=lambda: stop.is_set() or is_cancelled(),
-        cluster=cluster,
     )
-    shown: dict[str, Any] = {"view": view, "samples": samples, "mode": mode, "shutter": shutter}
-    if steering is not None:
-        shown["steering"] = steering.numbers
+    shown: dict[str, Any] = {n: getattr(options, n) for n in ("view", "samples", "mode", "shutter")}
+    if options.steering is not None:
+        shown["steering"] = options.steering.numbers
     job = _RecordingJob(
         output=output,
         format=format,
-        moving=moving_picture(obj, options, view, mode, shutter, steering),
+        moving=moving_picture(obj, options),
         timing=when,
         quality=chosen,
         loop=loop,
@@ -214,7 +181,7 @@ class _RecordingJob:
     loop: bool
     fresh: bool
     shown: Mapping[str, Any]
-    progress: Progress
+    progress: FrameProgress
     tell: Tell
     stop: threading.Event
 

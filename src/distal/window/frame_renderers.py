@@ -158,7 +158,8 @@ def picture(viewable: Viewable, shot: Shot, options: RenderOptions) -> Picture:
         shot: Time, parameters, view and camera.
         options: The options for rendering, of ``render_options``.
     """
-    return viewable.render(options, view=shot.view, steering=shot.steering, section=shot.section)
+    shown = replace(options, view=shot.view, steering=shot.steering, section=shot.section)
+    return viewable.render(shown)
 
 
 class PixelRenderer:

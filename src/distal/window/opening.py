@@ -27,12 +27,9 @@ def view(
     name: str | None,
     options: RenderOptions,
     *,
-    first_view: str = "color",
     scale: float = 1.0,
     paused: bool = False,
     look: str | None = None,
-    mode: str | None = None,
-    caustics: bool = True,
     unit: str = "mm",
 ) -> tuple[int, bool]:
     """Show a loaded object until the window is closed.
@@ -41,14 +38,11 @@ def view(
         obj: The result of ``distal.load(path, name)``.
         path: Its path, for reloading it.
         name: The name of the object in the file; None for the default.
-        options: Size (of the window, in its own units), initial time, parameters, and device,
-            where "auto" is already resolved.
-        first_view: The initial view.
+        options: Size (of the window, in its own units), initial time, parameters, view and mode,
+            and device, where "auto" is already resolved.
         scale: Rendered pixels per pixel of the window, along each side.
         paused: Whether the time is paused at the start.
         look: The name of a look to show it in; None for its own.
-        mode: How light is computed: "direct" or "path"; None: as the scene says.
-        caustics: Whether photons find the caustics of paths.
         unit: The length of one scene unit, which the ruler names.
 
     Returns:
@@ -63,11 +57,12 @@ def view(
     check_display()
     known = loaded_from(obj)
     files, since_ns = ((), None) if known is None else (known.files, known.began_ns)
-    origin = SceneSource(path, name, files, look, caustics, since_ns)
-    shown = viewable(obj, options.params, options.time, look).in_mode(None, caustics=caustics)
-    shown.in_mode(mode)  # raises if it has no such mode
-    if first_view not in shown.views:
-        raise ValueError(f"there is no view '{first_view:.40}'; views: {', '.join(shown.views)}")
+    origin = SceneSource(path, name, files, look, options.caustics, since_ns)
+    shown = viewable(obj, options.params, options.time, look)
+    shown = shown.in_mode(None, caustics=options.caustics)
+    shown.in_mode(options.mode)  # raises if it has no such mode
+    if options.view not in shown.views:
+        raise ValueError(f"there is no view '{options.view:.40}'; views: {', '.join(shown.views)}")
     canvas = open_canvas(options.size, f"{origin.title} - distal")
     try:
         surface, maker = open_surface(canvas, options.device)
@@ -75,10 +70,10 @@ def view(
             shown,
             time=options.time,
             values=options.params,
-            view=first_view,
+            view=options.view,
             paused=paused,
             guided=True,
-            mode=mode,
+            mode=options.mode,
             now=time.monotonic(),
             unit=unit,
         )

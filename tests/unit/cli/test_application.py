@@ -19,9 +19,9 @@ from distal.error_codes import ErrorCode
 from distal.images.picture import Picture
 from distal.lang import func
 from distal.lang.parameters import slider
+from distal.lang.render_options import RenderOptions
 from distal.scene.objects.shapes import Sphere
 from distal.scene.scene import Scene
-from distal.scene.view_options import ViewOptions
 
 STATS = {"compile_s": 0.1, "render_s": 0.2, "cache_hit": True, "lanes": 32, "threads": 2}
 
@@ -33,17 +33,17 @@ class Double(Scene):
 
     def __init__(self):
         super().__init__(Sphere(1.0))
-        self.shown = self.options = None
+        self.options = None
         self.failure = None
 
     def parameters(self):
         return [slider("Blend", 0.3)]
 
 
-def rendered(scene, view, options):
+def rendered(scene, options):
     if scene.failure:
         raise scene.failure
-    scene.shown, scene.options = view, options
+    scene.options = options
     width, height = options.size
     return Picture(np.ones((height, width, 4), np.float32), stats=STATS)
 
@@ -114,13 +114,12 @@ def hidden(x: float) -> float:
 def test_how_a_scene_is_seen_is_handed_on(scene, run):
     words = ("--view", "normal", "--samples", "4", "--transparent")
     assert run("render", "s.py", "-o", "a.png", *words).exit_code == 0
-    assert scene.shown == ViewOptions(view="normal", transparent=True)
+    assert (scene.options.view, scene.options.transparent) == ("normal", True)
     assert scene.options.samples == 4
     assert run("render", "s.py", "-o", "a.png", "--slice", "y=-0.5").exit_code == 0
-    assert scene.shown == ViewOptions(view="slice", plane=((0.0, 1.0, 0.0), -0.5))
+    assert (scene.options.view, scene.options.plane) == ("slice", ((0.0, 1.0, 0.0), -0.5))
     assert run("render", "s.py", "-o", "a.png").exit_code == 0
-    assert scene.shown == ViewOptions()
-    assert scene.options.samples is None
+    assert scene.options == RenderOptions(progress=scene.options.progress)
 
 
 def test_stats_are_exactly_one_json_line_on_stdout(scene, run):

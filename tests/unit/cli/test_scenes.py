@@ -187,6 +187,16 @@ def test_probe_of_an_image_lists_its_locals(run):
             "error: --transparent is for scenes and shapes; 'picture' is an @image\n",
         ),
         (
+            ("render", "picture.py", "-o", "a.png", "--no-caustics"),
+            2,
+            "error: --no-caustics is for scenes and shapes; 'picture' is an @image\n",
+        ),
+        (
+            ("render", "picture.py", "-o", "a.png", "--time-limit", "3"),
+            2,
+            "error: --time-limit is for scenes and shapes; 'picture' is an @image\n",
+        ),
+        (
             ("render", "picture.py", "-o", "a.png", "--view", "local:depth"),
             2,
             "error: 'picture' has no local 'depth' that can be shown\n"

@@ -12,9 +12,8 @@ from distal.diagnostics import LoadError
 from distal.editor.messages import RenderChoices, RenderFormat
 from distal.images.picture import FORMATS as PICTURES
 from distal.images.picture import PACKAGES
-from distal.lang.render_options import LARGEST_SIDE_PX, MOST_SAMPLES, PATH_SAMPLES
+from distal.lang.render_options import LARGEST_SIDE_PX, MODES, MOST_SAMPLES, PATH_SAMPLES
 from distal.packages import missing
-from distal.scene.view_options import MODES
 from distal.video.formats import FORMATS as FILMS
 from distal.video.formats import LOSSLESS, PACKAGE, QUALITIES, QUALITY
 

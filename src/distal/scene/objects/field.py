@@ -22,8 +22,10 @@ from distal.ir.nodes import Call, Param, Read, Return
 from distal.ir.types import FLOAT, INT, VEC3, Type
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
+from distal.lang.option_methods import RenderedShape
 from distal.lang.places import PLACES
 from distal.lang.presentable import Presentable
+from distal.lang.render_options import RenderOptions
 from distal.lang.runtime_access import executor, viewing
 from distal.lang.source_places import author_place
 from distal.scene.lowering.derived import BoundsOf, GradientOf
@@ -67,7 +69,6 @@ if TYPE_CHECKING:
         Place3,
         Rows,
     )
-    from distal.scene.steering import Steering
 
 # The most primitives in a tree: a hundred thousand take some hundred megabytes.
 MOST_PARTS: Final = 1_000_000
@@ -77,7 +78,7 @@ MOST_PARTS: Final = 1_000_000
 S = TypeVar("S", bound="BaseShape")
 
 
-class BaseShape(ShapeValue, Composed, Presentable):
+class BaseShape(RenderedShape, ShapeValue, Composed, Presentable):
     """The base class of solid and flat shapes."""
 
     flat: ClassVar[bool] = False
@@ -170,51 +171,18 @@ class BaseShape(ShapeValue, Composed, Presentable):
         """
         return self._asked(self, points, params, time)
 
-    def render(
-        self,
-        size: tuple[int, int] = (640, 480),
-        time: float = 0.0,
-        params: ParameterValues | None = None,
-        device: str = "cpu",
-        *,
-        samples: int | None = None,
-        mode: str | None = None,
-        view: str = "color",
-        transparent: bool = False,
-        steering: Steering | None = None,
-    ) -> Picture:
+    def _rendered(self, options: RenderOptions) -> Picture:
         """Render a picture of the shape alone: its camera, light and background are chosen for it.
 
         A flat shape is shown as it lies in its plane. ``Scene(shape).render`` has more options.
-
-        Args:
-            size: Width and height in pixels.
-            time: Time in seconds.
-            params: Values of parameters by name; the others have their defaults.
-            device: The device to render on, as for ``Scene.render``.
-            samples: Samples in each pixel, as for ``Scene.render``.
-            mode: How light is computed: "direct" or "path"; None: directly.
-            view: What to show, as for ``Scene.render``.
-            transparent: Whether alpha is 0 where a ray hits nothing.
-            steering: The movement of the camera, as for ``Scene.render``.
 
         Raises:
             CompileError: The shape's scene code has mistakes.
             DeviceError: The device is missing or was lost.
         """
-        scene = viewing.viewable(self, params, time).scene
+        scene = viewing.viewable(self, options.params, options.time).scene
         assert scene is not None
-        return scene.render(
-            size,
-            time,
-            params,
-            device,
-            samples=samples,
-            mode=mode,
-            view=view,
-            transparent=transparent,
-            steering=steering,
-        )
+        return scene._rendered(options)
 
     @overload
     def gradient(

@@ -20,7 +20,7 @@ from distal.ir.types import FLOAT
 from distal.lang.composed import Composed
 from distal.lang.functions import Func, Image
 from distal.lang.parameters import Parameter
-from distal.lang.render_options import RenderOptions
+from distal.lang.render_options import MODES, RenderOptions
 from distal.lang.runtime_access import executor
 from distal.loading import copy_loaded_from
 from distal.render.views import VIEWS
@@ -33,7 +33,7 @@ from distal.scene.objects.field import BaseShape
 from distal.scene.scene import Scene
 from distal.scene.section import CutPlane
 from distal.scene.steering import STILL, Steering
-from distal.scene.view_options import MODES, ViewOptions
+from distal.scene.view_options import refinement_of, steering_settings
 from distal.scene.view_ranges import with_range
 from distal.scene.viewing.guide import Guide
 from distal.scene.viewing.ruler import Ruler
@@ -251,36 +251,21 @@ class Viewable:
         plane = {} if section is None else section.settings
         return {**steering.settings, **plane} if self.steers else {}
 
-    def render(
-        self,
-        options: RenderOptions,
-        *,
-        view: str = COLOR,
-        steering: Steering | None = None,
-        section: CutPlane | None = None,
-    ) -> Picture:
+    def render(self, options: RenderOptions) -> Picture:
         """Render the picture.
 
         Args:
-            options: How it is rendered.
-            view: One of ``views``.
-            steering: How a person has moved the camera; None if it was not moved.
-            section: The plane that cuts the scene open; None if it is whole. Takes no effect if
-                nothing can be cut.
+            options: How it is rendered. Its ``section`` takes no effect if nothing can be cut; its
+                mode and caustics are those of this object.
         """
-        shown = self.shown_with(section)
-        return shown._rendered(options, view, steering, None if shown is self else section)
+        shown = self.shown_with(options.section)
+        return shown._rendered(replace(options, section=None) if shown is self else options)
 
-    def _rendered(
-        self,
-        options: RenderOptions,
-        view: str,
-        steering: Steering | None,
-        section: CutPlane | None,
-    ) -> Picture:
+    def _rendered(self, options: RenderOptions) -> Picture:
         """Render the picture; with a section, of what ``sectioned`` returned."""
-        moved = {} if steering is None else self.settings(steering)
-        moved |= {} if section is None else section.settings
+        view, steering, section = options.view, options.steering, options.section
+        staged: tuple[Mapping[str, Any], float] | None = None
+        asked: Mapping[str, Any] = {}
         if self.scene is None:
             image, settings = self.image(view), {}
         else:
@@ -291,19 +276,16 @@ class Viewable:
                 mode=self.mode,
                 caustics=self.caustics,
             )
-            settings = {**moved, **sampled}
+            settings = {**steering_settings(options), **sampled}
+            staged, asked = self.scene.staged, self.scene.asked_display
             if options.refinement is None:
-                chosen = ViewOptions(view=view, steering=steering)
-                refinement = chosen.refinement(self.mode, options.samples, self.scene.shutter)
+                refinement = refinement_of(options, self.mode, self.scene.shutter)
                 options = replace(options, refinement=refinement)
         picture = executor().render(image, with_range(image, replace(options, settings=settings)))
-        numbers = steering.numbers if steering is not None and self.steers else None
-        staged = None if self.scene is None else self.scene.staged
-        asked = {} if self.scene is None else self.scene.asked_display
         return picture.with_provenance(
             view=view,
             mode="path" if self.is_traced(view) else "direct",
-            steering=numbers,
+            steering=steering.numbers if steering is not None and self.steers else None,
             section=None if section is None else section.numbers,
             stage=staged,
             **asked,
