@@ -60,7 +60,7 @@ scene = Scene(
         (3.0 * cos(0.4 * time), 0.8 + 0.2 * sin(0.3 * time), 3.0 * sin(0.4 * time)),
         target=(0, 0, 0),
         fov=2 * math.atan(1 / 1.6),
-        mirror=True,
+        mirrored=True,
     ),
     background=Background(sky, sun=SUN),
     fog=(0.52, 0.455, 0.515),

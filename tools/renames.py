@@ -37,6 +37,8 @@ FORMER_ORDERS: Final[Mapping[str, tuple[str, ...]]] = {
     "VesicaSolid": ("height", "width"),
     "Prism": ("count", "apothem", "height"),
 }
+# Other names of calls in these tables.
+ALIASES: Final = {"yaw_pitch_roll": "TurnedCamera"}
 # Public objects under another spelling.
 FORMER_OBJECTS: Final = {"aluminium": "aluminum", "metre": "meter"}
 
@@ -75,7 +77,7 @@ class Renames(cst.CSTTransformer):
 def _callee(call: cst.Call) -> str:
     match call.func:
         case cst.Name(value=name) | cst.Attribute(attr=cst.Name(value=name)):
-            return name
+            return ALIASES.get(name, name)
     return ""
 
 

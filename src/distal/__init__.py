@@ -28,6 +28,7 @@ _HAND_WRITTEN = {
     "distal.example_files": ("gallery",),
     "distal.export.compiling": ("compile",),
     "distal.loading": ("load",),
+    "distal.scene.groups": ("Group", "group"),
     "distal.scene.looks.look": ("Look",),
     "distal.scene.objects.alternatives": ("choose",),
     "distal.scene.objects.backgrounds": ("Background", "Environment"),

@@ -21,6 +21,8 @@ from distal.lang.units import mm as mm
 from distal.example_files import gallery as gallery
 from distal.export.compiling import compile as compile
 from distal.loading import load as load
+from distal.scene.groups import Group as Group
+from distal.scene.groups import group as group
 from distal.scene.looks.look import Look as Look
 from distal.scene.objects.alternatives import choose as choose
 from distal.scene.objects.backgrounds import Background as Background
@@ -420,7 +422,7 @@ class Camera(_PlacedCamera):
             only.
         focus_distance: The distance along the viewing direction at which everything is sharp, in
             scene units. None: that of the target.
-        mirror: Swap left and right, as in left-handed systems.
+        mirrored: Swap left and right, as in left-handed systems.
 
     Raises:
         ValueError: A number is out of its range, or numbers do not go together.
@@ -434,7 +436,7 @@ class Camera(_PlacedCamera):
     fov_deg: Final[Any]
     aperture: Final[Any]
     focus_distance: Final[Any]
-    mirror: Final[Any]
+    mirrored: Final[Any]
 
     def __init__(
         self,
@@ -446,7 +448,7 @@ class Camera(_PlacedCamera):
         fov_deg: Number | None = None,
         aperture: Number = 0.0,
         focus_distance: Number | None = None,
-        mirror: bool = False,
+        mirrored: bool = False,
     ) -> None: ...
 
 class FisheyeCamera(_BaseCamera):
@@ -462,7 +464,7 @@ class FisheyeCamera(_BaseCamera):
         fov: The angle from the picture's bottom to its top, in radians; up to 2 pi
             (default: 180 degrees).
         fov_deg: The same in degrees.
-        mirror: Swap left and right, as in left-handed systems.
+        mirrored: Swap left and right, as in left-handed systems.
 
     Raises:
         ValueError: A number is out of its range, or numbers do not go together.
@@ -474,7 +476,7 @@ class FisheyeCamera(_BaseCamera):
     up: Final[Any]
     fov: Final[Any]
     fov_deg: Final[Any]
-    mirror: Final[Any]
+    mirrored: Final[Any]
 
     def __init__(
         self,
@@ -484,7 +486,7 @@ class FisheyeCamera(_BaseCamera):
         fov: Number | None = None,
         *,
         fov_deg: Number | None = None,
-        mirror: bool = False,
+        mirrored: bool = False,
     ) -> None: ...
 
 class OrbitCamera(_BaseCamera):
@@ -503,7 +505,7 @@ class OrbitCamera(_BaseCamera):
             only.
         focus_distance: The distance along the viewing direction at which everything is sharp, in
             scene units. None: that of the target.
-        mirror: Swap left and right, as in left-handed systems.
+        mirrored: Swap left and right, as in left-handed systems.
 
     Raises:
         ValueError: A number is out of its range.
@@ -518,7 +520,7 @@ class OrbitCamera(_BaseCamera):
     fov_deg: Final[Any]
     aperture: Final[Any]
     focus_distance: Final[Any]
-    mirror: Final[Any]
+    mirrored: Final[Any]
 
     def __init__(
         self,
@@ -531,7 +533,7 @@ class OrbitCamera(_BaseCamera):
         fov_deg: Number | None = None,
         aperture: Number = 0.0,
         focus_distance: Number | None = None,
-        mirror: bool = False,
+        mirrored: bool = False,
     ) -> None: ...
 
 class OrthographicCamera(_BaseCamera):
@@ -542,7 +544,7 @@ class OrthographicCamera(_BaseCamera):
         target: The point that it looks at.
         up: The direction that is up in the picture.
         height: Height of the visible area, in scene units.
-        mirror: Swap left and right, as in left-handed systems.
+        mirrored: Swap left and right, as in left-handed systems.
 
     Raises:
         ValueError: A number is out of its range, or numbers do not go together.
@@ -553,7 +555,7 @@ class OrthographicCamera(_BaseCamera):
     target: Final[Any]
     up: Final[Any]
     height: Final[Any]
-    mirror: Final[Any]
+    mirrored: Final[Any]
 
     def __init__(
         self,
@@ -562,7 +564,7 @@ class OrthographicCamera(_BaseCamera):
         up: Vector = ...,
         height: Number = 4.0,
         *,
-        mirror: bool = False,
+        mirrored: bool = False,
     ) -> None: ...
 
 class PanoramaCamera(_BaseCamera):
@@ -574,7 +576,7 @@ class PanoramaCamera(_BaseCamera):
         position: Position of the camera.
         target: The point in the middle of the picture.
         up: The direction that is up in the picture.
-        mirror: Swap left and right, as in left-handed systems.
+        mirrored: Swap left and right, as in left-handed systems.
 
     Raises:
         ValueError: A number is out of its range, or numbers do not go together.
@@ -584,7 +586,7 @@ class PanoramaCamera(_BaseCamera):
     position: Final[Any]
     target: Final[Any]
     up: Final[Any]
-    mirror: Final[Any]
+    mirrored: Final[Any]
 
     def __init__(
         self,
@@ -592,7 +594,7 @@ class PanoramaCamera(_BaseCamera):
         target: Vector = ...,
         up: Vector = ...,
         *,
-        mirror: bool = False,
+        mirrored: bool = False,
     ) -> None: ...
 
 class AmbientLight(_Light):
@@ -4111,6 +4113,7 @@ __all__ = [
     "GearProfile",
     "GradientBackground",
     "GradientNoiseSolid",
+    "Group",
     "Gyroid",
     "HalfPlane",
     "HalfSpace",
@@ -4279,6 +4282,7 @@ __all__ = [
     "gold",
     "gradient",
     "granite",
+    "group",
     "helix_path",
     "honey",
     "ice",

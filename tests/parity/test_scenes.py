@@ -200,7 +200,7 @@ CAMERAS = {
     "fisheye": FisheyeCamera((0, 0.5, 2.5)),
     "panorama": PanoramaCamera((0, 0.5, 2)),
     "turned": Camera.yaw_pitch_roll((1, 1, 6), 0.1, -0.1, 0.2, fov_deg=40),
-    "mirror": Camera((3, 2, 5), mirror=True),
+    "mirror": Camera((3, 2, 5), mirrored=True),
 }
 SCENES = {
     "plain": plain,

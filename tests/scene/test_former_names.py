@@ -20,6 +20,7 @@ REFUSED = (
     (lambda: distal.Nut("M6", clearance=0.1), "Nut has no 'clearance'", "gap=…"),
     (lambda: distal.Gear(bore=3.0), "Gear has no 'bore'", "bore_diameter=…"),
     (lambda: distal.Gear(hellix=0.1), "Gear has no 'hellix'", "did you mean 'helix'?"),
+    (lambda: distal.Camera(mirror=True), "Camera has no 'mirror'", "mirrored=…"),
     (lambda: distal.Text("a", align="left"), "Text has no 'align'", "justify=…"),
     (lambda: distal.Text("a", justify="centre"), "justify is 'left', 'center'", 'justify="center"'),
     (lambda: distal.Box().shell(0.1, "centre"), "a shell lies inner, center", 'where="center"'),
@@ -55,7 +56,8 @@ def test_calls_of_now_are_taken():
 
 def test_a_former_name_is_none_of_now():
     for name, changed in FORMER_NAMES.items():
-        now = inspect.signature(getattr(distal, name)).parameters
+        made = getattr(distal, name, distal.Camera.yaw_pitch_roll)  # TurnedCamera
+        now = inspect.signature(made).parameters
         assert not set(changed) & set(now), name
         assert {renamed.name for renamed in changed.values()} <= set(now), name
     for name, first in FORMERLY_FIRST.items():

@@ -58,6 +58,7 @@ if TYPE_CHECKING:
     from distal.images.picture import Picture
     from distal.mesh.scene_parts import SceneParts
     from distal.scene import rendering
+    from distal.scene.groups import Solid
     from distal.scene.looks.look import Look
     from distal.scene.objects.argument_types import Color, Number, ParameterValues, Varying, Vector
     from distal.scene.objects.backgrounds import Background, Surroundings
@@ -86,9 +87,11 @@ class Scene(SceneValue, Composed, Presentable):
     material and fog. Each argument replaces that part of the look alone.
 
     Args:
-        shape: One solid shape, or several, which are united.
-        lights: One light or several. None uses the look's, unless the background is a light.
-        camera: The camera. None frames the finite parts of the scene.
+        shape: One solid shape, or several, which are united; a ``group`` with lights and a camera;
+            another scene, of which the shapes and the author's lights come along.
+        lights: One light or several, besides those of groups. None uses the look's, if there are
+            no others and the background is no light.
+        camera: The camera. None: that of a group, else one that frames the finite parts.
         background: What rays that hit nothing show: a color, a ``Sky``, an ``Environment``, or a
             ``@func`` of the direction.
         look: "studio" (the default), "outdoor", "sunset", "night" or "blueprint"; or one of these
@@ -144,7 +147,7 @@ class Scene(SceneValue, Composed, Presentable):
 
     def __init__(
         self,
-        shape: Shape | Iterable[Shape],
+        shape: Solid | Iterable[Solid],
         lights: Light | Iterable[Light] | None = None,
         camera: BaseCamera | None = None,
         background: Background | Surroundings | Color | Func | None = None,
@@ -215,7 +218,7 @@ class Scene(SceneValue, Composed, Presentable):
         self.staged: tuple[Mapping[str, Any], float] | None = self.__dict__.get("staged")
         self._pictures: dict[tuple[Any, ...], Composed] = {}
         self._given: dict[str, Any] = {
-            "shape": made.shape,  # not ``shape``, which may be a generator
+            "shape": made.contents.given,  # not ``shape``, which may be a generator
             "lights": None if lights is None else made.given_lights,
             "camera": camera,
             "background": background,

@@ -16,19 +16,20 @@ from distal.lang.functions import Func
 from distal.lang.source_places import author_place
 from distal.render import ambient as _ambient  # noqa: F401 (declares lights)
 from distal.render import lights as _lights  # noqa: F401 (declares lights)
-from distal.render.declarations import LIGHTS
+from distal.render.declarations import LIGHTS, Family
 from distal.scene.objects.declared import declared_call, declared_class, given_arguments
-from distal.scene.objects.scene_object import SceneObject
+from distal.scene.objects.scene_object import PlacedObject
 from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.value import recorded
 
 
 @recorded
-class Light(SceneObject):
+class Light(PlacedObject):
     """The base class of lights.
 
-    A light never changes after construction.
+    A light never changes after construction. Its methods place it as those of a shape: its
+    position and direction move, and its brightness stays.
 
     Attributes:
         sample: ``(p) -> LightSample``, the light that arrives at a point; None for light from all
@@ -42,6 +43,7 @@ class Light(SceneObject):
     __slots__ = ("ambient", "radiance", "sample")
 
     noun: ClassVar[str] = "light"
+    family: ClassVar[Family] = LIGHTS
     sample: FunctionCall | None
     ambient: FunctionCall | None
     radiance: FunctionCall | None

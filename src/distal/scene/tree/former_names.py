@@ -48,6 +48,8 @@ _ROWS: Final = (
     ("TappedHole Nut MetricHole", "clearance", Renamed("gap")),
     ("Gear RingGear Rack RackProfile", "clearance", Renamed("tip_gap")),
     ("Gear", "bore", Renamed("bore_diameter")),
+    ("Camera OrbitCamera OrthographicCamera FisheyeCamera", "mirror", Renamed("mirrored")),
+    ("PanoramaCamera TurnedCamera", "mirror", Renamed("mirrored")),
     ("Text", "align", Renamed("justify")),
     ("Pie Arc Ring Horseshoe CircleWave", "angle", _OPENING),
     ("SolidAngle InfiniteCone CappedTorus", "angle", _OPENING),
