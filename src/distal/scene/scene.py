@@ -42,6 +42,7 @@ from distal.scene.scene_arguments import (
     checked_glow,
     checked_numbers,
     checked_shutter,
+    checked_tone_map,
     one_of,
     whole,
 )
@@ -101,7 +102,8 @@ class Scene(SceneValue, Composed, Presentable):
             given.
         exposure: A factor on all light, applied before the tone map.
         tone_map: How light beyond the display's range is shown: "none", "reinhard", "aces", "agx"
-            or "neutral".
+            or "neutral"; or a ``@func`` of linear light (vec3), after the exposure, that returns
+            linear light from 0 to 1.
         default_material: The material of shapes without ``paint``.
         fog: The color of fog. None: that of the background at the horizon, in each direction.
         fog_density: Density of the fog per scene unit: after a distance of 1/density, 1/e of the
@@ -155,7 +157,7 @@ class Scene(SceneValue, Composed, Presentable):
         look: str | Look | None = None,
         floor: bool | None = None,
         exposure: Number | None = None,
-        tone_map: str | None = None,
+        tone_map: str | Func | None = None,
         default_material: Material | Color | Varying | None = None,
         fog: Color | None = None,
         fog_density: Number | None = None,
@@ -199,7 +201,7 @@ class Scene(SceneValue, Composed, Presentable):
             check_cells(self.shape.node)
         self.lights, self.background, self.camera = made.lights, made.background, made.camera
         self.material = made.material
-        self.tone_map = one_of("tone map", made.tone_map, WORDS["tone_map"], place)
+        self.tone_map = checked_tone_map(made.tone_map, place)
         self.normals = one_of("way to find normals", normals, WORDS["normals"], place)
         self.march = one_of("march", march, WORDS["march"], place)
         self.glow = checked_glow(glow, place)
@@ -589,7 +591,7 @@ class Scene(SceneValue, Composed, Presentable):
         if exposure is not None:
             made.numbers = {**self.numbers, "exposure": checked_exposure(exposure, self.place)}
         if tone_map is not None:
-            made.tone_map = one_of("tone map", tone_map, WORDS["tone_map"], self.place)
+            made.tone_map = checked_tone_map(tone_map, self.place)
         given = {"exposure": exposure, "tone_map": tone_map}
         said = {name: value for name, value in given.items() if value is not None}
         made.asked_display = {**self.asked_display, **said}
@@ -633,3 +635,5 @@ class Scene(SceneValue, Composed, Presentable):
         parts: list[Any] = [*self.lights, self.camera, self.background, self.material]
         for part in parts:
             yield from part.functions()
+        if isinstance(self.tone_map, Func):
+            yield self.tone_map

@@ -16,6 +16,8 @@ from distal.fields.guarantees import UNBOUNDED, Limit
 from distal.ir.types import FLOAT, INT
 from distal.lang import func, vec3
 from distal.lang.composed import Composed
+from distal.lang.functions import Func
+from distal.render import tonemap
 from distal.scene.groups import Group
 from distal.scene.objects.cameras import BaseCamera
 from distal.scene.objects.field import BaseShape
@@ -24,6 +26,7 @@ from distal.scene.scene_values import SceneValue
 from distal.scene.tree.arguments import arguments
 from distal.scene.tree.conversion import Asked, number, plain_choice
 from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.own_functions import TONE_MAP
 
 _LIMITS: Final = {
     "exposure": Limit.NOT_NEGATIVE,
@@ -125,6 +128,13 @@ def one_of(what: str, name: Any, known: Sequence[str], place: Span | None) -> st
     if name not in known:
         refuse(f"there is no {what} {name!r:.40}", ", ".join(known), place)
     return str(name)
+
+
+def checked_tone_map(value: Any, place: Span | None) -> str | Func:
+    """Return the name of a tone map, or the author's function."""
+    if isinstance(value, Func):
+        return TONE_MAP.checked(value, place)
+    return one_of("tone map", value, tonemap.NAMES, place)
 
 
 @dataclass(frozen=True, slots=True)

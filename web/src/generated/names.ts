@@ -128,7 +128,7 @@ export const DISTAL: Names = {
   "Picture": ["(array, provenance=<factory>, stats=<factory>, light=None, layers=<factory>)", "Pixels encoded for display, with their provenance."],
   "Pie": ["(radius=1.0, opening=1.4)", "Sector of a disc, symmetric about the y axis."],
   "Plane": ["(y=0.0)", "Ground: the half space below a horizontal plane."],
-  "PointLight": ["(position, intensity=1.0, color=(1.0, 1.0, 1.0), radius=0.0)", "Light from one point, falling off with the square of the distance."],
+  "PointLight": ["(position, intensity=1.0, color=(1.0, 1.0, 1.0), radius=0.0, falloff=None)", "Light from one point, falling off with the square of the distance."],
   "Polygon": ["(points)", "Polygon through any points; if it crosses itself, the even-odd rule applies."],
   "Polyline": ["(points, radius=0.05, closed=False)", "Line with a width through points, with round ends and joints."],
   "PolylineTube": ["(points, radius=0.1, closed=False)", "Round tube along straight lines between points."],

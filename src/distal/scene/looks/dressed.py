@@ -13,6 +13,7 @@ from typing import Any
 from distal.at_once import cached_property
 from distal.diagnostics import Span
 from distal.fields.combine import joins
+from distal.lang.functions import Func
 from distal.scene.looks.boxes import subject_box
 from distal.scene.looks.dressing import Dressing
 from distal.scene.looks.look import Look
@@ -41,7 +42,7 @@ class GivenArguments:
     camera: Any
     background: Any
     material: Any
-    tone_map: str | None
+    tone_map: str | Func | None
     numbers: Mapping[str, Any]
 
 
@@ -143,8 +144,8 @@ class Dressed:
         return self._dressing.material if given is None else as_material(given)
 
     @property
-    def tone_map(self) -> str:
-        """The name of the tone map."""
+    def tone_map(self) -> str | Func:
+        """The name of the tone map, or the author's function."""
         given = self._given.tone_map
         return self._dressing.look.row.tone_map if given is None else given
 

@@ -15,12 +15,13 @@ from typing import Any, ClassVar, Final
 from distal.lang.functions import Func
 from distal.lang.source_places import author_place
 from distal.render import ambient as _ambient  # noqa: F401 (declares lights)
-from distal.render import lights as _lights  # noqa: F401 (declares lights)
+from distal.render import lights as _lights
 from distal.render.declarations import LIGHTS, Family
 from distal.scene.objects.declared import declared_call, declared_class, given_arguments
 from distal.scene.objects.scene_object import PlacedObject
 from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.calls import FunctionCall
+from distal.scene.tree.own_functions import FALLOFF
 from distal.scene.tree.value import recorded
 
 
@@ -52,6 +53,9 @@ class Light(PlacedObject):
         place, what = author_place(), type(self).__name__
         given = given_arguments(self.declaration, args, kwargs, what, place)
         call = declared_call(self.declaration, given, place, what=what)
+        if given.get("falloff") is not None:
+            shaped = {"light": call, "falloff": FALLOFF.checked(given["falloff"], place)}
+            call = FunctionCall(call.what, _lights.with_falloff, shaped, place)
         everywhere = any(slot.name == "n" for slot in slots_of(call.func))
         self._keep(
             sample=None if everywhere else call,
@@ -61,7 +65,7 @@ class Light(PlacedObject):
 
     def __repr__(self) -> str:
         call = self.sample or self.ambient
-        what = type(self).__name__ if call is None else call.described
+        what = type(self).__name__ if call is None else _without_falloff(call).described
         return f"<light {what}>"
 
     @property
@@ -73,15 +77,20 @@ class Light(PlacedObject):
         return None
 
     def _checked(self) -> Iterator[Mapping[str, Any]]:
-        yield from (
-            call.values for call in (self.radiance, self.sample, self.ambient) if call is not None
-        )
+        for call in (self.radiance, self.sample, self.ambient):
+            if call is not None:
+                yield _without_falloff(call).values
 
     def functions(self) -> Iterator[Func]:
         """Yield the scene functions that the light calls."""
         for call in (self.sample, self.ambient):
             if call is not None:
                 yield from call.functions()
+
+
+def _without_falloff(call: FunctionCall) -> FunctionCall:
+    inner = call.values.get("light")
+    return inner if isinstance(inner, FunctionCall) else call
 
 
 def call_of_part(whole: FunctionCall, function: Func | None) -> FunctionCall | None:
