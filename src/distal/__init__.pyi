@@ -22,6 +22,7 @@ from distal.lang.units import mm as mm
 from distal.example_files import gallery as gallery
 from distal.export.compiling import compile as compile
 from distal.loading import load as load
+from distal.render.material import Surface as Surface
 from distal.scene.groups import Group as Group
 from distal.scene.groups import group as group
 from distal.scene.looks.look import Look as Look
@@ -1604,14 +1605,14 @@ def facing(
     """
 
 @overload
-def gradient(
+def linear_gradient(
     a: Color | Varying = "#fff",
     b: Color | Varying = "#222",
     start: Vector | Varying = ...,
     end: Vector | Varying = ...,
 ) -> Pattern: ...
 @overload
-def gradient(
+def linear_gradient(
     a: Color | Varying | Material = "#fff",
     b: Color | Varying | Material = "#222",
     start: Vector | Varying = ...,
@@ -4232,6 +4233,7 @@ __all__ = [
     "Stairs",
     "Steering",
     "Superellipsoid",
+    "Surface",
     "SvgPath",
     "TangentCam",
     "TaperedBezierTube",
@@ -4291,7 +4293,6 @@ __all__ = [
     "glass",
     "glossy",
     "gold",
-    "gradient",
     "granite",
     "group",
     "helix_path",
@@ -4303,6 +4304,7 @@ __all__ = [
     "iron",
     "jade",
     "leather",
+    "linear_gradient",
     "load",
     "marble",
     "matte",

@@ -423,7 +423,7 @@ PATTERNS = [
         ),
     ),
     Case(
-        "gradient",
+        "linear_gradient",
         SIDES | {"start": (-0.6, 0.3, 0.2), "end": (0.9, -0.5, 0.4)},
         lambda a, b, start, end: between(a, b, on_way(start, end)),
     ),
@@ -477,6 +477,8 @@ PATTERNS = [
 # ``tests/paths/test_lens_and_shutter`` looks through lenses.
 LENS = {"aperture", "focus_distance"}
 ELSEWHERE_ARGUMENTS = {"Sky": {"light"}, "pattern": {"function"}}
+# ``test_own_functions`` looks at those that are functions.
+ELSEWHERE_ARGUMENTS |= {light: {"falloff"} for light in ("PointLight", "SpotLight")}
 ELSEWHERE_ARGUMENTS |= {camera: LENS for camera in ("Camera", "OrbitCamera", "TurnedCamera")}
 # ``test_named_materials`` looks at those that vary over a surface.
 ELSEWHERE = {"by_cell", "cube_map", "image_pattern", "Environment", "granite", "marble", "wood"}

@@ -17,6 +17,7 @@ from distal.scene.objects.reflecting import PlaneArguments, without_signs
 from distal.scene.objects.turns import warn_of_degrees
 from distal.scene.tree.conversion import is_scalar
 from distal.scene.tree.errors import refuse
+from distal.scene.tree.value import refuses_unknown
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import ArrayLike, Number, Vector
@@ -86,6 +87,7 @@ class Movable:
             return self._with(placing.SCALE, *factors)
         return self._with(placing.STRETCH, *factors, **parts)
 
+    @refuses_unknown
     def mirror(
         self: M, axes: str | None = None, offset: Number = 0.0, *, across: Vector | None = None
     ) -> M:

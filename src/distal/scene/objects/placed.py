@@ -30,6 +30,7 @@ from distal.scene.objects.shaped_edges import shaped_edge
 from distal.scene.tree.conversion import Asked, is_scalar, plain_choice
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.former_names import FORMER_WORDS
+from distal.scene.tree.value import refuses_unknown
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Argument, Number, Vector
@@ -102,6 +103,7 @@ class Placed(Movable, BaseShape):
         made: S = select(condition, self, None)
         return made
 
+    @refuses_unknown
     def symmetry(
         self: S, axes: str | None = None, offset: Number = 0.0, *, across: Vector | None = None
     ) -> S:

@@ -34,6 +34,7 @@ from distal.scene.objects.movable import MovableSolid
 from distal.scene.objects.outlined import Outlined
 from distal.scene.objects.path_corners import path_corners
 from distal.scene.objects.shape_values import PLAIN
+from distal.scene.objects.shaped_edges import PLAN
 from distal.scene.objects.turns import warn_of_degrees
 from distal.scene.tree.errors import refuse
 
@@ -283,11 +284,11 @@ class Shape(MovableSolid, Meshable, FromData):
 
     def engrave(self, other: BaseShape, depth: Number) -> Self:
         """Cut a V-shaped groove, ``depth`` deep, where the other shape's surface crosses this."""
-        return self._joined(blends.ENGRAVE, other, k=depth)
+        return self._joined(blends.ENGRAVE, other, depth=depth)
 
     def pipe(self, other: BaseShape, radius: Number) -> Self:
         """Keep only a pipe of this radius along the curve where the two surfaces cross."""
-        return self._joined(blends.PIPE, other, k=radius)
+        return self._joined(blends.PIPE, other, radius=radius)
 
     def groove(self, other: BaseShape, depth: Number, width: Number) -> Self:
         """Cut a groove with a rectangular profile where the surfaces cross.
@@ -442,16 +443,25 @@ class Shape2D(Outlined):
         self,
         height: Number | None = 1.0,
         *,
+        along: str = "z",
         rounding: Number | None = None,
         chamfer: Number | None = None,
     ) -> Shape:
-        """Extrude along z to a solid whose middle is at z = 0.
+        """Extrude to a solid whose middle is at 0.
 
         Args:
-            height: Full length along z; None extrudes without end.
+            height: Full length; None extrudes without end.
+            along: "z": the outline stands as it is drawn. "y": it is a plan that lies in the floor;
+                seen from above, x points to the right and its y, which is -z then, up.
             rounding: Radius of the rounded edges; None for sharp edges.
             chamfer: Size of the chamfered edges; None for sharp edges. Ignored with ``rounding``.
         """
+        if along not in ("y", "z"):
+            hint = 'along="y" for a plan; then rotate(…) for others'
+            refuse(f'extrude goes along "z" or "y", not {along!r:.40}', hint, author_place())
+        if along == "y":
+            standing = self.extrude(height, rounding=rounding, chamfer=chamfer)
+            return standing._with(placing.ROTATE_MATRIX, **PLAN)
         if height is None:
             if rounding is not None or chamfer is not None:
                 hint = "extrude(height, rounding=…), or leave out rounding and chamfer"

@@ -60,11 +60,13 @@ def blob(p: vec3, time: float) -> float:
 
 @func
 def floor(p: vec3) -> float:
+    """The floor."""
     return plane(p, -0.5)
 
 
 @func
 def scene(p: vec3, time: float) -> float:
+    """Both shapes and the floor."""
     return min(blob(p, time), floor(p))
 
 
@@ -110,6 +112,7 @@ def camera(uv: vec2, time: float) -> Ray:
 
 @image
 def picture(frame: Frame) -> vec4:
+    """The picture."""
     time = frame.time
     uv = (2.0 * frame.coord - frame.resolution) / frame.resolution.y
     bounds = Bounds(-EVERYWHERE, EVERYWHERE)
