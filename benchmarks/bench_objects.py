@@ -1,6 +1,6 @@
 """What objects cost: a scene of objects against a shader that calls the library by itself.
 
-``example:raymarcher_objects`` and ``example:raymarcher_library`` are one picture. One run,
+``example:raymarcher_objects`` and ``raymarcher_library.py`` here are one picture. One run,
 interleaved frame by frame, two threads, 640x480, every frame at another time; the last pictures are
 compared, so that no cached frame is measured. Prints a table: wall time, and the time that the
 cores worked, which other work on the machine does not change much.
@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import statistics
 import time
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,8 @@ import distal
 SIZE = (640, 480)
 THREADS = 2
 FRAME_STEP_S = 1.0 / 60.0
-EXAMPLES = ("raymarcher_library", "raymarcher_objects")
+LIBRARY = Path(__file__).with_name("raymarcher_library.py")
+PICTURES = {"raymarcher_library": str(LIBRARY), "raymarcher_objects": "example:raymarcher_objects"}
 
 
 def one_frame(image: Any, seconds: float) -> tuple[float, float]:
@@ -37,7 +39,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--frames", type=int, default=40)
     options = parser.parse_args()
-    images = [distal.load(f"example:{name}") for name in EXAMPLES]
+    images = [distal.load(place) for place in PICTURES.values()]
     times: list[list[tuple[float, float]]] = [[] for _ in images]
     for image in images:
         one_frame(image, 0.0)
@@ -51,7 +53,7 @@ def main() -> None:
         for t in times
     ]
     print(f"{'640x480, 2 threads':24} median ms  fastest  cores ms")
-    for name, row in zip(EXAMPLES, rows, strict=True):
+    for name, row in zip(PICTURES, rows, strict=True):
         print(f"{name:24} {row[0]:9.2f} {row[1]:8.2f} {row[2]:9.2f}")
     ratios = [objects / library for library, objects in zip(*rows, strict=True)]
     print(f"{'objects / library':24} {ratios[0]:8.2f}x {ratios[1]:7.2f}x {ratios[2]:8.2f}x")

@@ -17,7 +17,7 @@ from distal import (
     Sky,
     Sphere,
     copies,
-    gradient,
+    linear_gradient,
     matte,
     noise,
     plastic,
@@ -59,10 +59,10 @@ pebbles = copies(
 
 # Wet sand and foam where the sea meets the beach, at z = -4.65.
 dry = noise("#8f8371", "#a69984", size=0.25)
-beach = matte(gradient(dry, "#5c5144", start=(0.0, 0.0, -3.2), end=(0.0, 0.0, -4.4)))
+beach = matte(linear_gradient(dry, "#5c5144", start=(0.0, 0.0, -3.2), end=(0.0, 0.0, -4.4)))
 waves = noise("#1b5a6b", "#2c7f8c", size=0.8)
 water = Material(waves, diffuse=0.85, specular=0.15, roughness=0.3)
-sea = gradient(matte("#eef2f0"), water, start=(0.0, 0.0, -4.72), end=(0.0, 0.0, -5.0))
+sea = linear_gradient(matte("#eef2f0"), water, start=(0.0, 0.0, -4.72), end=(0.0, 0.0, -5.0))
 
 scene = Scene(
     pebbles.named("pebbles") | sand.paint(beach) | Plane(y=-0.42).paint(sea),

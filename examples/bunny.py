@@ -11,7 +11,7 @@ from distal import (
     RoundConeBetween,
     Scene,
     Sphere,
-    gradient,
+    linear_gradient,
     matte,
     outdoor,
     plastic,
@@ -23,7 +23,7 @@ weight = slider("Weight", 1.0, low=0.6, high=1.8, help="Above 1 it had too many 
 softness = slider("Softness", 1.0, low=0.0, high=1.5, help="How far the pieces melt.")
 
 BROWN = matte("#c19a76")
-FUR = matte(gradient("#f6ecdf", "#bd946e", start=(0.3, 0.0, 0.0), end=(0.05, 0.8, 0.0)))
+FUR = matte(linear_gradient("#f6ecdf", "#bd946e", start=(0.3, 0.0, 0.0), end=(0.05, 0.8, 0.0)))
 PINK = matte("#e09a94")
 WHITE = matte("#f6efe4")
 GRASS = "#5f8048"

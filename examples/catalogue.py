@@ -8,11 +8,11 @@ differences halve the time that this takes.
 import inspect
 from math import isfinite
 
+import distal
 from distal import DistantLight, HemisphereLight, OrbitCamera, Plane, Scene, Shape, pattern, plastic
 from distal.fields.library import PRIMITIVES
-from distal.fields.noise.lattice import fraction, lattice_hash
+from distal.fields.noise import fraction, lattice_hash
 from distal.lang import Buffer, cos, func, ivec3, round, slider, vec3
-from distal.scene.objects.shapes import CLASSES
 
 turn = slider("Turn", 0.35, low=-3.15, high=3.15, help="The camera's way around.")
 
@@ -22,7 +22,7 @@ SPACING = 2.1
 
 def stands_by_itself(name: str) -> bool:
     """Whether a shape is bounded, has an inside, and needs no data."""
-    row, made = PRIMITIVES[name], CLASSES[name]
+    row, made = PRIMITIVES[name], getattr(distal, name)
     given = [p.default for p in inspect.signature(made).parameters.values()]
     complete = not any(d is inspect.Parameter.empty or isinstance(d, Buffer) for d in given)
     if not (issubclass(made, Shape) and complete and row.signed) or row.estimate:
@@ -37,11 +37,11 @@ def own_color(p: vec3) -> vec3:
     return 0.52 + 0.38 * cos(6.2831853 * (chance + vec3(0.0, 0.36, 0.6)))
 
 
-names = [name for name in CLASSES if stands_by_itself(name)]
+names = [name for name in PRIMITIVES if stands_by_itself(name)]
 down = -(-len(names) // ACROSS)
 width, depth = SPACING * (ACROSS - 1), SPACING * (down - 1)
 solids = [
-    CLASSES[name]().translate(
+    getattr(distal, name)().translate(
         SPACING * (i % ACROSS) - width / 2, 0.0, SPACING * (i // ACROSS) - depth / 2
     )
     for i, name in enumerate(names)

@@ -4,8 +4,18 @@ The index of a repetition distinguishes the copies: ``cell`` in a field and in a
 share of windows that are lit.
 """
 
-from distal import Background, Camera, DistantLight, HemisphereLight, Plane, Scene, Shape, pattern
-from distal.fields.noise.lattice import fraction, lattice_hash
+from distal import (
+    Background,
+    Camera,
+    DistantLight,
+    HemisphereLight,
+    Plane,
+    Scene,
+    Shape,
+    Surface,
+    pattern,
+)
+from distal.fields.noise import fraction, lattice_hash
 from distal.lang import (
     abs,
     clamp,
@@ -27,7 +37,6 @@ from distal.lang import (
     vec2,
     vec3,
 )
-from distal.render.material import Surface
 
 lit = slider("Lit windows", 0.3, low=0.0, high=1.0)
 

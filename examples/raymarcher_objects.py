@@ -1,8 +1,7 @@
 """The scene of ``raymarcher``, made of objects: a sphere and an orbiting torus melt together.
 
 The same shapes, places, sun and camera as ``raymarcher``, and its colors, read as sRGB: light is
-linear here. Marching, shadows, shading and fog are the library's; ``raymarcher_library`` makes the
-same picture from the library's functions.
+linear here. Marching, shadows, shading and fog are the library's.
 Ported from the daslang tutorial "Signed-Distance-Field Raymarcher".
 """
 
@@ -18,7 +17,7 @@ from distal import (
     Sphere,
     Torus,
     checker,
-    gradient,
+    linear_gradient,
     time,
 )
 from distal.lang import clamp, cos, dot, func, max, mix, normalize, sin, slider, vec3
@@ -51,7 +50,7 @@ blob = sphere.union(torus, smooth=softness, blend="cubic")
 floor = Plane(y=-0.5).paint(checker("#4d5761", "#f2ebd9"))
 
 scene = Scene(
-    blob.paint(gradient(shaded, palette, start=(0, -0.5, 0), end=(0, 0.5, 0))) | floor,
+    blob.paint(linear_gradient(shaded, palette, start=(0, -0.5, 0), end=(0, 0.5, 0))) | floor,
     lights=[
         DistantLight(SUN, intensity=0.85, angle=2 * math.atan(1 / 32)),
         HemisphereLight(sky=(0.5,) * 3, ground=(0.25,) * 3, intensity=1.0),
@@ -60,7 +59,7 @@ scene = Scene(
         (3.0 * cos(0.4 * time), 0.8 + 0.2 * sin(0.3 * time), 3.0 * sin(0.4 * time)),
         target=(0, 0, 0),
         fov=2 * math.atan(1 / 1.6),
-        mirror=True,
+        mirrored=True,
     ),
     background=Background(sky, sun=SUN),
     fog=(0.52, 0.455, 0.515),

@@ -24,7 +24,7 @@ scene = Scene(
         PointLight((-2.0, 2.5, 0.0), intensity=50.0, color="#0f0"),
         PointLight((2.0, 2.5, 2.0), intensity=50.0, color="#00f"),
     ],
-    camera=Camera((0.0, 2.2, -9.7), target=(0.0, -0.1, 0.0), fov_deg=24.0, mirror=True),
+    camera=Camera((0.0, 2.2, -9.7), target=(0.0, -0.1, 0.0), fov_deg=24.0, mirrored=True),
     background="#000",
     ambient_occlusion=0.0,
     exposure=0.5,

@@ -21,7 +21,7 @@ scene = Scene(
         AmbientLight(ambient),
     ],
     camera=Camera.yaw_pitch_roll(
-        (0.0, 0.0, -10.0), yaw=math.pi, screen_height=0.05, screen_distance=0.1, mirror=True
+        (0.0, 0.0, -10.0), yaw=math.pi, screen_height=0.05, screen_distance=0.1, mirrored=True
     ),
     background="#000",
     default_material=(0.8, 0.8, 0.8),

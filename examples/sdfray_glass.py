@@ -30,7 +30,7 @@ scene = Scene(
         (10.0 * np.sin(time), height, -10.0 * np.cos(time)),
         target=(0.0, -0.1, 0.0),
         fov_deg=28.0,
-        mirror=True,
+        mirrored=True,
     ),
     background="#000",
     ambient_occlusion=0.0,

@@ -36,7 +36,7 @@ scene = Scene(
         AmbientLight(0.1),
     ],
     camera=OrbitCamera(
-        10.0, azimuth=math.pi + 0.6 + 0.3 * time, elevation=0.45, fov_deg=20.0, mirror=True
+        10.0, azimuth=math.pi + 0.6 + 0.3 * time, elevation=0.45, fov_deg=20.0, mirrored=True
     ),
     background="#000",
     default_material=(0.8, 0.8, 0.8),

@@ -28,7 +28,7 @@ scene = Scene(
         PointLight((-2.0, 2.5, 0.0), intensity=25.0, color="#0f0"),
         PointLight((2.0, 2.5, 2.0), intensity=25.0, color="#00f"),
     ],
-    camera=Camera((0.0, height, -10.0), target=(0.0, -0.2, 0.0), fov_deg=24.0, mirror=True),
+    camera=Camera((0.0, height, -10.0), target=(0.0, -0.2, 0.0), fov_deg=24.0, mirrored=True),
     background="#000",
     ambient_occlusion=0.0,
     exposure=0.8,

@@ -52,7 +52,12 @@ ADDITIONS: Final = (
     Addition("a shape", "CutHollowSphere", ("CutHollowSphere", "cut_hollow_sphere")),
     Addition("an operator", "twist", ("twist",)),
     Addition("a light", "SpotLight", ("SpotLight", "spot_light"), users=("looks/dressing.py",)),
-    Addition("a camera", "PanoramaCamera", ("PanoramaCamera", "panorama")),
+    Addition(
+        "a camera",
+        "PanoramaCamera",
+        ("PanoramaCamera", "panorama"),
+        users=("former_names.py",),
+    ),
     Addition("a pattern", "stripes", ("stripes",)),
     Addition(
         "a background",

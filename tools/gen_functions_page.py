@@ -46,6 +46,15 @@ def picture(frame: Frame) -> vec3:
 """
 
 
+SURFACE: Final = """\
+## Surfaces
+
+`Surface`, from `distal`, is what a function passed to `pattern` returns if it decides the whole
+material of a place: `Surface(color=vec3(0.8), roughness=0.3)`. Its fields are those of
+[`Material`](objects.md#materials).
+"""
+
+
 @dataclass(frozen=True)
 class Shown:
     """A function and the lines that show it: the brightness or color of a picture."""
@@ -80,6 +89,11 @@ NOISE: Final = (
     Shown("voronoi_border", ("smoothstep(0.02, 0.05, voronoi_border(4.0 * uv))",)),
 )
 HASHES: Final = (Shown("pcg", ("float(pcg(uvec2(frame.coord / 8.0)).x >> uint(8)) / 16777216.0",)),)
+CELLS: Final = (
+    Shown("lattice_hash", ("fraction(lattice_hash(ivec3(ivec2(frame.coord / 8.0), 0), 1))",)),
+    Shown("lattice_hash_2", ("fraction(lattice_hash_2(ivec2(frame.coord / 8.0), 1))",)),
+    Shown("fraction", ("fraction(pcg(uint(frame.coord.x / 8.0)))",)),
+)
 _BANDS: Final = "0.5 + 0.5 * cos(60.0 * d) if d > 0.0 else 0.25 + 0.25 * cos(60.0 * d)"
 FIELDS: Final = ("Circle", "Rectangle", "Heart", "Moon", "RegularStar", "Hexagon")
 
@@ -114,7 +128,7 @@ def draw(text: str, file: Path) -> None:
 
 def pictures() -> Iterator[tuple[Path, str]]:
     """Yield each picture's file and the scene code that draws it."""
-    for shown in (*NOISE, *HASHES):
+    for shown in (*NOISE, *HASHES, *CELLS):
         for number, line in enumerate(shown.lines):
             yield picture_file(shown.name, number), module_text(f"    return vec3({line})")
     for name in FIELDS:
@@ -179,6 +193,13 @@ def page() -> str:
 
     note = " The number of a cell, or of a pixel and a frame, gives the same bits everywhere."
     lines += entry(HASHES[0], pcg, note)
+    lines += [
+        "From `distal.fields.noise`: random bits of a cell, and a number from 0 to 1 of bits.",
+        "",
+    ]
+    for shown in CELLS:
+        lines += entry(shown, getattr(noise, shown.name))
+    lines += [SURFACE]
     lines += ["## Distances", ""]
     lines += [
         "Every shape of the [catalogue](catalogue.md) is a distance function that scene code can",
@@ -194,7 +215,12 @@ def page() -> str:
         lines.append(
             f"| ![{function.name}](../pictures/functions/{file.name}) | `{function.name}(uv)` |"
         )
-    lines += ["", "| shape | function | import from |", "|---|---|---|"]
+    lines += [
+        "",
+        "`PRIMITIVES`, from `distal.fields.library`, has the declaration of each by its name.",
+        "",
+    ]
+    lines += ["| shape | function | import from |", "|---|---|---|"]
     for name, primitive in PRIMITIVES.items():
         function = primitive.distance
         place = function.python_function.__module__

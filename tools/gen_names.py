@@ -78,7 +78,7 @@ def _arguments(value: Any) -> str:
         parameters = inspect.signature(value).parameters.values()
     except (TypeError, ValueError):
         return ""
-    parts = [_parameter(p) for p in parameters if p.name not in ("self", "cls", "k")]
+    parts = [_parameter(p) for p in parameters if p.name not in ("self", "cls", "blend_numbers")]
     whole = ", ".join(parts)
     if len(whole) > _LONGEST:
         whole = f"{whole[:_LONGEST].rpartition(', ')[0]}, …"

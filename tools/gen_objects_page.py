@@ -47,6 +47,7 @@ after `*` is passed by name.
 | `Color` | "#rrggbb", linear red, green and blue, or one `Number` for a grey |
 | `Image` | a picture's file, an array (height, width, 3 or 4), a `Picture` or a `Texture2D` |
 | `Varying` | a pattern, or a `@func` of a place: what differs from place to place on a surface |
+| `Func` | a function with `@func` above it |
 | `Argument` | what a `@func` of yours may take: any of these, or a list of numbers or points |
 """
 

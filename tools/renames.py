@@ -20,7 +20,7 @@ import libcst as cst
 from libcst import matchers as m
 
 import distal
-from distal.scene.tree.former_names import FORMER_NAMES, FORMER_WORDS, Renamed
+from distal.scene.tree.former_names import FORMER_NAMES, FORMER_OBJECTS, FORMER_WORDS, Renamed
 
 # The arguments of shapes in their former order, if it changed or if some are passed by name now.
 FORMER_ORDERS: Final[Mapping[str, tuple[str, ...]]] = {
@@ -37,8 +37,10 @@ FORMER_ORDERS: Final[Mapping[str, tuple[str, ...]]] = {
     "VesicaSolid": ("height", "width"),
     "Prism": ("count", "apothem", "height"),
 }
+# Other names of calls in these tables.
+ALIASES: Final = {"yaw_pitch_roll": "TurnedCamera"}
 # Public objects under another spelling.
-FORMER_OBJECTS: Final = {"aluminium": "aluminum", "metre": "meter"}
+FORMER_SPELLINGS: Final = {"aluminium": "aluminum", "metre": "meter"}
 
 _FENCED: Final = re.compile(
     r"^(?P<head>```python[^\n]*\n)(?P<code>.*?)^```", re.MULTILINE | re.DOTALL
@@ -53,6 +55,7 @@ class Renames(cst.CSTTransformer):
     def __init__(self, module: cst.Module) -> None:
         super().__init__()
         defined = m.findall(module, m.ClassDef() | m.FunctionDef())
+        self._from_distal = _imported(module)
         self._own = {d.name.value for d in defined if isinstance(d, cst.ClassDef | cst.FunctionDef)}
 
     def leave_Call(self, original_node: cst.Call, updated_node: cst.Call) -> cst.Call:  # noqa: N802
@@ -60,6 +63,8 @@ class Renames(cst.CSTTransformer):
         name = _callee(updated_node)
         if name == "shell":
             return updated_node.with_changes(args=[_with_word(a) for a in updated_node.args])
+        if name == "apply":
+            return updated_node.with_changes(args=[_with_operator(a) for a in updated_node.args])
         if name in self._own or name not in {*FORMER_NAMES, *FORMER_ORDERS}:
             return updated_node
         args = _ordered(name, updated_node.args)
@@ -67,16 +72,32 @@ class Renames(cst.CSTTransformer):
 
     def leave_Name(self, original_node: cst.Name, updated_node: cst.Name) -> cst.Name:  # noqa: N802
         """Spell public objects as they are spelled now."""
-        return updated_node.with_changes(
-            value=FORMER_OBJECTS.get(updated_node.value, updated_node.value)
-        )
+        name = updated_node.value
+        if name in FORMER_OBJECTS and name in self._from_distal:
+            return updated_node.with_changes(value=FORMER_OBJECTS[name])
+        return updated_node.with_changes(value=FORMER_SPELLINGS.get(name, name))
+
+
+def _imported(module: cst.Module) -> set[str]:
+    """Return the names that a module imports from ``distal`` itself."""
+    found: set[str] = set()
+    for node in m.findall(module, m.ImportFrom(module=m.Name("distal"))):
+        if isinstance(node, cst.ImportFrom) and not isinstance(node.names, cst.ImportStar):
+            found |= {str(alias.evaluated_name) for alias in node.names}
+    return found
 
 
 def _callee(call: cst.Call) -> str:
     match call.func:
         case cst.Name(value=name) | cst.Attribute(attr=cst.Name(value=name)):
-            return name
+            return ALIASES.get(name, name)
     return ""
+
+
+def _with_operator(arg: cst.Arg) -> cst.Arg:
+    """Return an argument of ``apply`` under its name of now: the size of blends."""
+    is_former = arg.keyword is not None and arg.keyword.value == "k"
+    return arg.with_changes(keyword=cst.Name("smooth")) if is_former else arg
 
 
 def _with_word(arg: cst.Arg) -> cst.Arg:

@@ -28,6 +28,8 @@ _HAND_WRITTEN = {
     "distal.example_files": ("gallery",),
     "distal.export.compiling": ("compile",),
     "distal.loading": ("load",),
+    "distal.render.material": ("Surface",),
+    "distal.scene.groups": ("Group", "group"),
     "distal.scene.looks.look": ("Look",),
     "distal.scene.objects.alternatives": ("choose",),
     "distal.scene.objects.backgrounds": ("Background", "Environment"),
@@ -60,6 +62,12 @@ __all__ = ["__version__", *(name for name in _MODULE_OF if name not in _NOT_STAR
 
 def _unknown(name: str) -> str:
     message = f"module 'distal' has no attribute '{name}'"
+    former = importlib.import_module("distal.scene.tree.former_names").FORMER_OBJECTS
+    if name in former:
+        return (
+            f"{message}; a blend of two colors is '{former[name]}', and the derivative is "
+            f"that of distal.lang"
+        )
     if name in importlib.import_module("distal.lang").__all__:
         return f"{message}; from distal.lang import {name}"
     near = importlib.import_module("difflib").get_close_matches(name, _MODULE_OF, 1)

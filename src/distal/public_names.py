@@ -16,7 +16,7 @@ DECLARED_NAMES = {
         "sapphire silver skin snow steel terracotta titanium water wax wood zinc"
     ),
     "distal.scene.objects.patterns": (
-        "by_cell checker facing gradient noise palette radial_gradient stripes waves"
+        "by_cell checker facing linear_gradient noise palette radial_gradient stripes waves"
     ),
     "distal.scene.objects.shapes": (
         "Annulus Arc ArcCam ArchimedeanSpiral BccLattice BezierTube Blob BlobbyCross Box BoxCheap "

@@ -147,7 +147,7 @@ COMBINING: Final = [
 
 @pytest.mark.parametrize("row", COMBINING, ids=lambda row: row.name)
 def test_every_combination_rises_no_faster_than_it_says(row):
-    numbers = {"k": 0.2, "count": 3, "depth": 0.1, "width": 0.1}
+    numbers = {"smooth": 0.2, "radius": 0.2, "count": 3, "depth": 0.1, "width": 0.1}
     # What is cut by a box is the larger of the blend and of a distance, whose slope is 1.
     cut = row in UNION_BLENDS and UNION_BLENDS[row].cut
     combine = UNION_BLENDS[row].union if cut else row.combine

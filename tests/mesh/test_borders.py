@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from distal import Box, Camera, Scene, Sphere, checker, gradient, metal
+from distal import Box, Camera, Scene, Sphere, checker, linear_gradient, metal
 from distal.lang import func, vec3
 from distal.mesh import jumps
 from distal.mesh.checks import checked
@@ -148,7 +148,7 @@ def test_two_colors_of_a_wide_blend_meet_where_the_palette_says() -> None:
 
 
 def test_gradients_are_not_cut() -> None:
-    ramp = gradient("#ff0000", "#0000ff", start=(0, -1, 0), end=(0, 1, 0))
+    ramp = linear_gradient("#ff0000", "#0000ff", start=(0, -1, 0), end=(0, 1, 0))
     made = Sphere(1.0).paint(ramp).mesh(0.01)
     assert made.report["border_points"] == 0 and made.triangle_colors is None
     plain = Sphere(1.0).mesh(0.01)

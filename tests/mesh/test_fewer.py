@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from distal import Box, Cylinder, Sphere, gradient
+from distal import Box, Cylinder, Sphere, linear_gradient
 from distal.cli.application import application
 from distal.mesh.palette import nearest, palette_of
 from distal.scene.tree.errors import SceneValueError
@@ -59,7 +59,7 @@ def test_colors_are_reduced_to_means_of_their_groups() -> None:
 
 @pytest.mark.parametrize("count", [1, 3, 16])
 def test_a_pattern_becomes_at_most_so_many_colors(count: int) -> None:
-    ball = Sphere(1.0).paint(gradient("#ff0000", "#0000ff", start=(0, -1, 0), end=(0, 1, 0)))
+    ball = Sphere(1.0).paint(linear_gradient("#ff0000", "#0000ff", start=(0, -1, 0), end=(0, 1, 0)))
     made = ball.mesh(0.05, colors=count)
     assert made.triangle_colors is not None
     assert 0 < len(np.unique(made.triangle_colors, axis=0)) <= count

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from distal import Box, Capsule, Cylinder, Polygon, Sphere, gradient
+from distal import Box, Capsule, Cylinder, Polygon, Sphere, linear_gradient
 from distal.devices import threads
 from distal.mesh import fewer, triangle_arithmetic
 from distal.mesh.checks import checked, close_pairs, intersecting_pairs
@@ -253,7 +253,7 @@ def test_faces_of_two_colors_stay_apart() -> None:
 
 
 def test_gradients_keep_their_points() -> None:
-    shades = gradient("#000000", "#ffffff", start=(0, -0.5, 0), end=(0, 0.5, 0))
+    shades = linear_gradient("#000000", "#ffffff", start=(0, -0.5, 0), end=(0, 0.5, 0))
     made = Box(1.0).paint(shades).mesh(check=True)
     assert made.report["check"] == FAULTLESS
     corners = made.points[made.triangles]

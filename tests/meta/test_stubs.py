@@ -48,7 +48,7 @@ Camera.yaw_pitch_roll((0, 1, 5), 0.2, fov=0.7)
 paint: Material = checker(matte("#fff"), glass(1.3, color("Tint")))
 plastic(checker("#fff", (0.1, 0.2, 0.3), size=size), roughness=pattern(rising, height=2.0))
 picture = Scene(
-    Sphere() | Box().paint(metal(gradient("#fff", noise()))),
+    Sphere() | Box().paint(metal(linear_gradient("#fff", noise()))),
     lights=[PointLight((1, 2, 3)), Sky()],
     camera=OrbitCamera(4, azimuth=size),
     background=Sky(light=True),
@@ -243,7 +243,10 @@ UNTYPED = {
     "Picture.with_provenance": "the fields of a dataclass",
     "Composed.compose": "the compiler's own",
     **dict.fromkeys(
-        (f"{made}.replace" for made in ("AuthorObject", "CalledValue", "Look", "Material")),
+        (
+            f"{made}.replace"
+            for made in ("AuthorObject", "CalledValue", "Group", "Look", "Material")
+        ),
         "each object takes arguments of its own",
     ),
     **dict.fromkeys(("SceneValue.replace", "ShapeValue.replace"), "as those of the object"),

@@ -42,8 +42,8 @@ from distal import (
     emissive,
     glass,
     glossy,
-    gradient,
     image_pattern,
+    linear_gradient,
     matte,
     metal,
     mirror,
@@ -104,7 +104,7 @@ def plain():
     cut = (Box(1.0) & Sphere(0.66)) - Cylinder(radius=0.3, height=2.0).cut_material("#fc0")
     field = Capsule().scale(0.3).paint(by_cell()).repeat(0.5, 0.0, 0.5, count=(7, 1, 3))
     own = Shape.from_function(lumpy, slope=2.0, depth=0.05).paint(pattern(by_height))
-    lifted = Hexagon().extrude(0.4).rotate(x=1.0).paint(gradient("#024", "#fa5"))
+    lifted = Hexagon().extrude(0.4).rotate(x=1.0).paint(linear_gradient("#024", "#fa5"))
     ring = (
         Circle(0.2 - 0.04 * np.sin(30.0 * place.x))
         .translate(0.5, 0)
@@ -200,7 +200,7 @@ CAMERAS = {
     "fisheye": FisheyeCamera((0, 0.5, 2.5)),
     "panorama": PanoramaCamera((0, 0.5, 2)),
     "turned": Camera.yaw_pitch_roll((1, 1, 6), 0.1, -0.1, 0.2, fov_deg=40),
-    "mirror": Camera((3, 2, 5), mirror=True),
+    "mirror": Camera((3, 2, 5), mirrored=True),
 }
 SCENES = {
     "plain": plain,

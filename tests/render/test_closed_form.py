@@ -209,8 +209,8 @@ def test_a_turned_camera_looks_along_minus_z_then_left_then_up():
 
 
 def test_mirrored_cameras_swap_left_and_right():
-    right = camera.look_at((0.5, 0.2), mirror=False).direction
-    left = camera.look_at((0.5, 0.2), mirror=True).direction
+    right = camera.look_at((0.5, 0.2), mirrored=False).direction
+    left = camera.look_at((0.5, 0.2), mirrored=True).direction
     assert (left[0], left[1], left[2]) == pytest.approx((-right[0], right[1], right[2]))
 
 

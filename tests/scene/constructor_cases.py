@@ -149,9 +149,9 @@ def basis(ahead: Any, up: Any) -> tuple[Any, Any, Any]:
     return x, np.cross(x, z), z
 
 
-def swapped(mirror: bool) -> tuple[Any, Any]:
+def swapped(mirrored: bool) -> tuple[Any, Any]:
     u, v = SCREEN.T
-    return (-u if mirror else u)[:, None], v[:, None]
+    return (-u if mirrored else u)[:, None], v[:, None]
 
 
 def rays(origin: Any, direction: Any) -> dict[str, Any]:
@@ -164,10 +164,10 @@ def perspective(
     up: Any,
     fov: float = 0.0,
     fov_deg: float = 0.0,
-    mirror: bool = False,
+    mirrored: bool = False,
 ) -> dict[str, Any]:
     x, y, z = basis(arr(target) - arr(position), up)
-    u, v = swapped(mirror)
+    u, v = swapped(mirrored)
     return rays(position, u * x + v * y + z / math.tan(0.5 * (fov or math.radians(fov_deg))))
 
 
@@ -180,12 +180,12 @@ def turned(
     screen_distance: float = 0.0,
     fov: float = 0.0,
     fov_deg: float = 0.0,
-    mirror: bool = False,
+    mirrored: bool = False,
 ) -> dict[str, Any]:
     """Rolled about the view, pitched about x, turned about y, one after the other."""
     opening = fov or math.radians(fov_deg)
     distance = screen_distance or 0.5 * screen_height / math.tan(0.5 * opening)
-    u, v = swapped(mirror)
+    u, v = swapped(mirrored)
     half = 0.5 * screen_height
     way = np.concatenate([half * u, half * v, np.full_like(u, -distance)], axis=1)
     for angle, row in ((roll, (0, 0, 1)), (pitch, (1, 0, 0)), (yaw, (0, 1, 0))):
@@ -206,17 +206,17 @@ def orbiting(
     target: Any,
     fov: float = 0.0,
     fov_deg: float = 0.0,
-    mirror: bool = False,
+    mirrored: bool = False,
 ) -> dict[str, Any]:
     level = math.cos(elevation)
     there = (level * math.sin(azimuth), math.sin(elevation), level * math.cos(azimuth))
     position = arr(target) + distance * arr(there)
-    return perspective(position, target, (0, 1, 0), fov, fov_deg, mirror)
+    return perspective(position, target, (0, 1, 0), fov, fov_deg, mirrored)
 
 
-def parallel(position: Any, target: Any, up: Any, height: float, mirror: bool) -> dict[str, Any]:
+def parallel(position: Any, target: Any, up: Any, height: float, mirrored: bool) -> dict[str, Any]:
     x, y, z = basis(arr(target) - arr(position), up)
-    u, v = swapped(mirror)
+    u, v = swapped(mirrored)
     origin = arr(position) + 0.5 * height * (u * x + v * y)
     return {"origin": origin, "direction": np.broadcast_to(z, (40, 3))}
 
@@ -227,18 +227,18 @@ def equidistant(
     up: Any,
     fov: float = 0.0,
     fov_deg: float = 0.0,
-    mirror: bool = False,
+    mirrored: bool = False,
 ) -> dict[str, Any]:
     x, y, z = basis(arr(target) - arr(position), up)
-    u, v = swapped(mirror)
+    u, v = swapped(mirrored)
     radius = np.hypot(u, v)
     angle = 0.5 * (fov or math.radians(fov_deg)) * radius
     return rays(position, np.cos(angle) * z + np.sin(angle) * (u * x + v * y) / radius)
 
 
-def all_around(position: Any, target: Any, up: Any, mirror: bool) -> dict[str, Any]:
+def all_around(position: Any, target: Any, up: Any, mirrored: bool) -> dict[str, Any]:
     x, y, z = basis(arr(target) - arr(position), up)
-    u, v = (0.5 * math.pi * c for c in swapped(mirror))
+    u, v = (0.5 * math.pi * c for c in swapped(mirrored))
     return rays(position, np.cos(v) * (np.sin(u) * x + np.cos(u) * z) + np.sin(v) * y)
 
 
@@ -249,16 +249,16 @@ CAMERAS = [
     *(
         Case(
             "Camera",
-            LOOK | {k: v, "mirror": True},
+            LOOK | {k: v, "mirrored": True},
             perspective,
             site="uv",
-            changed={"mirror": [False]},
+            changed={"mirrored": [False]},
         )
         for k, v in (("fov", 0.9), ("fov_deg", 50.0))
     ),
     *(
         # An angle tells how far away a screen of any height is.
-        Case("TurnedCamera", TURN | more | {"mirror": True}, turned, site="uv", fixed=fixed)
+        Case("TurnedCamera", TURN | more | {"mirrored": True}, turned, site="uv", fixed=fixed)
         for more, fixed in (
             ({"screen_height": 1.4, "screen_distance": 0.8}, ()),
             ({"screen_height": 1.4, "fov": 0.9}, ("screen_height",)),
@@ -266,15 +266,15 @@ CAMERAS = [
         )
     ),
     *(
-        Case("OrbitCamera", ORBIT | {k: v, "mirror": True}, orbiting, site="uv")
+        Case("OrbitCamera", ORBIT | {k: v, "mirrored": True}, orbiting, site="uv")
         for k, v in (("fov", 0.9), ("fov_deg", 50.0))
     ),
-    Case("OrthographicCamera", LOOK | {"height": 3.0, "mirror": True}, parallel, site="uv"),
+    Case("OrthographicCamera", LOOK | {"height": 3.0, "mirrored": True}, parallel, site="uv"),
     *(
-        Case("FisheyeCamera", LOOK | {k: v, "mirror": True}, equidistant, site="uv")
+        Case("FisheyeCamera", LOOK | {k: v, "mirrored": True}, equidistant, site="uv")
         for k, v in (("fov", 1.9), ("fov_deg", 100.0))
     ),
-    Case("PanoramaCamera", {**LOOK, "mirror": True}, all_around, site="uv"),
+    Case("PanoramaCamera", {**LOOK, "mirrored": True}, all_around, site="uv"),
 ]
 
 # Materials
@@ -423,7 +423,7 @@ PATTERNS = [
         ),
     ),
     Case(
-        "gradient",
+        "linear_gradient",
         SIDES | {"start": (-0.6, 0.3, 0.2), "end": (0.9, -0.5, 0.4)},
         lambda a, b, start, end: between(a, b, on_way(start, end)),
     ),
@@ -477,6 +477,8 @@ PATTERNS = [
 # ``tests/paths/test_lens_and_shutter`` looks through lenses.
 LENS = {"aperture", "focus_distance"}
 ELSEWHERE_ARGUMENTS = {"Sky": {"light"}, "pattern": {"function"}}
+# ``test_own_functions`` looks at those that are functions.
+ELSEWHERE_ARGUMENTS |= {light: {"falloff"} for light in ("PointLight", "SpotLight")}
 ELSEWHERE_ARGUMENTS |= {camera: LENS for camera in ("Camera", "OrbitCamera", "TurnedCamera")}
 # ``test_named_materials`` looks at those that vary over a surface.
 ELSEWHERE = {"by_cell", "cube_map", "image_pattern", "Environment", "granite", "marble", "wood"}

@@ -215,6 +215,17 @@ FLATS = [
     ),
     Case(
         "extrude",
+        {"height": 0.8, "along": "y"},
+        lambda a, b, p, height, along: (
+            within_ends(a(p[:, [0, 2]] * (1.0, -1.0)), np.abs(p[:, 1]) - 0.5 * height)
+            if along == "y"
+            else within_ends(a(p[:, :2]), np.abs(p[:, 2]) - 0.5 * height)
+        ),
+        changed={"along": ["z"]},
+        lands=False,
+    ),
+    Case(
+        "extrude",
         {"height": 0.8, "rounding": 0.2},
         lambda a, b, p, height, rounding: (
             within_ends(a(p[:, :2]) + rounding, np.abs(p[:, 2]) - 0.5 * height + rounding)

@@ -35,7 +35,7 @@ def test_a_camera_looks_from_its_position_at_its_target():
     assert ray(camera) == pytest.approx((0, 0, -1), abs=1e-12)
     assert ray(camera, (0, 1)) == pytest.approx((0, HALF, -HALF))
     assert ray(camera, (1, 0)) == pytest.approx((HALF, 0, -HALF))
-    assert ray(Camera((0, 0, 5), fov_deg=90, mirror=True), (1, 0)) == pytest.approx(
+    assert ray(Camera((0, 0, 5), fov_deg=90, mirrored=True), (1, 0)) == pytest.approx(
         (-HALF, 0, -HALF)
     )
 

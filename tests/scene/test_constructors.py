@@ -131,7 +131,7 @@ def tuple_of(value: Any) -> Any:
 def test_a_camera_by_yaw_pitch_and_roll_is_a_turned_one():
     case = next(c for c in CAMERAS if c.name == "TurnedCamera")
     for more in ({"fov": 0.9}, {"fov_deg": 50.0}, {"screen_distance": 0.8}):
-        arguments = TURN | {"screen_height": 1.4, **more, "mirror": True}
+        arguments = TURN | {"screen_height": 1.4, **more, "mirrored": True}
         other = distal.Camera.yaw_pitch_roll(**arguments)
         whole = made(case, arguments)
         for name, value in whole.call.values.items():

@@ -12,6 +12,7 @@ from distal.diagnostics import CompileError
 from distal.fields.library import PRIMITIVES
 from distal.scene.tree.former_names import FORMER_NAMES, FORMERLY_FIRST
 
+BOX, BALL = distal.Box(1.0), distal.Sphere(0.6)
 REFUSED = (
     (lambda: distal.Moon(offset=0.4), "Moon has no 'offset'", "shift=…"),
     (lambda: distal.Pie(angle=0.7), "Pie has no 'angle'", "opening=2 * …, the whole angle"),
@@ -20,9 +21,17 @@ REFUSED = (
     (lambda: distal.Nut("M6", clearance=0.1), "Nut has no 'clearance'", "gap=…"),
     (lambda: distal.Gear(bore=3.0), "Gear has no 'bore'", "bore_diameter=…"),
     (lambda: distal.Gear(hellix=0.1), "Gear has no 'hellix'", "did you mean 'helix'?"),
+    (lambda: distal.Camera(mirror=True), "Camera has no 'mirror'", "mirrored=…"),
     (lambda: distal.Text("a", align="left"), "Text has no 'align'", "justify=…"),
     (lambda: distal.Text("a", justify="centre"), "justify is 'left', 'center'", 'justify="center"'),
     (lambda: distal.Box().shell(0.1, "centre"), "a shell lies inner, center", 'where="center"'),
+    (lambda: BOX.union(BALL, k=0.1), "a quadratic union has no 'k'", "smooth=…"),
+    (lambda: BOX.xor(BALL).apply("xor cubic", others=[BALL], k=1), "has no 'k'", "smooth=…"),
+    (lambda: BOX.union(BALL, smooth=0.1).replace(k=0.2), "has no 'k'", "smooth=…"),
+    (lambda: BOX.engrave(BALL, 0.1).replace(k=0.2), "engrave has no 'k'", "depth=…"),
+    (lambda: BOX.pipe(BALL, 0.1).replace(k=0.2), "pipe has no 'k'", "radius=…"),
+    (lambda: BOX.mirror(normal=(1, 0, 0)), "mirror has no 'normal'", "across=…"),
+    (lambda: BOX.symmetry(normal=(1, 0, 0)), "symmetry has no 'normal'", "across=…"),
     # An angle by position may be a half.
     (lambda: distal.Pie(1.0, 0.7), "Pie takes nothing after 'radius'", "by name: opening=2 * …"),
     (lambda: distal.Wedge(0.7), "Wedge takes nothing by position", "by name: opening=…"),
@@ -55,7 +64,8 @@ def test_calls_of_now_are_taken():
 
 def test_a_former_name_is_none_of_now():
     for name, changed in FORMER_NAMES.items():
-        now = inspect.signature(getattr(distal, name)).parameters
+        made = getattr(distal, name, distal.Camera.yaw_pitch_roll)  # TurnedCamera
+        now = inspect.signature(made).parameters
         assert not set(changed) & set(now), name
         assert {renamed.name for renamed in changed.values()} <= set(now), name
     for name, first in FORMERLY_FIRST.items():

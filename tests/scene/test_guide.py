@@ -204,7 +204,7 @@ def projected(place, aspect, box):
     "camera",
     [
         Camera((3, 2, 5), (0, 1, 0)),
-        Camera((30, 20, 50), (2, 1, 0), fov_deg=70, mirror=True),
+        Camera((30, 20, 50), (2, 1, 0), fov_deg=70, mirrored=True),
         OrthographicCamera((3, 2, 5), (0, 1, 0)),
         Camera.yaw_pitch_roll((1, 1, 6)),
     ],
@@ -272,7 +272,7 @@ def test_nothing_finite_shows_the_authors_distance():
         OrbitCamera(4.0, azimuth=0.5, elevation=0.3),
         Camera.yaw_pitch_roll((1, 1, 6), 0.1, -0.2, 0.3, fov_deg=50),
         OrthographicCamera((3, 2, 5), (0, 1, 0), height=3.0),
-        Camera((2, -4, 2), up=(0, 0, 1), mirror=True),
+        Camera((2, -4, 2), up=(0, 0, 1), mirrored=True),
         FisheyeCamera((1, 1, 2), fov_deg=120),
         PanoramaCamera((1, 1, 2), (0, 1, 0)),
     ],

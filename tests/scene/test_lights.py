@@ -84,8 +84,7 @@ def test_light_from_everywhere():
         (
             lambda: SpotLight((0, 1, 0), angle=30),
             SceneValueError,
-            "SpotLight: angle is the cone's opening in radians, below pi; "
-            "np.radians makes it of degrees",
+            "SpotLight: angle is the cone's opening in radians, below pi; in degrees: 45 * deg",
         ),
         (
             lambda: SpotLight((0, 0, 0)),

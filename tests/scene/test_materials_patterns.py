@@ -16,8 +16,8 @@ from distal.scene.objects.patterns import (
     by_cell,
     checker,
     cube_map,
-    gradient,
     image_pattern,
+    linear_gradient,
     noise,
     palette,
     pattern,
@@ -56,7 +56,7 @@ def test_a_checker_takes_turns():
 def test_patterns_between_two_colors():
     assert emitted(stripes(RED, BLUE, 0.5, (0, 1, 0)), p=(0, 0.75, 0)) == pytest.approx(BLUE)
     assert emitted(waves(RED, BLUE), p=(0.25, 0, 0)) == pytest.approx(BLUE)
-    assert emitted(gradient(RED, BLUE), p=(9, -0.5, 9)) == pytest.approx((0.75, 0.0, 0.25))
+    assert emitted(linear_gradient(RED, BLUE), p=(9, -0.5, 9)) == pytest.approx((0.75, 0.0, 0.25))
     assert emitted(radial_gradient(RED, BLUE, radius=4.0), p=(0, 3, 0)) == pytest.approx(
         (0.25, 0.0, 0.75)
     )
@@ -163,9 +163,9 @@ def test_pictures_lie_on_all_sides():
             None,
         ),
         (
-            lambda: gradient(start=(1, 1, 1), end=(1, 1, 1)),
+            lambda: linear_gradient(start=(1, 1, 1), end=(1, 1, 1)),
             SceneValueError,
-            "gradient: start and end are the same place",
+            "linear_gradient: start and end are the same place",
             None,
         ),
         (

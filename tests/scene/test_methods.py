@@ -213,7 +213,7 @@ def test_every_method_has_a_case_that_changes_each_of_its_arguments(kind):
             assert list(case.arguments) == order, f"{name}: the order of its parameters"
 
 
-BLENDED = {"others", "smooth", "blend", "k"}  # below, for every blend
+BLENDED = {"others", "smooth", "blend", "blend_numbers"}  # below, for every blend
 EXEMPT = {
     **{name: BLENDED for name in ("union", "intersection", "difference")},
     **{name: {"other"} for name in ("transition_linear", "transition_radial", "clearance")},
@@ -250,7 +250,7 @@ DEFAULTS = {
     "displace": {"height": 1.0},
     "slice": {"origin": (0.0, 0.0, 0.0), "normal": (0.0, 0.0, 1.0)},
     "project": {"count": 32},
-    "extrude": {"height": 1.0, "rounding": None, "chamfer": None},
+    "extrude": {"height": 1.0, "along": "z", "rounding": None, "chamfer": None},
     "revolve": {"offset": 0.0, "angle": None},
     "loft": {"height": 1.0, "ease": "linear"},
     "sweep": {"up": (0.0, 1.0, 0.0)},
@@ -279,7 +279,7 @@ def test_every_blend_joins_as_its_union_says(kind, blend):
     p = np.random.default_rng(1).uniform(-0.9, 0.9, (COUNT, 3))
     at_a, at_b = formula_of(cases.MIXED, False)(p), formula_of(cases.MIXED, False, True)(p)
     if kind == "xor":  # no method takes a blend of it
-        made = a.apply(f"xor {blend}", others=[b], k=0.3, **counts)
+        made = a.apply(f"xor {blend}", others=[b], smooth=0.3, **counts)
         first, second = np.minimum(at_a, at_b), -np.maximum(at_a, at_b)
     else:
         made = getattr(a, kind)(b, smooth=0.3, blend=blend, **counts)

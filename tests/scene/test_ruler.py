@@ -167,7 +167,7 @@ def test_places_are_found_through_the_plane_of_a_section():
 CAMERAS = {
     "usual": Camera((6, 5, 9), (0, 0, 0)),
     "wide": Camera((1, 2, 3), (0, 0, 0), fov_deg=120),
-    "mirrored": Camera((6, 5, 9), (0, 0, 0), mirror=True),
+    "mirrored": Camera((6, 5, 9), (0, 0, 0), mirrored=True),
     "parallel": OrthographicCamera((6, 5, 9), (0, 0, 0), height=8),
     "fisheye": FisheyeCamera((1, 2, 3), (0, 0, 0), fov_deg=180),
     "panorama": PanoramaCamera((1, 2, 3), (0, 0, 0)),

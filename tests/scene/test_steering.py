@@ -85,8 +85,8 @@ def test_a_drag_moves_what_is_seen_along_with_the_hand():
 
 
 def test_in_a_mirror_the_eye_still_goes_where_the_hand_goes():
-    wanted = picture(OrbitCamera(4.0, azimuth=-0.6, elevation=0.4, fov=FOV, mirror=True))
-    assert_alike(picture(front(mirror=True), Steering(0.6, 0.4)), wanted)
+    wanted = picture(OrbitCamera(4.0, azimuth=-0.6, elevation=0.4, fov=FOV, mirrored=True))
+    assert_alike(picture(front(mirrored=True), Steering(0.6, 0.4)), wanted)
 
 
 def test_without_perspective_zoom_shows_less():

@@ -228,7 +228,7 @@ def test_widths_are_those_of_the_blends(name):
 
     def at(difference):
         b = a + difference
-        given = {"a": np.broadcast_to(a, b.shape).ravel(), "b": b.ravel(), "k": k, **more}
+        given = {"a": np.broadcast_to(a, b.shape).ravel(), "b": b.ravel(), "smooth": k, **more}
         found = executor().call(blend.union, (), given, device="reference")
         return np.asarray(found).reshape(b.shape), np.minimum(a, b)
 

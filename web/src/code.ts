@@ -55,7 +55,7 @@ export function cameraOf(place: Guided, { name, mirror, extent }: CameraForm): s
   if (extent === "height") {
     parts.push(`height=${shown(rounded(height, 0.1 * Math.max(height, 1e-6)))}`);
   }
-  if (mirror) parts.push("mirror=True");
+  if (mirror) parts.push("mirrored=True");
   return `${name}(${parts.join(", ")})`;
 }
 

@@ -75,7 +75,7 @@ test("a camera has the arguments of its class, rounded to what can be seen", () 
   const points = "(3, 0, 4), (0, 0, 0)";
   const form = { name: "Camera", mirror: false, extent: "fov_deg" } as const;
   assert.equal(cameraOf(place, form), `Camera(${points}, fov_deg=40.04)`);
-  assert.equal(cameraOf(place, { ...form, extent: "", mirror: true }), `Camera(${points}, mirror=True)`);
+  assert.equal(cameraOf(place, { ...form, extent: "", mirror: true }), `Camera(${points}, mirrored=True)`);
   const flat = cameraOf({ ...place, upY: 0, upZ: 1 }, { ...form, extent: "height" });
   assert.equal(flat, `Camera(${points}, up=(0, 0, 1), height=0.25)`);
 });

@@ -548,9 +548,9 @@ def groove_width(child_width: float, width: float) -> float:
 
 
 @func
-def pipe_width(child_width: float, k: float) -> float:
+def pipe_width(child_width: float, radius: float) -> float:
     """Return the width of a pipe along an edge, or of what has the edge."""
-    return min(child_width, ROD * k)
+    return min(child_width, ROD * radius)
 
 
 @func

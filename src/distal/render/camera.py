@@ -2,13 +2,14 @@
 
 Input: ``uv``, where y is -1 to 1 from the bottom to the top of the picture and x has the same unit
 from left to right, and the numbers of a camera. Output: a ``Ray``. Right-handed, y up; a camera
-that is not turned looks along -z. ``mirror`` swaps left and right, as in left-handed systems.
+that is not turned looks along -z. ``mirrored`` swaps left and right, as in left-handed systems.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 from distal.fields.guarantees import UNBOUNDED
 from distal.lang import (
@@ -81,9 +82,9 @@ class Basis:
 
 
 @func
-def mirrored(uv: vec2, mirror: bool) -> vec2:
-    """Swap left and right of a place in the picture if ``mirror`` is true."""
-    return select(mirror, vec2(-uv.x, uv.y), uv)
+def sided(uv: vec2, mirrored: bool) -> vec2:
+    """Swap left and right of a place in the picture if ``mirrored`` is true."""
+    return select(mirrored, vec2(-uv.x, uv.y), uv)
 
 
 @func
@@ -143,7 +144,7 @@ def look_at(
     target: vec3 = ORIGIN,
     up: vec3 = UP,
     fov: float = OPENING,
-    mirror: bool = False,
+    mirrored: bool = False,
 ) -> Ray:
     """A perspective camera at one point that looks at another.
 
@@ -154,10 +155,10 @@ def look_at(
         up: The direction that is up in the picture.
         fov: The angle from the picture's bottom to its top, in radians; below pi
             (default: 40 degrees).
-        mirror: Swap left and right, as in left-handed systems.
+        mirrored: Swap left and right, as in left-handed systems.
     """
     focal = 1.0 / tan(0.5 * fov)
-    return through_screen(mirrored(uv, mirror), position, basis_ahead(target - position, up), focal)
+    return through_screen(sided(uv, mirrored), position, basis_ahead(target - position, up), focal)
 
 
 @func
@@ -169,7 +170,7 @@ def turned(
     roll: float = 0.0,
     screen_height: float = 1.0,
     screen_distance: float = 1.0,
-    mirror: bool = False,
+    mirrored: bool = False,
 ) -> Ray:
     """A perspective camera turned by angles, whose screen has a physical size.
 
@@ -181,13 +182,30 @@ def turned(
         roll: Turn about the viewing direction, counterclockwise as the camera sees it, in radians.
         screen_height: Height of the screen.
         screen_distance: Distance from the eye to the screen.
-        mirror: Swap left and right.
+        mirrored: Swap left and right.
     """
     focal = 2.0 * screen_distance / screen_height
-    return through_screen(mirrored(uv, mirror), position, basis_turned(yaw, pitch, roll), focal)
+    return through_screen(sided(uv, mirrored), position, basis_turned(yaw, pitch, roll), focal)
 
 
-@camera("OrbitCamera", extras=(IN_DEGREES, *LENS))
+def orbit_pose(
+    camera: Any, distance: Any, azimuth: Any, elevation: Any, target: Any, **same: Any
+) -> Any:
+    """Return an orbit camera as a camera at a position.
+
+    Args:
+        camera: The class ``Camera``.
+        distance: As of ``orbit``; the other angles and the target likewise.
+        azimuth: Around the y axis.
+        elevation: Up.
+        target: The point that it looks at.
+        same: The arguments that both have.
+    """
+    level = camera((0.0, 0.0, distance), **same).rotate(x=-elevation)
+    return level.rotate(y=azimuth).translate(target)
+
+
+@camera("OrbitCamera", pose=orbit_pose, extras=(IN_DEGREES, *LENS))
 @func
 def orbit(
     uv: vec2,
@@ -196,7 +214,7 @@ def orbit(
     elevation: float = 0.0,
     target: vec3 = ORIGIN,
     fov: float = OPENING,
-    mirror: bool = False,
+    mirrored: bool = False,
 ) -> Ray:
     """A camera on a sphere around its target.
 
@@ -208,11 +226,11 @@ def orbit(
         target: The point that it looks at.
         fov: The angle from the picture's bottom to its top, in radians; below pi
             (default: 40 degrees).
-        mirror: Swap left and right, as in left-handed systems.
+        mirrored: Swap left and right, as in left-handed systems.
     """
     basis = basis_turned(azimuth, -elevation, 0.0)
     focal = 1.0 / tan(0.5 * fov)
-    return through_screen(mirrored(uv, mirror), target - basis.ahead * distance, basis, focal)
+    return through_screen(sided(uv, mirrored), target - basis.ahead * distance, basis, focal)
 
 
 @camera("OrthographicCamera", requires=_has_a_view)
@@ -223,7 +241,7 @@ def orthographic(
     target: vec3 = ORIGIN,
     up: vec3 = UP,
     height: float = 4.0,
-    mirror: bool = False,
+    mirrored: bool = False,
 ) -> Ray:
     """A camera without perspective: far objects appear as large as near ones.
 
@@ -233,10 +251,10 @@ def orthographic(
         target: The point that it looks at.
         up: The direction that is up in the picture.
         height: Height of the visible area, in scene units.
-        mirror: Swap left and right, as in left-handed systems.
+        mirrored: Swap left and right, as in left-handed systems.
     """
     basis = basis_ahead(target - position, up)
-    place = mirrored(uv, mirror) * (0.5 * height)
+    place = sided(uv, mirrored) * (0.5 * height)
     return Ray(position + basis.right * place.x + basis.up * place.y, basis.ahead)
 
 
@@ -248,7 +266,7 @@ def fisheye(
     target: vec3 = ORIGIN,
     up: vec3 = UP,
     fov: float = HALF_TURN,
-    mirror: bool = False,
+    mirrored: bool = False,
 ) -> Ray:
     """A camera that sees half of its surroundings, or more, in a circle.
 
@@ -262,10 +280,10 @@ def fisheye(
         up: The direction that is up in the picture.
         fov: The angle from the picture's bottom to its top, in radians; up to 2 pi
             (default: 180 degrees).
-        mirror: Swap left and right, as in left-handed systems.
+        mirrored: Swap left and right, as in left-handed systems.
     """
     basis = basis_ahead(target - position, up)
-    place = mirrored(uv, mirror)
+    place = sided(uv, mirrored)
     squared = dot(place, place)
     angle = min(0.5 * fov * length(place), PI)
     sideways = (basis.right * place.x + basis.up * place.y) * inversesqrt(max(squared, 1e-20))
@@ -279,7 +297,7 @@ def panorama(
     position: vec3 = ORIGIN,
     target: vec3 = AHEAD,
     up: vec3 = UP,
-    mirror: bool = False,
+    mirrored: bool = False,
 ) -> Ray:
     """A camera that sees all directions: longitude to the right, latitude up (equirectangular).
 
@@ -290,10 +308,10 @@ def panorama(
         position: Position of the camera.
         target: The point in the middle of the picture.
         up: The direction that is up in the picture.
-        mirror: Swap left and right, as in left-handed systems.
+        mirrored: Swap left and right, as in left-handed systems.
     """
     basis = basis_ahead(target - position, up)
-    angles = mirrored(uv, mirror) * (0.5 * PI)
+    angles = sided(uv, mirrored) * (0.5 * PI)
     level = basis.right * sin(angles.x) + basis.ahead * cos(angles.x)
     return Ray(position, normalize(level * cos(angles.y) + basis.up * sin(angles.y)))
 

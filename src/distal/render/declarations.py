@@ -13,13 +13,30 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from enum import Enum, auto
 from typing import Any, Final, TypeVar
 
 from distal.fields.guarantees import Limit, Requirement
 from distal.lang.functions import Func
 
 F = TypeVar("F", bound=Func)
+
+
+class Move(Enum):
+    """How an argument changes if its object is translated, rotated, scaled or reflected.
+
+    Arguments without a move, such as colors and intensities, stay.
+    """
+
+    POSITION = auto()
+    """A point."""
+    DIRECTION = auto()
+    """A direction, of any length: translations do not change it."""
+    LENGTH = auto()
+    """A length: only a scale changes it; by the geometric mean of its factors if they differ."""
+    SIDE = auto()
+    """Whether left and right are swapped: a reflection changes it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +71,9 @@ class Declaration:
             one.
         requires: Returns why arguments are not valid together, or None.
         extras: Parameters besides those of the function.
+        moves: How arguments change if the object is placed, besides those of the family.
+        pose: For a camera of angles: ``(camera, …)`` makes the same of the class ``Camera``, which
+            can be placed in any way.
         widest: For a camera: ``fov`` is below this angle, or at most this if it is a full turn.
         reflects: For a material: whether reflected rays may start from it.
         refracts: For a material: whether refracted rays may enter it.
@@ -70,6 +90,8 @@ class Declaration:
     limits: Mapping[str, Limit]
     requires: Requirement | None = None
     extras: tuple[ExtraParameter, ...] = ()
+    moves: Mapping[str, Move] = field(default_factory=dict)
+    pose: Callable[..., Any] | None = None
     widest: float = math.pi
     reflects: bool = False
     refracts: bool = False
@@ -89,6 +111,7 @@ class Family:
         keyword_only: Parameters that are passed by name only.
         optional: Parameters that may be None, which selects the default.
         varies: Whether arguments may be patterns.
+        moves: How arguments change if their object is placed, by name.
         members: The declarations by name.
     """
 
@@ -101,6 +124,7 @@ class Family:
         keyword_only: Collection[str] = (),
         optional: Collection[str] = (),
         varies: bool = False,
+        moves: Mapping[str, Move] | None = None,
     ) -> None:
         self.site: Final = frozenset(site)
         self.limits: Final = limits
@@ -108,6 +132,7 @@ class Family:
         self.keyword_only: Final = keyword_only
         self.optional: Final = optional
         self.varies: Final = varies
+        self.moves: Final = moves or {}
         self.members: Final[dict[str, Declaration]] = {}
 
     def declare(
@@ -144,6 +169,13 @@ LIGHTS: Final = Family(
         "softness": Limit.FRACTION,
     },
     colors=("sky", "ground"),
+    moves={
+        "position": Move.POSITION,
+        "target": Move.POSITION,
+        "direction": Move.DIRECTION,
+        "up": Move.DIRECTION,
+        "radius": Move.LENGTH,
+    },
 )
 BACKGROUNDS: Final = Family(
     ("direction", "p", "n"),
@@ -153,6 +185,7 @@ BACKGROUNDS: Final = Family(
         "sun_angle": Limit.POSITIVE,
     },
     colors=("bottom", "top", "zenith", "horizon", "ground"),
+    moves={"sun": Move.DIRECTION},
 )
 CAMERAS: Final = Family(
     ("uv", "resolution"),
@@ -163,8 +196,17 @@ CAMERAS: Final = Family(
             Limit.POSITIVE,
         ),
     },
-    keyword_only=("mirror",),
+    keyword_only=("mirrored",),
     optional=("fov",),
+    moves={
+        "position": Move.POSITION,
+        "target": Move.POSITION,
+        "up": Move.DIRECTION,
+        "height": Move.LENGTH,
+        "aperture": Move.LENGTH,
+        "focus_distance": Move.LENGTH,
+        "mirrored": Move.SIDE,
+    },
 )
 MATERIALS: Final = Family(
     PLACE_NAMES,

@@ -8,9 +8,10 @@ so a point light of intensity 1 at distance 1 shows 1.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from distal.lang import clamp, cos, dot, func, inversesqrt, max, normalize, struct, tan, vec3
-from distal.render.declarations import light
+from distal.render.declarations import ExtraParameter, light
 
 FAR_AWAY = 1e9  # the distance of a light that is the same everywhere
 WHITE = vec3(1.0)
@@ -51,7 +52,7 @@ def _has_a_cone(position: tuple[float, ...], target: tuple[float, ...], angle: f
         return "position and target are the same place"
     if angle < math.pi:
         return None
-    return "angle is the cone's opening in radians, below pi; np.radians makes it of degrees"
+    return "angle is the cone's opening in radians, below pi; in degrees: 45 * deg"
 
 
 @light("DistantLight", requires=_shines_somewhere)
@@ -75,7 +76,29 @@ def distant_light(
     return LightSample(normalize(direction), FAR_AWAY, color * intensity, tan(0.5 * angle))
 
 
-@light("PointLight")
+@func
+def with_falloff(light: LightSample, falloff: Callable[[float], float]) -> LightSample:
+    """Return a light that falls off otherwise than with the square of the distance.
+
+    Args:
+        light: The light, which falls off with the square.
+        falloff: Of the distance; 1 / distance**2 changes nothing.
+    """
+    share = light.distance * light.distance * falloff(light.distance)
+    return LightSample(light.direction, light.distance, light.radiance * share, light.radius)
+
+
+FALLOFF = ExtraParameter(
+    "falloff",
+    None,
+    "Func | None",
+    "A ``@func`` of the distance (float) that returns the share of the intensity that arrives, "
+    "instead of 1 / distance**2.",
+    keyword_only=True,
+)
+
+
+@light("PointLight", extras=(FALLOFF,))
 @func
 def point_light(
     p: vec3,
@@ -101,7 +124,7 @@ def point_light(
     return LightSample(offset * inverse, squared * inverse, radiance, radius * inverse)
 
 
-@light("SpotLight", requires=_has_a_cone)
+@light("SpotLight", requires=_has_a_cone, extras=(FALLOFF,))
 @func
 def spot_light(
     p: vec3,

@@ -143,7 +143,7 @@ def stripes(
 
 
 @pattern(
-    "gradient",
+    "linear_gradient",
     extras=_sides(
         "A color, a pattern, or a material: up to ``start``.", "The other: from ``end`` on."
     ),

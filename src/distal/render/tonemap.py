@@ -5,6 +5,8 @@ Input: linear light, an exposure, the number of a tone map. Output: sRGB values 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from distal.lang import clamp, func, log2, mat3, max, min, mix, vec3, vec4
 from distal.lang.srgb import decode_srgb as decode_srgb
 from distal.lang.srgb import encode_srgb as encode_srgb
@@ -100,3 +102,9 @@ def tone_mapped(c: vec3, tone_map: int) -> vec3:
 def display(color: vec4, exposure: float, tone_map: int) -> vec4:
     """Convert linear light with straight alpha to display values."""
     return vec4(encode_srgb(tone_mapped(max(color.xyz, 0.0) * exposure, tone_map)), color.w)
+
+
+@func
+def display_by(color: vec4, exposure: float, curve: Callable[[vec3], vec3]) -> vec4:
+    """Convert linear light with straight alpha to display values by an author's tone map."""
+    return vec4(encode_srgb(curve(max(color.xyz, 0.0) * exposure)), color.w)

@@ -42,6 +42,7 @@ from distal.scene.scene_arguments import (
     checked_glow,
     checked_numbers,
     checked_shutter,
+    checked_tone_map,
     one_of,
     whole,
 )
@@ -52,6 +53,7 @@ if TYPE_CHECKING:
     from distal.images.picture import Picture
     from distal.mesh.scene_parts import SceneParts
     from distal.scene import rendering
+    from distal.scene.groups import Solid
     from distal.scene.looks.look import Look
     from distal.scene.objects import shape_rows
     from distal.scene.objects.argument_types import Color, Number, ParameterValues, Varying
@@ -89,9 +91,11 @@ class Scene(RenderedScene, SceneValue, Composed, Presentable):
     material and fog. Each argument replaces that part of the look alone.
 
     Args:
-        shape: One solid shape, or several, which are united.
-        lights: One light or several. None uses the look's, unless the background is a light.
-        camera: The camera. None frames the finite parts of the scene.
+        shape: One solid shape, or several, which are united; a ``group`` with lights and a camera;
+            another scene, of which the shapes and the author's lights come along.
+        lights: One light or several, besides those of groups. None uses the look's, if there are
+            no others and the background is no light.
+        camera: The camera. None: that of a group, else one that frames the finite parts.
         background: What rays that hit nothing show: a color, a ``Sky``, an ``Environment``, or a
             ``@func`` of the direction.
         look: "studio" (the default), "outdoor", "sunset", "night" or "blueprint"; or one of these
@@ -101,7 +105,8 @@ class Scene(RenderedScene, SceneValue, Composed, Presentable):
             given.
         exposure: A factor on all light, applied before the tone map.
         tone_map: How light beyond the display's range is shown: "none", "reinhard", "aces", "agx"
-            or "neutral".
+            or "neutral"; or a ``@func`` of linear light (vec3), after the exposure, that returns
+            linear light from 0 to 1.
         default_material: The material of shapes without ``paint``.
         fog: The color of fog. None: that of the background at the horizon, in each direction.
         fog_density: Density of the fog per scene unit: after a distance of 1/density, 1/e of the
@@ -147,7 +152,7 @@ class Scene(RenderedScene, SceneValue, Composed, Presentable):
 
     def __init__(
         self,
-        shape: Shape | Iterable[Shape],
+        shape: Solid | Iterable[Solid],
         lights: Light | Iterable[Light] | None = None,
         camera: BaseCamera | None = None,
         background: Background | Surroundings | Color | Func | None = None,
@@ -155,7 +160,7 @@ class Scene(RenderedScene, SceneValue, Composed, Presentable):
         look: str | Look | None = None,
         floor: bool | None = None,
         exposure: Number | None = None,
-        tone_map: str | None = None,
+        tone_map: str | Func | None = None,
         default_material: Material | Color | Varying | None = None,
         fog: Color | None = None,
         fog_density: Number | None = None,
@@ -199,7 +204,7 @@ class Scene(RenderedScene, SceneValue, Composed, Presentable):
             check_cells(self.shape.node)
         self.lights, self.background, self.camera = made.lights, made.background, made.camera
         self.material = made.material
-        self.tone_map = one_of("tone map", made.tone_map, WORDS["tone_map"], place)
+        self.tone_map = checked_tone_map(made.tone_map, place)
         self.normals = one_of("way to find normals", normals, WORDS["normals"], place)
         self.march = one_of("march", march, WORDS["march"], place)
         self.glow = checked_glow(glow, place)
@@ -218,7 +223,7 @@ class Scene(RenderedScene, SceneValue, Composed, Presentable):
         self.staged: tuple[Mapping[str, Any], float] | None = self.__dict__.get("staged")
         self._pictures: dict[tuple[Any, ...], Composed] = {}
         self._given: dict[str, Any] = {
-            "shape": made.shape,  # not ``shape``, which may be a generator
+            "shape": made.contents.given,  # not ``shape``, which may be a generator
             "lights": None if lights is None else made.given_lights,
             "camera": camera,
             "background": background,
@@ -482,7 +487,7 @@ class Scene(RenderedScene, SceneValue, Composed, Presentable):
             exposure = checked_exposure(changes["exposure"], place)
             made.numbers = {**self.numbers, "exposure": exposure}
         if "tone_map" in changes:
-            made.tone_map = one_of("tone map", changes["tone_map"], WORDS["tone_map"], place)
+            made.tone_map = checked_tone_map(changes["tone_map"], place)
         made._given = {**self._given, **changes}
         made._whole = True
         return made
@@ -523,6 +528,8 @@ class Scene(RenderedScene, SceneValue, Composed, Presentable):
         parts: list[Any] = [*self.lights, self.camera, self.background, self.material]
         for part in parts:
             yield from part.functions()
+        if isinstance(self.tone_map, Func):
+            yield self.tone_map
 
 
 def _scene_of(kind: type[Scene], packed: shape_rows.PackedShapes) -> Scene:

@@ -7,6 +7,7 @@ library, or a ``CompileError`` at that line. Does not depend on how a scene is r
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from types import UnionType
 from typing import Any, Final
 
@@ -15,12 +16,17 @@ from distal.fields.guarantees import UNBOUNDED, Limit
 from distal.ir.types import FLOAT, INT
 from distal.lang import func, vec3
 from distal.lang.composed import Composed
+from distal.lang.functions import Func
+from distal.render import tonemap
+from distal.scene.groups import Group
 from distal.scene.objects.cameras import BaseCamera
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.lights import Light
+from distal.scene.scene_values import SceneValue
 from distal.scene.tree.arguments import arguments
 from distal.scene.tree.conversion import Asked, number, plain_choice
 from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.own_functions import TONE_MAP
 
 _LIMITS: Final = {
     "exposure": Limit.NOT_NEGATIVE,
@@ -124,9 +130,54 @@ def one_of(what: str, name: Any, known: Sequence[str], place: Span | None) -> st
     return str(name)
 
 
-def one_shape(shape: Any, place: Span | None) -> BaseShape:
-    """Return one solid from the author's argument: a shape, or several, which are united."""
-    shapes = listed(shape)
+def checked_tone_map(value: Any, place: Span | None) -> str | Func:
+    """Return the name of a tone map, or the author's function."""
+    if isinstance(value, Func):
+        return TONE_MAP.checked(value, place)
+    return one_of("tone map", value, tonemap.NAMES, place)
+
+
+@dataclass(frozen=True, slots=True)
+class SceneContents:
+    """What the first argument of a scene holds.
+
+    Attributes:
+        given: The shape or the group.
+        shape: The one solid.
+        lights: The lights of groups.
+        camera: The camera of groups, or None.
+    """
+
+    given: BaseShape | Group
+    shape: BaseShape
+    lights: tuple[Light, ...] = ()
+    camera: BaseCamera | None = None
+
+
+def contents_of(given: Any, place: Span | None, *, alone: bool) -> SceneContents:
+    """Return what the author gave: a shape, a group, a scene, or several, which are united.
+
+    Args:
+        given: The author's argument.
+        place: The author's line.
+        alone: Whether the scene has no camera besides.
+    """
+    parts = listed(given)
+    if not any(isinstance(part, Group | SceneValue) for part in parts):
+        shape = _one_shape(parts, place)
+        return SceneContents(shape, shape)
+    whole = parts[0] if len(parts) == 1 and isinstance(parts[0], Group) else Group(*parts)
+    cameras = whole.cameras
+    if alone and len(cameras) > 1:
+        hint = "choose one: Scene(group, camera=…)"
+        refuse(f"the group has {len(cameras)} cameras, and a picture has one", hint, place)
+    solid = whole.shape
+    shape = _one_shape([] if solid is None else [solid], place)
+    return SceneContents(whole, shape, whole.lights, cameras[0] if cameras else None)
+
+
+def _one_shape(shapes: Sequence[Any], place: Span | None) -> BaseShape:
+    """Return the union of the author's shapes."""
     if not shapes:
         refuse("a scene without shapes shows nothing", "give it a shape: Scene(Sphere())", place)
     for one in shapes:
@@ -152,6 +203,8 @@ def _shape_hint(given: Any) -> str | None:
         return f"call it: {given.__name__}(…)"
     if isinstance(given, UnionType):
         return "call the classes: Sphere(1.0) | Box(1.0)"
+    if isinstance(given, Light | BaseCamera):
+        return "group(shape, light, camera) groups them"
     return "a scene is given shapes: Scene(shape)" if isinstance(given, Composed) else None
 
 

@@ -59,15 +59,15 @@ class Blend:
     """A blend of two surfaces.
 
     Attributes:
-        union: ``(a, b, k[, count]) -> float``.
+        union: ``(a, b, smooth[, count]) -> float``.
         mix: The share of b's material, 0 to 1, with the same parameters.
         counted: Whether it takes ``count``, the number of parts.
         local: Whether it is the hard minimum if the two distances differ enough.
         steep: Whether its slope may be sqrt(slope_a^2 + slope_b^2) instead of the larger of the
             two.
-        change: How much the value changes at most for each unit of ``k``.
-        width: It equals the hard minimum where the distances differ by ``width * k`` or more. None
-            if the difference alone does not say where.
+        change: How much the value changes at most for each unit of ``smooth``.
+        width: It equals the hard minimum where the distances differ by ``width * smooth`` or more.
+            None if the difference alone does not say where.
         intersection: A separate intersection, if it does not follow from the union.
         cut: Whether the union is cut by the box around both shapes.
     """
@@ -129,17 +129,18 @@ def cut_slope(slope_a: float, slope_b: float) -> float:
 
 
 @func
-def swollen_hull(bounds_a: Boxes, bounds_b: Boxes, k: float, side_growth: float) -> Boxes:
+def swollen_hull(bounds_a: Boxes, bounds_b: Boxes, smooth: float, side_growth: float) -> Boxes:
     """Return the box around both, enlarged by the most that a blend adds."""
-    return moved_out(hull_of(bounds_a, bounds_b), k, side_growth)
+    return moved_out(hull_of(bounds_a, bounds_b), smooth, side_growth)
 
 
 @func
 def pipe_box(
-    bounds_a: Boxes, bounds_b: Boxes, k: float, side_growth_a: float, side_growth_b: float
+    bounds_a: Boxes, bounds_b: Boxes, radius: float, side_growth_a: float, side_growth_b: float
 ) -> Boxes:
-    """Return the box of the region where both fields are at most ``k``."""
-    return overlap(moved_out(bounds_a, k, side_growth_a), moved_out(bounds_b, k, side_growth_b))
+    """Return the box of the region where both fields are at most ``radius``."""
+    around_a = moved_out(bounds_a, radius, side_growth_a)
+    return overlap(around_a, moved_out(bounds_b, radius, side_growth_b))
 
 
 @func
@@ -163,15 +164,19 @@ def power_growth(growth: float, exponent: float) -> float:
 def _cut(name: str, union: Shared) -> Func[..., Any]:
     """Return the union without what it adds outside the box around both shapes."""
 
-    def cut(a: float, b: float, p: vec3, k: float, bounds_a: Bounds, bounds_b: Bounds) -> float:
-        return max(union(a, b, k), box_distance(p, hull_of(bounds_a, bounds_b)))
+    def cut(
+        a: float, b: float, p: vec3, smooth: float, bounds_a: Bounds, bounds_b: Bounds
+    ) -> float:
+        return max(union(a, b, smooth), box_distance(p, hull_of(bounds_a, bounds_b)))
 
     return named(f"union_{name}", cut)
 
 
 def _cut_flat(name: str, union: Shared) -> Func[..., Any]:
-    def cut(a: float, b: float, p: vec2, k: float, bounds_a: Bounds2, bounds_b: Bounds2) -> float:
-        return max(union(a, b, k), rectangle_distance(p, hull_of(bounds_a, bounds_b)))
+    def cut(
+        a: float, b: float, p: vec2, smooth: float, bounds_a: Bounds2, bounds_b: Bounds2
+    ) -> float:
+        return max(union(a, b, smooth), rectangle_distance(p, hull_of(bounds_a, bounds_b)))
 
     return named(f"flat_union_{name}", cut)
 
@@ -182,15 +187,15 @@ def _cut_flat(name: str, union: Shared) -> Func[..., Any]:
 def _turned(kind: str, name: str, of_first: Shared) -> Func[..., Any]:
     """Return a difference: the intersection with the complement of the second shape."""
 
-    def turned(a: float, b: float, k: float) -> float:
-        return of_first(a, -b, k)
+    def turned(a: float, b: float, smooth: float) -> float:
+        return of_first(a, -b, smooth)
 
     return named(f"{kind}_{name}", turned)
 
 
 def _turned_counted(kind: str, name: str, of_first: Shared) -> Func[..., Any]:
-    def turned(a: float, b: float, k: float, count: int) -> float:
-        return of_first(a, -b, k, count)
+    def turned(a: float, b: float, smooth: float, count: int) -> float:
+        return of_first(a, -b, smooth, count)
 
     return named(f"{kind}_{name}", turned)
 
@@ -198,29 +203,29 @@ def _turned_counted(kind: str, name: str, of_first: Shared) -> Func[..., Any]:
 def _intersection(name: str, union: Shared) -> Func[..., Any]:
     """Return the complement of the union of the complements."""
 
-    def inverted(a: float, b: float, k: float) -> float:
-        return -union(-a, -b, k)
+    def inverted(a: float, b: float, smooth: float) -> float:
+        return -union(-a, -b, smooth)
 
     return named(f"intersection_{name}", inverted)
 
 
 def _intersection_counted(name: str, union: Shared) -> Func[..., Any]:
-    def inverted(a: float, b: float, k: float, count: int) -> float:
-        return -union(-a, -b, k, count)
+    def inverted(a: float, b: float, smooth: float, count: int) -> float:
+        return -union(-a, -b, smooth, count)
 
     return named(f"intersection_{name}", inverted)
 
 
 def _intersection_mix(name: str, share: Shared) -> Func[..., Any]:
-    def inverted(a: float, b: float, k: float) -> float:
-        return share(-a, -b, k)
+    def inverted(a: float, b: float, smooth: float) -> float:
+        return share(-a, -b, smooth)
 
     return named(f"intersection_{name}_mix", inverted)
 
 
 def _intersection_mix_counted(name: str, share: Shared) -> Func[..., Any]:
-    def inverted(a: float, b: float, k: float, count: int) -> float:
-        return share(-a, -b, k, count)
+    def inverted(a: float, b: float, smooth: float, count: int) -> float:
+        return share(-a, -b, smooth, count)
 
     return named(f"intersection_{name}_mix", inverted)
 
@@ -228,15 +233,15 @@ def _intersection_mix_counted(name: str, share: Shared) -> Func[..., Any]:
 def _xor(name: str, difference: Shared) -> Func[..., Any]:
     """Return what is in exactly one shape; the edges between the two parts are shaped."""
 
-    def exclusive(a: float, b: float, k: float) -> float:
-        return difference(min(a, b), max(a, b), k)
+    def exclusive(a: float, b: float, smooth: float) -> float:
+        return difference(min(a, b), max(a, b), smooth)
 
     return named(f"xor_{name}", exclusive)
 
 
 def _xor_counted(name: str, difference: Shared) -> Func[..., Any]:
-    def exclusive(a: float, b: float, k: float, count: int) -> float:
-        return difference(min(a, b), max(a, b), k, count)
+    def exclusive(a: float, b: float, smooth: float, count: int) -> float:
+        return difference(min(a, b), max(a, b), smooth, count)
 
     return named(f"xor_{name}", exclusive)
 
@@ -256,7 +261,7 @@ def _declare(name: str, blend: Blend) -> None:
     difference = turned("difference", name, intersection)
     difference_mix = turned("difference_mix", name, intersection_mix)
     exclusive = (_xor_counted if counted else _xor)(name, difference)
-    # A union is at most k below the smaller value, and an intersection at most k below the larger.
+    # A union is at most ``smooth`` below the smaller value, an intersection below the larger one.
     rows: dict[str, dict[str, Any]] = {
         "union": {
             "combine": blend.union,
@@ -298,10 +303,10 @@ def _row(blend: Blend, row: dict[str, Any]) -> dict[str, Any]:
     """Return the declaration of an operator; ``row`` is what differs between combinations."""
     usual = {
         "slope": crossed_slope if blend.steep else None,
-        "limits": {"k": Limit.NOT_NEGATIVE},
+        "limits": {"smooth": Limit.NOT_NEGATIVE},
         "requires": _count_requirement if blend.counted else None,
         "local": blend.local,
-        "changes": {"k": blend.change},
+        "changes": {"smooth": blend.change},
     }
     return usual | row
 
@@ -314,9 +319,9 @@ def _of_prisms(rule: Operator, row: dict[str, Any]) -> Operator:
     intersection: Shared = row["combine"]
 
     def cut(
-        a: float, b: float, p: vec3, k: float, along: vec3, bounds_a: Bounds, bounds_b: Bounds
+        a: float, b: float, p: vec3, smooth: float, along: vec3, bounds_a: Bounds, bounds_b: Bounds
     ) -> float:
-        return cut_at_ends(intersection(a, b, k), p, k, along, bounds_a, bounds_b)
+        return cut_at_ends(intersection(a, b, smooth), p, smooth, along, bounds_a, bounds_b)
 
     combined = named(f"{rule.name} of prisms".replace(" ", "_"), cut)
     own = {"combine": combined, "point": moved_inwards}
@@ -327,9 +332,15 @@ def _of_flat_prisms(rule: Operator, row: dict[str, Any]) -> Operator:
     intersection: Shared = row["combine"]
 
     def cut(
-        a: float, b: float, p: vec2, k: float, along: vec2, bounds_a: Bounds2, bounds_b: Bounds2
+        a: float,
+        b: float,
+        p: vec2,
+        smooth: float,
+        along: vec2,
+        bounds_a: Bounds2,
+        bounds_b: Bounds2,
     ) -> float:
-        return cut_at_ends_flat(intersection(a, b, k), p, k, along, bounds_a, bounds_b)
+        return cut_at_ends_flat(intersection(a, b, smooth), p, smooth, along, bounds_a, bounds_b)
 
     combined = named(f"flat {rule.name} of prisms".replace(" ", "_"), cut)
     own = {"combine": combined, "point": moved_inwards_flat}
@@ -358,7 +369,7 @@ PIPE = operator(
     mix=combine.first_shows,
     slope=crossed_slope,
     bounds=pipe_box,
-    limits={"k": Limit.POSITIVE},
+    limits={"radius": Limit.POSITIVE},
     growth=Growth.CORNERED,
     width=pipe_width,
 )
@@ -368,7 +379,7 @@ ENGRAVE = operator(
     mix=combine.first_shows,
     slope=crossed_slope,
     bounds=combine.first_box,
-    limits={"k": Limit.NOT_NEGATIVE},
+    limits={"depth": Limit.NOT_NEGATIVE},
     growth=Growth.FIRST,
 )
 _SIZES = {"depth": Limit.NOT_NEGATIVE, "width": Limit.NOT_NEGATIVE}

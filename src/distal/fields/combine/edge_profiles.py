@@ -1,8 +1,8 @@
 """Shaped edges: material added where two shapes meet, and cuts along their intersection.
 
-Input: two distances, ``k``, the size of the edge, and for some a ``count`` of parts. Output: the
-distance of the union (``blends`` makes the intersections and differences from it), or of the shape
-made by pipes, engraving, grooves and tongues. Does not depend on points.
+Input: two distances, ``smooth``, the size of the edge, and for some a ``count`` of parts. Output:
+the distance of the union (``blends`` makes the intersections and differences from it), or of the
+shape made by pipes, engraving, grooves and tongues. Does not depend on points.
 
 The sizes are exact where the surfaces meet at a right angle. The formulas are derived in the plane
 whose axes are the two distances: a union's corner is its origin, the outside is the quadrant where
@@ -24,42 +24,42 @@ SQRT_2 = 1.4142135623730951
 
 
 @func
-def edge_mix(a: float, b: float, k: float) -> float:
-    """Return the share of ``b`` across an edge of size ``k``: linear, 1/2 in the middle."""
-    return share_of_second(a, b, 0.5 * nearness(a, b, max(k, SHARP)))
+def edge_mix(a: float, b: float, smooth: float) -> float:
+    """Return the share of ``b`` across an edge of size ``smooth``: linear, 1/2 in the middle."""
+    return share_of_second(a, b, 0.5 * nearness(a, b, max(smooth, SHARP)))
 
 
 @func
-def counted_edge_mix(a: float, b: float, k: float, count: int) -> float:
+def counted_edge_mix(a: float, b: float, smooth: float, count: int) -> float:
     """Return ``edge_mix`` for the edges made of ``count`` parts."""
-    return edge_mix(a, b, k)
+    return edge_mix(a, b, smooth)
 
 
 @func
-def no_deeper(shaped: float, a: float, b: float, k: float) -> float:
+def no_deeper(shaped: float, a: float, b: float, smooth: float) -> float:
     """Limit an edge's value from below, because inside its parts are steeper than the shapes.
 
-    The surface is above this limit. With ``k = 0`` the union is the hard minimum.
+    The surface is above this limit. With ``smooth = 0`` the union is the hard minimum.
     """
-    return max(shaped, min(a, b) - k)
+    return max(shaped, min(a, b) - smooth)
 
 
 @func
-def chamfer(a: float, b: float, k: float) -> float:
-    """Return the union with a flat face across the corner, ``k`` along both surfaces."""
-    return no_deeper(min(min(a, b), (a + b - k) * SQRT_HALF), a, b, k)
+def chamfer(a: float, b: float, smooth: float) -> float:
+    """Return the union with a flat face across the corner, ``smooth`` along both surfaces."""
+    return no_deeper(min(min(a, b), (a + b - smooth) * SQRT_HALF), a, b, smooth)
 
 
 @func
-def soft(a: float, b: float, k: float) -> float:
-    """Return ``quadratic``, with ``k`` as the range in which it has an effect: |a - b| < k."""
-    return quadratic(a, b, 0.25 * k)
+def soft(a: float, b: float, smooth: float) -> float:
+    """Return ``quadratic``; it has an effect where |a - b| < ``smooth``."""
+    return quadratic(a, b, 0.25 * smooth)
 
 
 @func
-def soft_mix(a: float, b: float, k: float) -> float:
+def soft_mix(a: float, b: float, smooth: float) -> float:
     """Return the share of ``b`` in ``soft``."""
-    return quadratic_mix(a, b, 0.25 * k)
+    return quadratic_mix(a, b, 0.25 * smooth)
 
 
 @func
@@ -72,57 +72,57 @@ def row_of_circles(u: float, v: float, radius: float, count: int) -> float:
 
 
 @func
-def columns(a: float, b: float, k: float, count: int) -> float:
+def columns(a: float, b: float, smooth: float, count: int) -> float:
     """Return the union with ``count`` round columns in the corner.
 
     The outer ones are half inside the surfaces.
     """
     u = (a + b) * SQRT_HALF
     v = (b - a) * SQRT_HALF
-    radius = k * SQRT_HALF / (float(count) - 1.0 + SQRT_HALF)
+    radius = smooth * SQRT_HALF / (float(count) - 1.0 + SQRT_HALF)
     wall = u - radius * (float(count) - 1.0 - SQRT_HALF)
     pieces = min(wall, row_of_circles(wall, v, radius, count))
-    return no_deeper(min(min(a, b), pieces), a, b, k)
+    return no_deeper(min(min(a, b), pieces), a, b, smooth)
 
 
 @func
-def columns_intersection(a: float, b: float, k: float, count: int) -> float:
+def columns_intersection(a: float, b: float, smooth: float, count: int) -> float:
     """Return the intersection whose edge is cut flat, with ``count`` round columns left.
 
     The outer ones are at the faces.
     """
     u = (a + b) * SQRT_HALF
     v = (b - a) * SQRT_HALF
-    radius = k * SQRT_HALF / (float(count) - 1.0 + SQRT_2)
-    wall = u + k * SQRT_HALF
+    radius = smooth * SQRT_HALF / (float(count) - 1.0 + SQRT_2)
+    wall = u + smooth * SQRT_HALF
     hard = max(a, b)
     pieces = min(wall, row_of_circles(wall, v, radius, count))
-    return min(max(hard, pieces), hard + k)
+    return min(max(hard, pieces), hard + smooth)
 
 
 @func
-def stairs(a: float, b: float, k: float, count: int) -> float:
+def stairs(a: float, b: float, smooth: float, count: int) -> float:
     """Return the union with ``count`` steps from one surface down to the other.
 
     A triangle wave rotated by 45 degrees is a staircase. Each piece depends on one distance only,
     so the slope does not grow.
     """
-    step = max(k / float(count), SHARP)
-    across = (b - k) - a + step
+    step = max(smooth / float(count), SHARP)
+    across = (b - smooth) - a + step
     wave = abs(across % (2.0 * step) - step)
-    return min(min(a, b), 0.5 * ((b - k) + a + wave))
+    return min(min(a, b), 0.5 * ((b - smooth) + a + wave))
 
 
 @func
-def pipe(a: float, b: float, k: float) -> float:
-    """Return only a tube of radius ``k`` along the line where the two surfaces cross."""
-    return length(vec2(a, b)) - k
+def pipe(a: float, b: float, radius: float) -> float:
+    """Return only a tube of this radius along the line where the two surfaces cross."""
+    return length(vec2(a, b)) - radius
 
 
 @func
-def engrave(a: float, b: float, k: float) -> float:
-    """Return the first shape with a V-shaped cut, ``k`` deep, along the second surface."""
-    return max(a, (a + k - abs(b)) * SQRT_HALF)
+def engrave(a: float, b: float, depth: float) -> float:
+    """Return the first shape with a V-shaped cut, ``depth`` deep, along the second surface."""
+    return max(a, (a + depth - abs(b)) * SQRT_HALF)
 
 
 @func

@@ -1,5 +1,6 @@
-"""Noise functions, and shapes made of noise. An author's ``@func`` imports them from here."""
+"""Noise functions, their hashes, and shapes made of noise, for an author's ``@func``."""
 
+from distal.fields.noise.lattice import fraction, lattice_hash, lattice_hash_2
 from distal.fields.noise.space import (
     fbm,
     fbm_slope,
@@ -15,7 +16,10 @@ __all__ = [
     "cellular",
     "fbm",
     "fbm_slope",
+    "fraction",
     "gradient_noise",
+    "lattice_hash",
+    "lattice_hash_2",
     "simplex_noise",
     "turbulence",
     "value_noise",

@@ -18,8 +18,8 @@ from distal.frontend.signatures.annotations import AnnotationError, UnboundVaria
 from distal.frontend.signatures.signatures import MISSING, SignatureParameter
 from distal.frontend.types.python_objects import RefusedError, coerce_constant, value_of
 from distal.frontend.values import describe
-from distal.ir.nodes import Call, Expr, Function, Param, Return, Stmt
-from distal.ir.types import Buffer, Type
+from distal.ir.nodes import Call, Expr, Function, FunctionRef, Param, Read, Return, Stmt
+from distal.ir.types import Buffer, FunctionType, Type
 from distal.lang.composed import Composed
 from distal.lang.expressions import Expression
 from distal.lang.functions import Func
@@ -77,6 +77,24 @@ class Assembly:
         instance = known[1]
         assert instance.result is not None
         return Call(instance.name, args, instance.result)
+
+    def reference(self, func: Func, type: FunctionType) -> Expr:
+        """Return a scene function as an argument of others.
+
+        Args:
+            func: The function; parameters beyond those of the type have defaults.
+            type: What it takes and returns.
+
+        Raises:
+            FollowupError: The function has errors, which are reported already.
+            SceneError: The types do not match.
+        """
+        adopted = FunctionType(tuple(map(self.adopt, type.params)), self.adopt(type.result))
+        names = self.parameter_names(func)[: len(adopted.params)]
+        params = [Param(name, taken) for name, taken in zip(names, adopted.params, strict=True)]
+        value = self.call(func, {param.name: Read(param.name, param.type) for param in params})
+        name = self.define(func.name, params, adopted.result, (Return(value),))
+        return FunctionRef(name, (), adopted)
 
     def parameter_names(self, func: Func) -> tuple[str, ...]:
         """Return the names of the parameters of a function's first overload."""

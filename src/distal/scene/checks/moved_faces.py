@@ -151,9 +151,9 @@ def moved_face(
         seed: Seed of the random places.
     """
     kind = _KINDS.get(node.rule)  # type: ignore[arg-type]  # None for a primitive
-    if kind is None or "k" not in node.numbers or not 2 <= len(node.children) <= MOST_SHAPES:
+    if kind is None or "smooth" not in node.numbers or not 2 <= len(node.children) <= MOST_SHAPES:
         return None
-    given = node.numbers["k"].value
+    given = node.numbers["smooth"].value
     size = executor().value(given, params, time) if isinstance(given, Expression) else given
     assert isinstance(size, float)
     boxes = [declared[id(child)] for child in node.children]

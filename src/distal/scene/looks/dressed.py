@@ -13,6 +13,7 @@ from typing import Any
 from distal.at_once import cached_property
 from distal.diagnostics import Span
 from distal.fields.combine import joins
+from distal.lang.functions import Func
 from distal.scene.looks.boxes import subject_box
 from distal.scene.looks.dressing import Dressing
 from distal.scene.looks.look import Look
@@ -26,7 +27,7 @@ from distal.scene.objects.materials import Material, as_material
 from distal.scene.scene_arguments import (
     checked_camera,
     checked_lights,
-    one_shape,
+    contents_of,
     with_surroundings,
 )
 from distal.scene.tree.node import Node
@@ -41,7 +42,7 @@ class GivenArguments:
     camera: Any
     background: Any
     material: Any
-    tone_map: str | None
+    tone_map: str | Func | None
     numbers: Mapping[str, Any]
 
 
@@ -64,17 +65,21 @@ class Dressed:
         staged: tuple[Mapping[str, Any], float] | None,
     ) -> None:
         self._given, self._place = given, place
-        self.shape: BaseShape = one_shape(given.shape, place)
+        self.contents = contents_of(given.shape, place, alone=given.camera is None)
+        self.shape = self.contents.shape
         params, time = staged or ({}, 0.0)
         self._dressing = Dressing(
             look, lambda: subject_box(self.shape.node, params, time), params, time
         )
         self.given_lights = checked_lights(given.lights, place)
-        skies = any(isinstance(light, Surroundings) for light in self.given_lights)
+        self._own_lights = (*self.given_lights, *self.contents.lights)
+        self._has_lights = given.lights is not None or bool(self.contents.lights)
+        skies = any(isinstance(light, Surroundings) for light in self._own_lights)
         self._own_background = given.background is not None or skies
-        self._own_camera: BaseCamera | None = None
+        self._own_camera = self.contents.camera
         if given.camera is not None:
             self._own_camera = checked_camera(given.camera, place)
+        if self._own_camera is not None:
             self._dressing.follow(self._own_camera, params, time)
 
     def wants_floor(self, *, named: bool) -> bool:
@@ -83,7 +88,7 @@ class Dressed:
         Args:
             named: Whether the author named a look.
         """
-        bare = self._given.lights is None and self._given.background is None
+        bare = not self._has_lights and self._given.background is None
         box = self._dressing.box
         fits = not box.endless and not box.cut and not self._dressing.is_seen_from_below
         return (named or bare) and fits
@@ -116,16 +121,16 @@ class Dressed:
     def background(self) -> Background:
         """The background."""
         if self._own_background:
-            return as_background(self._given.background, self.given_lights, self._place)
+            return as_background(self._given.background, self._own_lights, self._place)
         return self._dressing.background
 
     @property
     def lights(self) -> tuple[Light, ...]:
         """The lights, and that of the background."""
         around = self.background.light
-        if self._given.lights is None and around is None:
+        if not self._has_lights and around is None:
             return self._dressing.lights
-        return with_surroundings(self.given_lights, around)
+        return with_surroundings(self._own_lights, around)
 
     @property
     def camera(self) -> BaseCamera:
@@ -139,8 +144,8 @@ class Dressed:
         return self._dressing.material if given is None else as_material(given)
 
     @property
-    def tone_map(self) -> str:
-        """The name of the tone map."""
+    def tone_map(self) -> str | Func:
+        """The name of the tone map, or the author's function."""
         given = self._given.tone_map
         return self._dressing.look.row.tone_map if given is None else given
 

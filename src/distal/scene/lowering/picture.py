@@ -64,6 +64,7 @@ from distal.scene.lowering.ray_functions import RayFunctions, step_limit
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.lowering.union_parts import united
 from distal.scene.tree.node import Node
+from distal.scene.tree.own_functions import TONE_MAP
 from distal.scene.tree.values import StatementList
 from distal.scene.tree.varying import expression_of
 
@@ -306,11 +307,12 @@ class SceneLowering:
 
     def displayed(self, color: Expr) -> Expr:
         """Return linear light encoded for display."""
-        given = {
-            "color": color,
-            "exposure": self._numbers["exposure"],
-            "tone_map": integer(tonemap.NAMES.index(self._scene.tone_map)),
-        }
+        given = {"color": color, "exposure": self._numbers["exposure"]}
+        chosen = self._scene.tone_map
+        if isinstance(chosen, Func):
+            given["curve"] = self._assembly.reference(chosen, TONE_MAP.type)
+            return self.composer.call(tonemap.display_by, given)
+        given["tone_map"] = integer(tonemap.NAMES.index(chosen))
         return self.composer.call(tonemap.display, given)
 
     def given(

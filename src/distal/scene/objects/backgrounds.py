@@ -25,7 +25,7 @@ from distal.render import environment as environment_library
 from distal.render import sky as library
 from distal.render import surroundings
 from distal.render.brightness import brightness_table
-from distal.render.declarations import BACKGROUNDS
+from distal.render.declarations import BACKGROUNDS, Family
 from distal.scene.objects.declared import (
     declared_call,
     declared_class,
@@ -113,6 +113,7 @@ class Surroundings(Light):
 
     __slots__ = ("background", "light")
 
+    family: ClassVar[Family] = BACKGROUNDS
     background: FunctionCall
     light: bool
 

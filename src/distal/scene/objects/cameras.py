@@ -9,30 +9,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
 from distal.diagnostics import Span
 from distal.fields.guarantees import Limit
 from distal.ir.nodes import Expr, Uniform
 from distal.ir.types import FLOAT
-from distal.lang import tan
+from distal.lang import atan, tan
 from distal.lang.expressions import Expression
 from distal.lang.functions import Func
 from distal.lang.source_places import author_place
 from distal.render import camera as library
-from distal.render.declarations import CAMERAS
+from distal.render.declarations import CAMERAS, Declaration, Family
 from distal.scene.objects.declared import (
     declared_call,
     declared_class,
     given_arguments,
     scene_call,
 )
-from distal.scene.objects.scene_object import CalledObject
+from distal.scene.objects.scene_object import CalledObject, PlacedObject
 from distal.scene.tree.calls import FunctionCall
 from distal.scene.tree.conversion import Asked, number
 from distal.scene.tree.conversion import Number as CheckedNumber
 from distal.scene.tree.errors import refuse, refuse_kind
-from distal.scene.tree.value import recorded
+from distal.scene.tree.placement import AffinePlacement
+from distal.scene.tree.value import recorded, value_of
 from distal.scene.tree.varying import Composer
 
 if TYPE_CHECKING:
@@ -42,8 +43,10 @@ _DEGREE: Final = math.pi / 180.0
 
 
 @recorded
-class BaseCamera(CalledObject):
+class BaseCamera(PlacedObject, CalledObject):
     """The base class of cameras.
+
+    Its methods place it as those of a shape. A camera of angles becomes a ``Camera`` by them.
 
     Attributes:
         call: ``(uv) -> Ray``. uv.y is -1 to 1 from bottom to top; uv.x has the same unit. The
@@ -54,6 +57,7 @@ class BaseCamera(CalledObject):
     __slots__ = ("lens",)
 
     noun: ClassVar[str] = "camera"
+    family: ClassVar[Family] = CAMERAS
     alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (("fov", "fov_deg"),)
     lens: FunctionCall | None
 
@@ -79,6 +83,19 @@ class BaseCamera(CalledObject):
     def _compared(self) -> tuple[Any, ...]:
         return self.noun, self.call, self.lens
 
+    @property
+    def _pose(self) -> Self:
+        """The same camera by its position, target and direction up; itself, if it has them."""
+        declaration: Declaration | None = getattr(type(self), "declaration", None)
+        if declaration is None or declaration.pose is None:
+            return self
+        same: Self = declaration.pose(CLASSES["Camera"], **self.arguments)
+        return same
+
+    def _placed(self, placement: AffinePlacement) -> Self:
+        pose = self._pose
+        return super()._placed(placement) if pose is self else pose._placed(placement)
+
     def functions(self) -> Iterator[Func]:
         """Yield the scene functions that the camera calls."""
         yield from self.call.functions()
@@ -103,7 +120,7 @@ class TurnedCamera(BaseCamera):
             sharp. In mode "path" only.
         focus_distance: The distance along the viewing direction at which everything is sharp, in
             scene units; required if there is an aperture.
-        mirror: Whether left and right are swapped, as in left-handed coordinate systems.
+        mirrored: Whether left and right are swapped, as in left-handed coordinate systems.
 
     Raises:
         ValueError: The screen's size or distance is not above 0, or the angle is invalid.
@@ -128,7 +145,7 @@ class TurnedCamera(BaseCamera):
         fov_deg: Number | None = None,
         aperture: Number = 0.0,
         focus_distance: Number | None = None,
-        mirror: bool = False,
+        mirrored: bool = False,
     ) -> None:
         place = author_place()
         height = 1.0 if screen_height is None else screen_height
@@ -151,7 +168,7 @@ class TurnedCamera(BaseCamera):
             "roll": roll,
             "screen_height": height,
             "screen_distance": distance,
-            "mirror": mirror,
+            "mirrored": mirrored,
         }
         lens = _lens("TurnedCamera", aperture, focus_distance, place)
         if lens is not None and focus_distance is None:
@@ -162,6 +179,15 @@ class TurnedCamera(BaseCamera):
             )
         call = scene_call(CAMERAS, library.turned, given, "TurnedCamera", place)
         self._keep(call=call, lens=lens)
+
+    @property
+    def _pose(self) -> Any:
+        turns, screen = self.arguments, {n: value_of(v) for n, v in self.call.values.items()}
+        fov = 2.0 * atan(0.5 * screen["screen_height"] / screen["screen_distance"])
+        same = {name: turns[name] for name in ("aperture", "focus_distance", "mirrored")}
+        level = CLASSES["Camera"]((0.0, 0.0, 0.0), (0.0, 0.0, -1.0), fov=fov, **same)
+        ahead = level.rotate(z=turns["roll"]).rotate(x=turns["pitch"]).rotate(y=turns["yaw"])
+        return ahead.translate(turns["position"])
 
 
 class PlacedCamera(BaseCamera):

@@ -46,6 +46,7 @@ from distal.scene.tree.arguments import RESERVED, slots_of
 from distal.scene.tree.conversion import Asked, number, plain_choice
 from distal.scene.tree.conversion import Number as Checked
 from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.former_names import renamed
 from distal.scene.tree.node import Node
 from distal.scene.tree.value import recorded
 from distal.scene.tree.values import plain_name
@@ -302,7 +303,7 @@ class BaseShape(RenderedShape, ShapeValue, Composed, Presentable):
         return made
 
     def _combined(
-        self, sharp: Operator, others: Sequence[Any], smooth: Any, blend: str, **k: Any
+        self, sharp: Operator, others: Sequence[Any], smooth: Any, blend: str, **extra: Any
     ) -> Any:
         place, kind = author_place(), sharp.name
         # One list of shapes counts as these shapes.
@@ -318,7 +319,7 @@ class BaseShape(RenderedShape, ShapeValue, Composed, Presentable):
                     "make the flat one solid: .extrude(height) or .revolve()",
                     place,
                 )
-        rule, numbers, constants = joining(sharp, smooth, blend, k, place)
+        rule, numbers, constants = joining(sharp, smooth, blend, extra, place)
         # A union of a union is one union; a difference of a difference likewise.
         bare = rule if not numbers else None
         nodes: list[Node] = []
@@ -338,7 +339,7 @@ class BaseShape(RenderedShape, ShapeValue, Composed, Presentable):
         *others: BaseShape | Iterable[BaseShape],
         smooth: Number = 0.0,
         blend: str = "quadratic",
-        **k: Unpack[BlendNumbers],
+        **blend_numbers: Unpack[BlendNumbers],
     ) -> S:
         """Unite with other shapes; also written ``a | b``.
 
@@ -349,9 +350,9 @@ class BaseShape(RenderedShape, ShapeValue, Composed, Presentable):
             blend: Form of the blend: quadratic, cubic, quartic, circular, circular_geometric,
                 exponential, root, sigmoid; or of a shaped edge: chamfer, round, columns, stairs,
                 soft.
-            k: ``count``: number of columns or stairs.
+            blend_numbers: ``count``: number of columns or stairs.
         """
-        joined: S = self._combined(joins.UNION, others, smooth, blend, **k)
+        joined: S = self._combined(joins.UNION, others, smooth, blend, **blend_numbers)
         return joined
 
     def intersection(
@@ -359,13 +360,13 @@ class BaseShape(RenderedShape, ShapeValue, Composed, Presentable):
         *others: BaseShape | Iterable[BaseShape],
         smooth: Number = 0.0,
         blend: str = "quadratic",
-        **k: Unpack[BlendNumbers],
+        **blend_numbers: Unpack[BlendNumbers],
     ) -> S:
         """Intersect with other shapes; also written ``a & b``.
 
         Arguments as for ``union``.
         """
-        joined: S = self._combined(joins.INTERSECTION, others, smooth, blend, **k)
+        joined: S = self._combined(joins.INTERSECTION, others, smooth, blend, **blend_numbers)
         return joined
 
     def difference(
@@ -373,13 +374,13 @@ class BaseShape(RenderedShape, ShapeValue, Composed, Presentable):
         *others: BaseShape | Iterable[BaseShape],
         smooth: Number = 0.0,
         blend: str = "quadratic",
-        **k: Unpack[BlendNumbers],
+        **blend_numbers: Unpack[BlendNumbers],
     ) -> S:
         """Subtract other shapes, one after the other; also written ``a - b``.
 
         Arguments as for ``union``.
         """
-        joined: S = self._combined(joins.DIFFERENCE, others, smooth, blend, **k)
+        joined: S = self._combined(joins.DIFFERENCE, others, smooth, blend, **blend_numbers)
         return joined
 
     def xor(self: S, *others: BaseShape | Iterable[BaseShape]) -> S:
@@ -603,11 +604,12 @@ def joining(
         known = [name for of, name in blends.COMBINATIONS if of == kind]
         refuse(f"there is no blend '{blend}' for a {kind}", ", ".join(known), place)
     assert rule.combine is not None
-    numbered = {slot.name for slot in slots_of(rule.combine)} - {*RESERVED, "k"}
+    numbered = {slot.name for slot in slots_of(rule.combine)} - {*RESERVED, "smooth"}
     if unknown := set(extra) - numbered:
-        hint = did_you_mean(min(unknown), {"smooth", "blend", *numbered})
-        refuse_kind(f"a {blend} {kind} has no '{min(unknown)}'", hint, place)
-    limit = rule.limits.get("k", Limit.ANY)
+        name = min(unknown)
+        hint = renamed(rule.name, name) or did_you_mean(name, {"smooth", "blend", *numbered})
+        refuse_kind(f"a {blend} {kind} has no '{name}'", hint, place)
+    limit = rule.limits.get("smooth", Limit.ANY)
     number(smooth, Asked("smooth", kind, FLOAT, limit, place=place, varies=PLACES))
     numbers, constants = bound(rule, (smooth,), extra, place)
     return rule, numbers, constants

@@ -23,7 +23,7 @@ def union(
     *shapes: S | Iterable[S],
     smooth: Number = 0.0,
     blend: str = "quadratic",
-    **k: Unpack[BlendNumbers],
+    **blend_numbers: Unpack[BlendNumbers],
 ) -> S:
     """Return the union of shapes: ``union(parts)`` or ``union(a, b, c)``.
 
@@ -32,14 +32,14 @@ def union(
         smooth: How far a blend moves the surface outwards where two surfaces meet, in scene units;
             0 for a sharp edge.
         blend: Form of the blend, one of those of the method ``union``.
-        k: ``count``: number of columns or stairs.
+        blend_numbers: ``count``: number of columns or stairs.
 
     Raises:
         SceneTypeError: There is no shape, or something else is among the shapes.
         SceneValueError: Flat shapes and solids are mixed, or a number is beyond its limit.
     """
     first, rest = _first_of("union", shapes)
-    joined: S = first.union(*rest, smooth=smooth, blend=blend, **k) if rest else first
+    joined: S = first.union(*rest, smooth=smooth, blend=blend, **blend_numbers) if rest else first
     return joined
 
 
@@ -47,7 +47,7 @@ def intersection(
     *shapes: S | Iterable[S],
     smooth: Number = 0.0,
     blend: str = "quadratic",
-    **k: Unpack[BlendNumbers],
+    **blend_numbers: Unpack[BlendNumbers],
 ) -> S:
     """Return the intersection of shapes: ``intersection(parts)`` or ``intersection(a, b)``.
 
@@ -58,7 +58,9 @@ def intersection(
         SceneValueError: Flat shapes and solids are mixed, or a number is beyond its limit.
     """
     first, rest = _first_of("intersection", shapes)
-    joined: S = first.intersection(*rest, smooth=smooth, blend=blend, **k) if rest else first
+    joined: S = (
+        first.intersection(*rest, smooth=smooth, blend=blend, **blend_numbers) if rest else first
+    )
     return joined
 
 
@@ -66,7 +68,7 @@ def difference(
     *shapes: S | Iterable[S],
     smooth: Number = 0.0,
     blend: str = "quadratic",
-    **k: Unpack[BlendNumbers],
+    **blend_numbers: Unpack[BlendNumbers],
 ) -> S:
     """Return the first shape without the others: ``difference(a, b, c)`` is ``a - b - c``.
 
@@ -75,14 +77,16 @@ def difference(
             subtracted.
         smooth: How far a blend moves the surface where two surfaces meet, as for ``union``.
         blend: Form of the blend, one of those of the method ``union``.
-        k: ``count``: number of columns or stairs.
+        blend_numbers: ``count``: number of columns or stairs.
 
     Raises:
         SceneTypeError: There is no shape, or something else is among the shapes.
         SceneValueError: Flat shapes and solids are mixed, or a number is beyond its limit.
     """
     first, rest = _first_of("difference", shapes)
-    joined: S = first.difference(*rest, smooth=smooth, blend=blend, **k) if rest else first
+    joined: S = (
+        first.difference(*rest, smooth=smooth, blend=blend, **blend_numbers) if rest else first
+    )
     return joined
 
 

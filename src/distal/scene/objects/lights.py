@@ -15,20 +15,22 @@ from typing import Any, ClassVar, Final
 from distal.lang.functions import Func
 from distal.lang.source_places import author_place
 from distal.render import ambient as _ambient  # noqa: F401 (declares lights)
-from distal.render import lights as _lights  # noqa: F401 (declares lights)
-from distal.render.declarations import LIGHTS
+from distal.render import lights as _lights
+from distal.render.declarations import LIGHTS, Family
 from distal.scene.objects.declared import declared_call, declared_class, given_arguments
-from distal.scene.objects.scene_object import SceneObject
+from distal.scene.objects.scene_object import PlacedObject
 from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.calls import FunctionCall
+from distal.scene.tree.own_functions import FALLOFF
 from distal.scene.tree.value import recorded
 
 
 @recorded
-class Light(SceneObject):
+class Light(PlacedObject):
     """The base class of lights.
 
-    A light never changes after construction.
+    A light never changes after construction. Its methods place it as those of a shape: its
+    position and direction move, and its brightness stays.
 
     Attributes:
         sample: ``(p) -> LightSample``, the light that arrives at a point; None for light from all
@@ -42,6 +44,7 @@ class Light(SceneObject):
     __slots__ = ("ambient", "radiance", "sample")
 
     noun: ClassVar[str] = "light"
+    family: ClassVar[Family] = LIGHTS
     sample: FunctionCall | None
     ambient: FunctionCall | None
     radiance: FunctionCall | None
@@ -50,6 +53,9 @@ class Light(SceneObject):
         place, what = author_place(), type(self).__name__
         given = given_arguments(self.declaration, args, kwargs, what, place)
         call = declared_call(self.declaration, given, place, what=what)
+        if given.get("falloff") is not None:
+            shaped = {"light": call, "falloff": FALLOFF.checked(given["falloff"], place)}
+            call = FunctionCall(call.what, _lights.with_falloff, shaped, place)
         everywhere = any(slot.name == "n" for slot in slots_of(call.func))
         self._keep(
             sample=None if everywhere else call,
@@ -66,9 +72,9 @@ class Light(SceneObject):
         return None
 
     def _checked(self) -> Iterator[Mapping[str, Any]]:
-        yield from (
-            call.values for call in (self.radiance, self.sample, self.ambient) if call is not None
-        )
+        for call in (self.radiance, self.sample, self.ambient):
+            if call is not None:
+                yield _without_falloff(call).values
 
     def _compared(self) -> tuple[Any, ...]:
         return self.noun, self.sample, self.ambient, self.radiance
@@ -78,6 +84,11 @@ class Light(SceneObject):
         for call in (self.sample, self.ambient):
             if call is not None:
                 yield from call.functions()
+
+
+def _without_falloff(call: FunctionCall) -> FunctionCall:
+    inner = call.values.get("light")
+    return inner if isinstance(inner, FunctionCall) else call
 
 
 def call_of_part(whole: FunctionCall, function: Func | None) -> FunctionCall | None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Final, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from distal.fields.deform import offsets
 from distal.fields.guarantees import Operator
@@ -25,11 +25,12 @@ from distal.scene.objects.anchors import measured_extents, offset_aligned, offse
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.in_plane import IN_PLANE
 from distal.scene.objects.masked import masked
-from distal.scene.objects.reflecting import PlaneArguments, without_signs
+from distal.scene.objects.movable import Movable
 from distal.scene.objects.shaped_edges import shaped_edge
 from distal.scene.tree.conversion import Asked, is_scalar, plain_choice
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.former_names import FORMER_WORDS
+from distal.scene.tree.value import refuses_unknown
 
 if TYPE_CHECKING:
     from distal.scene.objects.argument_types import Argument, Number, Vector
@@ -50,7 +51,7 @@ def _fixed(name: str, what: str, value: Any) -> int:
 S = TypeVar("S", bound="Placed")
 
 
-class Placed(BaseShape):
+class Placed(Movable, BaseShape):
     """A shape with the methods that solid and flat shapes share."""
 
     def _with(self: S, operator: Operator, *args: Any, **kwargs: Any) -> S:
@@ -67,12 +68,6 @@ class Placed(BaseShape):
             refuse(f"'{operator.name}' takes another {kind} shape, not {other!r:.60}", None, place)
         made: S = self._under(operator, (), numbers, place, others=(other,))
         return made
-
-    def _at_plane(self: S, method: str, axes: Any, offset: Any, across: Any) -> S:
-        """Apply ``mirror`` or ``symmetry``, at axes or at a plane."""
-        plane = PlaneArguments(method, axes, offset, across, self.flat, author_place())
-        operator, numbers = plane.operator()
-        return self._with(operator, **numbers)
 
     def apply(
         self, operator: str, *args: Argument, others: Sequence[BaseShape] = (), **kwargs: Argument
@@ -108,56 +103,7 @@ class Placed(BaseShape):
         made: S = select(condition, self, None)
         return made
 
-    @overload
-    def translate(self: S, offset: Vector) -> S: ...
-    @overload
-    def translate(self: S, x: Number, y: Number, z: Number = ..., /) -> S: ...
-    @overload
-    def translate(self: S, *, x: Number = ..., y: Number = ..., z: Number = ...) -> S: ...
-    def translate(self: S, *offset: Any, **parts: Any) -> S:
-        """Move: ``translate(1, 0, 0)``, ``translate((1, 0, 0))`` or ``translate(x=1)``."""
-        return self._with(placing.TRANSLATE, *offset, **parts)
-
-    @overload
-    def scale(self: S, factor: Number | Vector, /) -> S: ...
-    @overload
-    def scale(self: S, x: Number, y: Number, z: Number = ..., /) -> S: ...
-    @overload
-    def scale(self: S, *, x: Number = ..., y: Number = ..., z: Number = ...) -> S: ...
-    def scale(self: S, *factors: Any, **parts: Any) -> S:
-        """Scale by one factor, or by one factor for each axis (which loses exactness).
-
-        Plain factors below 0 also reflect: ``scale(-1, 1, 1)`` is ``mirror("x")``.
-        """
-        unsigned = without_signs(factors, parts, flat=self.flat)
-        if unsigned.reflected:
-            image = self.mirror(unsigned.reflected)
-            if unsigned.uniform is None:
-                return image._with(placing.STRETCH, unsigned.values)
-            is_image = unsigned.uniform == 1.0
-            return image if is_image else image._with(placing.SCALE, unsigned.uniform)
-        if len(factors) == 1 and not parts and is_scalar(factors[0]):
-            return self._with(placing.SCALE, *factors)
-        return self._with(placing.STRETCH, *factors, **parts)
-
-    def mirror(
-        self: S, axes: str | None = None, offset: Number = 0.0, *, across: Vector | None = None
-    ) -> S:
-        """Reflect: ``mirror("x")`` swaps left and right; ``mirror(across=normal, offset=0.5)``.
-
-        It is the mirror image alone; ``symmetry`` keeps one half and copies it over. Exact. On a
-        flat shape, planes are lines.
-
-        Args:
-            axes: The axis that is reversed, "x", "y" or "z"; of several, each is.
-            offset: Distance of the plane from the origin, along the axis or the normal.
-            across: The normal of any other plane, of length 1.
-
-        Raises:
-            SceneValueError: The arguments name neither an axis nor a plane, or both.
-        """
-        return self._at_plane("mirror", axes, offset, across)
-
+    @refuses_unknown
     def symmetry(
         self: S, axes: str | None = None, offset: Number = 0.0, *, across: Vector | None = None
     ) -> S:

@@ -6,8 +6,8 @@ operator of the field library.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Final, Self, cast
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Self, cast
 
 from distal.fields.combine import blends, joins, transitions
 from distal.fields.deform import folds, wrapping
@@ -24,16 +24,17 @@ from distal.ir.types import VEC2, VEC3
 from distal.lang.functions import Func
 from distal.lang.render_options import Cancel, Progress, RenderOptions
 from distal.lang.source_places import author_place
-from distal.scene.objects.affine import affine_parts, refuse_mirrored
 from distal.scene.objects.copies import CopyColumns, copied
 from distal.scene.objects.field import BaseShape
 from distal.scene.objects.filling import filled
 from distal.scene.objects.from_data import FromData
 from distal.scene.objects.heights import seen_heights
 from distal.scene.objects.meshable import Meshable
+from distal.scene.objects.movable import MovableSolid
 from distal.scene.objects.outlined import Outlined
 from distal.scene.objects.path_corners import path_corners
 from distal.scene.objects.shape_values import PLAIN
+from distal.scene.objects.shaped_edges import PLAN
 from distal.scene.objects.turns import warn_of_degrees
 from distal.scene.tree.errors import refuse
 
@@ -42,7 +43,6 @@ if TYPE_CHECKING:
     from distal.images.picture import Picture
     from distal.scene.objects.argument_types import (
         Amount,
-        ArrayLike,
         Color,
         Columns,
         Corners,
@@ -52,14 +52,8 @@ if TYPE_CHECKING:
         Vector,
     )
 
-_ROTATIONS: Final[Mapping[str, Operator]] = {
-    "x": placing.ROTATE_X,
-    "y": placing.ROTATE_Y,
-    "z": placing.ROTATE_Z,
-}
 
-
-class Shape(Meshable, FromData):
+class Shape(MovableSolid, Meshable, FromData):
     """A solid: a signed distance function of a point in space.
 
     Shapes never change; methods return new shapes.
@@ -67,88 +61,6 @@ class Shape(Meshable, FromData):
 
     flat = False
     point_type = VEC3
-
-    def rotate(
-        self,
-        angle: Number | None = None,
-        axis: Vector | None = None,
-        *,
-        x: Number | None = None,
-        y: Number | None = None,
-        z: Number | None = None,
-        quaternion: Vector | None = None,
-        matrix: Sequence[Vector] | ArrayLike | None = None,
-    ) -> Self:
-        """Rotate about the origin, given in exactly one of four ways; angles in radians.
-
-        Args:
-            angle: Angle about ``axis``.
-            axis: Axis of the rotation, of length 1.
-            x: Angle about the fixed x axis, applied first.
-            y: Angle about the fixed y axis, applied second.
-            z: Angle about the fixed z axis, applied last.
-            quaternion: (x, y, z, w), of length 1.
-            matrix: Rotation matrix: three rows, orthonormal.
-
-        Raises:
-            SceneValueError: No rotation is given, or more than one.
-        """
-        euler = {name: value for name, value in (("x", x), ("y", y), ("z", z)) if value is not None}
-        warn_of_degrees(author_place(), angle, *euler.values())
-        ways = [angle is not None or axis is not None, bool(euler)]
-        ways += [quaternion is not None, matrix is not None]
-        if sum(ways) != 1:
-            hint = "rotate(y=0.5), rotate(0.5, axis=(0, 1, 0)), quaternion=… or matrix=…"
-            refuse("a rotation is given in exactly one way", hint, author_place())
-        if euler:
-            if len(euler) == 1:
-                ((name, value),) = euler.items()
-                return self._with(_ROTATIONS[name], value)
-            return self._with(placing.ROTATE_EULER, tuple(euler.get(n, 0.0) for n in "xyz"))
-        if quaternion is not None:
-            return self._with(placing.ROTATE_QUATERNION, quaternion)
-        if matrix is not None:
-            columns = _columns(matrix)
-            refuse_mirrored(columns, author_place())
-            return self._with(placing.ROTATE_MATRIX, *columns)
-        if axis is None or angle is None:
-            refuse(
-                "a rotation needs an angle and an axis",
-                "rotate(y=0.5), or rotate(0.5, axis=(0, 1, 0))",
-                author_place(),
-            )
-        return self._with(placing.ROTATE, axis=axis, angle=angle)
-
-    def transform(self, matrix: Sequence[Sequence[float]] | ArrayLike) -> Self:
-        """Place by an affine matrix: rotate, scale, shear, mirror and move in one step.
-
-        Exact if the matrix keeps all angles, mirrored or not. Else distances are lower bounds: they
-        are multiplied by the smallest factor by which the matrix stretches.
-
-        Args:
-            matrix: Three rows of four numbers, or four with (0, 0, 0, 1) as the last: the first
-                three columns are the images of the axes, the last one that of the origin.
-
-        Raises:
-            SceneValueError: The matrix has another shape or last row, a number is not finite, or it
-                flattens the shape.
-            SceneTypeError: A number is none, or a parameter.
-        """
-        place = author_place()
-        parts = affine_parts(matrix, place)
-        made = self
-        for operator, numbers in parts:
-            made = made._under(operator, numbers, {}, place)
-        return made
-
-    def orient(self, source: Vector, target: Vector | None = None) -> Self:
-        """Rotate by the smallest angle that maps direction ``source`` to direction ``target``.
-
-        One direction alone is the target of the y axis: ``Cylinder().orient((1, 0, 0))``.
-        """
-        if target is None:
-            source, target = (0.0, 1.0, 0.0), source
-        return self._with(placing.ORIENT, source, target)
 
     def shear(self, xy: Number = 0.0, xz: Number = 0.0, yz: Number = 0.0) -> Self:
         """Shear: move x by ``xy`` times y plus ``xz`` times z, and y by ``yz`` times z.
@@ -372,11 +284,11 @@ class Shape(Meshable, FromData):
 
     def engrave(self, other: BaseShape, depth: Number) -> Self:
         """Cut a V-shaped groove, ``depth`` deep, where the other shape's surface crosses this."""
-        return self._joined(blends.ENGRAVE, other, k=depth)
+        return self._joined(blends.ENGRAVE, other, depth=depth)
 
     def pipe(self, other: BaseShape, radius: Number) -> Self:
         """Keep only a pipe of this radius along the curve where the two surfaces cross."""
-        return self._joined(blends.PIPE, other, k=radius)
+        return self._joined(blends.PIPE, other, radius=radius)
 
     def groove(self, other: BaseShape, depth: Number, width: Number) -> Self:
         """Cut a groove with a rectangular profile where the surfaces cross.
@@ -531,16 +443,25 @@ class Shape2D(Outlined):
         self,
         height: Number | None = 1.0,
         *,
+        along: str = "z",
         rounding: Number | None = None,
         chamfer: Number | None = None,
     ) -> Shape:
-        """Extrude along z to a solid whose middle is at z = 0.
+        """Extrude to a solid whose middle is at 0.
 
         Args:
-            height: Full length along z; None extrudes without end.
+            height: Full length; None extrudes without end.
+            along: "z": the outline stands as it is drawn. "y": it is a plan that lies in the floor;
+                seen from above, x points to the right and its y, which is -z then, up.
             rounding: Radius of the rounded edges; None for sharp edges.
             chamfer: Size of the chamfered edges; None for sharp edges. Ignored with ``rounding``.
         """
+        if along not in ("y", "z"):
+            hint = 'along="y" for a plan; then rotate(…) for others'
+            refuse(f'extrude goes along "z" or "y", not {along!r:.40}', hint, author_place())
+        if along == "y":
+            standing = self.extrude(height, rounding=rounding, chamfer=chamfer)
+            return standing._with(placing.ROTATE_MATRIX, **PLAN)
         if height is None:
             if rounding is not None or chamfer is not None:
                 hint = "extrude(height, rounding=…), or leave out rounding and chamfer"
@@ -671,14 +592,6 @@ def ease_number(name: str) -> int:
     if name not in EASES:
         refuse(f"there is no easing {name!r:.40}", ", ".join(EASES), author_place())
     return EASES.index(name)
-
-
-def _columns(matrix: Any) -> tuple[Any, ...]:
-    try:
-        rows = [tuple(row) for row in matrix]
-        return tuple(zip(*rows, strict=True))
-    except (TypeError, ValueError):
-        refuse("a rotation's matrix has three rows of three numbers", None, author_place())
 
 
 PLAIN.update({False: Shape, True: Shape2D})

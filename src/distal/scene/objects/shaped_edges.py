@@ -8,6 +8,7 @@ classes.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Final
 
 from distal.diagnostics import Span
@@ -15,6 +16,7 @@ from distal.fields.combine import joins
 from distal.fields.combine.blends import COMBINATIONS, FLAT_UNIONS, PRISMS
 from distal.fields.guarantees import Limit, Operator, Primitive
 from distal.fields.lift import extrude
+from distal.fields.place import solid as placing
 from distal.fields.place.flat import UPRIGHT_TURNS
 from distal.ir.types import FLOAT, VEC2, VEC3
 from distal.lang.places import CELL
@@ -31,6 +33,8 @@ _EXTRUDED: Final[Mapping[str, tuple[Operator, str]]] = {
     "chamfer": (extrude.EXTRUDE_CHAMFERED, "chamfer"),
 }
 _SHARP: Final = (joins.UNION, joins.INTERSECTION, joins.DIFFERENCE)
+# The rotation that lays what is extruded along z into the floor: y points to -z.
+PLAN: Final = {"right": (1.0, 0.0, 0.0), "up": (0.0, 0.0, -1.0), "back": (0.0, 1.0, 0.0)}
 # The shapes that have the edge as one of their numbers.
 _INSTEAD: Final[Mapping[str, Mapping[str, str]]] = {
     "fillet": {
@@ -73,6 +77,8 @@ def shaped_edge(node: Node, word: str, size: Any, place: Span | None) -> Node:
         height = (node.numbers.get("height") or node.constants["height"].number).value
         numbers, constants = bound(shaped, (), {"height": height, name: size}, place)
         return _replaced(node, shaped, numbers, constants, place)
+    if _is_plan(node):
+        return replace(node, children=(shaped_edge(node.children[0], word, size, place),))
     found = _INSTEAD[word].get(rule.name)
     if found is None and not node.children:
         found = "round(radius), which moves the whole surface outwards"
@@ -82,6 +88,13 @@ def shaped_edge(node: Node, word: str, size: Any, place: Span | None) -> Node:
         found or f"call {word} right after the operator: (a - b).{word}({size!r:.20}).translate(…)",
         place,
     )
+
+
+def _is_plan(node: Node) -> bool:
+    """Return whether a shape was extruded to a plan: its edges are those of the extrusion."""
+    if node.rule is not placing.ROTATE_MATRIX or node.children[0].rule is not extrude.EXTRUDE:
+        return False
+    return {name: vector.plain for name, vector in node.numbers.items()} == PLAN
 
 
 def suited(
@@ -95,7 +108,7 @@ def suited(
         numbers: The numbers of the combination.
     """
     flat = children[0].flat
-    if rule in PRISMS and len(children) == 2 and "k" in numbers:
+    if rule in PRISMS and len(children) == 2 and "smooth" in numbers:
         common = _prism_axes(children[0]) & _prism_axes(children[1])
         if common:
             along = tuple(float(axis in common) for axis in "xyz"[: 2 if flat else 3])

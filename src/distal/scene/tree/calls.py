@@ -16,7 +16,7 @@ from distal.diagnostics import Span
 from distal.frontend.signatures.annotations import AnnotationError, UnboundVariableError, to_type
 from distal.frontend.signatures.signatures import MISSING, read_signature
 from distal.ir.nodes import Expr
-from distal.ir.types import BOOL, FLOAT, INT, Type
+from distal.ir.types import BOOL, FLOAT, INT, FunctionType, Type
 from distal.lang.functions import Func
 from distal.lang.immutable import Immutable
 from distal.lang.resources import Buffer, TextureValue
@@ -89,6 +89,10 @@ class FunctionCall(Immutable):
         return self._emitted(composer, {}, name, self.values[name])
 
     def _emitted(self, composer: Composer, site: Mapping[str, Expr], name: str, value: Any) -> Expr:
+        if isinstance(value, Func):
+            type = next(s.type for s in slots_of(self.func) if s.name == name)
+            assert isinstance(type, FunctionType)
+            return composer.assembly.reference(value, type)
         if isinstance(value, bool | int):
             return composer.assembly.constant(value, BOOL if isinstance(value, bool) else INT)
         if not isinstance(value, Number | TextureValue | Buffer):
@@ -124,7 +128,9 @@ class FunctionCall(Immutable):
         """Yield the scene functions that the call and its values need."""
         yield self.func
         for value in self.values.values():
-            if hasattr(value, "functions"):
+            if isinstance(value, Func):
+                yield value
+            elif hasattr(value, "functions"):
                 yield from value.functions()
 
 

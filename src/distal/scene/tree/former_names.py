@@ -48,6 +48,8 @@ _ROWS: Final = (
     ("TappedHole Nut MetricHole", "clearance", Renamed("gap")),
     ("Gear RingGear Rack RackProfile", "clearance", Renamed("tip_gap")),
     ("Gear", "bore", Renamed("bore_diameter")),
+    ("Camera OrbitCamera OrthographicCamera FisheyeCamera", "mirror", Renamed("mirrored")),
+    ("PanoramaCamera TurnedCamera", "mirror", Renamed("mirrored")),
     ("Text", "align", Renamed("justify")),
     ("Pie Arc Ring Horseshoe CircleWave", "angle", _OPENING),
     ("SolidAngle InfiniteCone CappedTorus", "angle", _OPENING),
@@ -80,6 +82,17 @@ FORMERLY_FIRST: Final[Mapping[str, str]] = {
     "VesicaSolid": "height",
 }
 
+# Of operators and methods, by the first word of their name: blends are "union circular".
+FORMER_OF_OPERATORS: Final[Mapping[str, Mapping[str, Renamed]]] = {
+    **{of: {"k": Renamed("smooth")} for of in ("union", "intersection", "difference", "xor")},
+    **{of: {"normal": Renamed("across")} for of in ("mirror", "symmetry")},
+    "pipe": {"k": Renamed("radius")},
+    "engrave": {"k": Renamed("depth")},
+}
+
+# Public names that were another's too, with those of now: ``gradient`` is the derivative alone.
+FORMER_OBJECTS: Final[Mapping[str, str]] = {"gradient": "linear_gradient"}
+
 # Former words for a choice.
 FORMER_WORDS: Final[Mapping[str, str]] = {"centre": "center"}
 
@@ -88,10 +101,11 @@ def renamed(what: str, name: str) -> str | None:
     """Return what to write instead of an argument's former name; None if it is none.
 
     Args:
-        what: The class or function.
+        what: The class, function or operator.
         name: The name of the argument.
     """
-    found = FORMER_NAMES.get(what, {}).get(name)
+    rows = FORMER_NAMES.get(what) or FORMER_OF_OPERATORS.get(what.partition(" ")[0], {})
+    found = rows.get(name)
     return None if found is None else found.hint
 
 

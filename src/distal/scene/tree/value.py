@@ -291,6 +291,19 @@ def recorded(made: Made) -> Made:
     return cast("Made", _recorded_function(cast("Any", made), of_class=False))
 
 
+def refuses_unknown(method: Made) -> Made:
+    """Let a method refuse arguments that it does not have as constructors do, with former names."""
+    function: Any = method
+    names = [*inspect.signature(function).parameters][1:]
+
+    @functools.wraps(function)
+    def call(self: Any, *args: Any, **kwargs: Any) -> Any:
+        _check_names(function.__name__, kwargs, names)
+        return function(self, *args, **kwargs)
+
+    return cast("Made", call)
+
+
 def argument(name: str) -> property:
     """Return the attribute that shows one argument of an object.
 

@@ -166,7 +166,7 @@ def camera_form(scene: Scene) -> CameraForm:
     name = named or _PERSPECTIVE
     parameters = inspect.signature(CLASSES[name]).parameters
     extent = next((n for n in (_ANGLE, _HEIGHT) if n in parameters), "")
-    mirror = values.get("mirror")
+    mirror = values.get("mirrored")
     return CameraForm(name, bool(getattr(mirror, "plain", mirror)), extent)
 
 
@@ -186,7 +186,7 @@ def camera_text(form: CameraForm, place: CameraPlace) -> str:
         unit = 0.1 * max(place.height, 1e-6)
         arguments.append(f"{_HEIGHT}={shown(interaction.rounded(place.height, unit))}")
     if form.mirror:
-        arguments.append("mirror=True")
+        arguments.append("mirrored=True")
     return f"{form.name}({', '.join(arguments)})"
 
 

@@ -24,6 +24,7 @@ from distal.lang.render_options import MODES, RenderOptions
 from distal.lang.runtime_access import executor
 from distal.loading import copy_loaded_from
 from distal.render.views import VIEWS
+from distal.scene.groups import Group
 from distal.scene.lowering.live_film import FilmPass, ShownFilm
 from distal.scene.lowering.local_views import PREFIX, locals_of, view_of_image
 from distal.scene.lowering.local_views import VIEWS as IMAGE_VIEWS
@@ -319,7 +320,7 @@ def viewable(
     time: float = 0.0,
     look: str | None = None,
 ) -> Viewable:
-    """Return the common interface of a scene, a shape or an ``@image``.
+    """Return the common interface of a scene, a shape, a group or an ``@image``.
 
     Args:
         obj: The object to show; a ``Viewable`` is returned unchanged.
@@ -333,7 +334,7 @@ def viewable(
     """
     if isinstance(obj, Viewable):
         return obj
-    picture = checked_picture(obj)
+    picture = checked_picture(Scene(obj) if isinstance(obj, Group) else obj)
     if isinstance(picture, BaseShape):
         return Viewable(picture.name, stage(picture, params, time, look))
     if isinstance(picture, Scene):

@@ -78,7 +78,7 @@ def width_of(link: Link) -> float:
     if link.join.rule is UNION:
         return 0.0
     width = UNION_BLENDS[link.join.rule].width  # type: ignore[index]  # a union is an operator
-    size = link.join.numbers["k"].plain
+    size = link.join.numbers["smooth"].plain
     assert width is not None and isinstance(size, float | int)
     return width * float(size)
 

@@ -61,8 +61,8 @@ class Joins:
                     self._functions.append((join.rule.combine, choices))  # type: ignore[union-attr, arg-type]
                 rule_of[id(join)] = known[key]
             self._rule[i] = rule_of[id(join)]
-            if "k" in join.numbers:
-                self._sizes[i] = float(join.numbers["k"].plain)  # type: ignore[arg-type]
+            if "smooth" in join.numbers:
+                self._sizes[i] = float(join.numbers["smooth"].plain)  # type: ignore[arg-type]
 
     def joined(self, before: Floats, member: NDArray[np.int32], d: Floats) -> Floats:
         """Return the distances of unions.
@@ -79,7 +79,7 @@ class Joins:
             if len(chosen):
                 given: dict[str, Any] = {"a": before[chosen], "b": d[chosen], **choices}
                 if function is not UNION.combine:
-                    given["k"] = self._sizes[member[chosen]]
+                    given["smooth"] = self._sizes[member[chosen]]
                 found[chosen] = executor().call(function, (), given, device="reference")
         return found
 

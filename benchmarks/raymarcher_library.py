@@ -60,11 +60,13 @@ def blob(p: vec3, time: float) -> float:
 
 @func
 def floor(p: vec3) -> float:
+    """The floor."""
     return plane(p, -0.5)
 
 
 @func
 def scene(p: vec3, time: float) -> float:
+    """Both shapes and the floor."""
     return min(blob(p, time), floor(p))
 
 
@@ -104,11 +106,13 @@ def camera(uv: vec2, time: float) -> Ray:
     """A camera that circles the origin."""
     angle = 0.4 * time
     eye = vec3(3.0 * cos(angle), 0.8 + 0.2 * sin(0.3 * time), 3.0 * sin(angle))
-    return look_at(uv, eye, vec3(0.0), vec3(0.0, 1.0, 0.0), fov=2.0 * atan(1.0 / 1.6), mirror=True)
+    fov = 2.0 * atan(1.0 / 1.6)
+    return look_at(uv, eye, vec3(0.0), vec3(0.0, 1.0, 0.0), fov=fov, mirrored=True)
 
 
 @image
 def picture(frame: Frame) -> vec4:
+    """The picture."""
     time = frame.time
     uv = (2.0 * frame.coord - frame.resolution) / frame.resolution.y
     bounds = Bounds(-EVERYWHERE, EVERYWHERE)

@@ -1,0 +1,216 @@
+"""Groups: shapes, lights and cameras that are placed together.
+
+Input: the author's objects, other groups and scenes. Output: a group, which is placed, added to
+others and given to a scene. Does not depend on how a scene is drawn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Final, NoReturn, Self, TypeAlias
+
+from distal.fields.guarantees import Operator
+from distal.lang.presentable import Presentable
+from distal.lang.runtime_access import viewing
+from distal.lang.source_places import author_place
+from distal.scene.objects.cameras import BaseCamera
+from distal.scene.objects.lights import Light
+from distal.scene.objects.movable import MovableSolid
+from distal.scene.objects.shape import Shape, Shape2D
+from distal.scene.scene_values import SceneValue
+from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.value import AuthorObject
+
+if TYPE_CHECKING:
+    from distal.diagnostics import Span
+    from distal.images.picture import Picture
+    from distal.scene.objects.argument_types import Painted, ParameterValues
+    from distal.scene.scene import Scene
+
+    # What a scene shows.
+    Solid: TypeAlias = "Shape | Group | Scene"
+    Part: TypeAlias = "Shape | Light | BaseCamera | Group | Scene"
+
+_HINT: Final = "group(Sphere(), PointLight((2, 3, 4)), Camera())"
+
+
+class Group(MovableSolid, AuthorObject, Presentable):
+    """Shapes, lights and cameras together, made by ``group``.
+
+    A group never changes; its methods place all of it and return another group.
+
+    Attributes:
+        parts: What it was made of, in order.
+    """
+
+    __slots__ = ("parts",)
+
+    parts: tuple[Part, ...]
+
+    def __init__(self, *parts: Part | Iterable[Part]) -> None:
+        listed = parts
+        if len(parts) == 1 and isinstance(parts[0], Iterable) and not isinstance(parts[0], str):
+            listed = tuple(parts[0])
+        place = author_place()
+        if not listed:
+            refuse("a group has at least one part", _HINT, place)
+        for part in listed:
+            _check_part(part, place)
+        object.__setattr__(self, "parts", listed)
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise AttributeError("a group does not change; make another")
+
+    def __repr__(self) -> str:
+        kinds = {"shape": Shape, "light": Light, "camera": BaseCamera}
+        found = {noun: [*self._all(kind)] for noun, kind in kinds.items()}
+        counts = [f"{len(n)} {noun}{'s' * (len(n) > 1)}" for noun, n in found.items() if n]
+        return f"<group of {', '.join(counts) or 'nothing'}>"
+
+    @property
+    def arguments(self) -> Mapping[str, Any]:
+        """The arguments by name."""
+        return MappingProxyType({"parts": self.parts})
+
+    def replace(self, **changes: Any) -> Self:
+        """Return a group of other parts: ``lamp.replace(parts=(*lamp.parts, bulb))``.
+
+        Args:
+            changes: ``parts``.
+
+        Raises:
+            SceneTypeError: Another argument is given, or a part is none.
+        """
+        for name in changes:
+            if name != "parts":
+                refuse_kind(f"a group has no '{name}'", "parts=(…)", author_place())
+        return type(self)(*changes.get("parts", self.parts))
+
+    # What is in it
+
+    @property
+    def shape(self) -> Shape | None:
+        """The union of all shapes, those of groups and scenes in it too; None without shapes."""
+        shapes: list[Shape] = [*self._all(Shape)]
+        if len(shapes) < 2:
+            return shapes[0] if shapes else None
+        return shapes[0].union(*shapes[1:])
+
+    @property
+    def lights(self) -> tuple[Light, ...]:
+        """All lights; of scenes those that their authors gave them."""
+        return tuple(self._all(Light))
+
+    @property
+    def cameras(self) -> tuple[BaseCamera, ...]:
+        """All cameras but those of scenes."""
+        return tuple(self._all(BaseCamera))
+
+    def _all(self, kind: type[Any] | tuple[type[Any], ...]) -> Iterator[Any]:
+        for part in self.parts:
+            if isinstance(part, kind):
+                yield part
+            elif isinstance(part, Group):
+                yield from part._all(kind)
+            elif isinstance(part, SceneValue) and kind is not BaseCamera:
+                yield from _contents(part)._all(kind)
+
+    # Groups of others
+
+    def _with(self, operator: Operator, *args: Any, **kwargs: Any) -> Self:
+        return self._each(lambda part: part._with(operator, *args, **kwargs))
+
+    def _each(self, change: Callable[[Any], Any]) -> Self:
+        """Return the group of changed parts; a scene becomes the group of its contents."""
+        parts = (_contents(p) if isinstance(p, SceneValue) else p for p in self.parts)
+        return type(self)(*map(change, parts))
+
+    def paint(self, material: Painted, *, priority: int = 0) -> Self:
+        """Set the material of all shapes, as ``paint`` of a shape.
+
+        Args:
+            material: A material, a color, a pattern.
+            priority: A whole number; see ``paint`` of a shape.
+        """
+
+        def painted(part: Any) -> Any:
+            if isinstance(part, Light | BaseCamera):
+                return part
+            return part.paint(material, priority=priority)
+
+        return self._each(painted)
+
+    def __or__(self, other: Part) -> Group:
+        return Group(self, other) if isinstance(other, _PARTS) else NotImplemented
+
+    def __ror__(self, other: Part) -> Group:
+        return Group(other, self) if isinstance(other, _PARTS) else NotImplemented
+
+    # Pictures
+
+    def render(
+        self,
+        size: tuple[int, int] = (640, 480),
+        time: float = 0.0,
+        params: ParameterValues | None = None,
+        device: str = "cpu",
+        *,
+        samples: int | None = None,
+        mode: str | None = None,
+        view: str = "color",
+    ) -> Picture:
+        """Render the picture of ``Scene(group)``, whose ``render`` has more options.
+
+        Args:
+            size: Width and height in pixels.
+            time: Time in seconds.
+            params: Values of parameters by name; the others have their defaults.
+            device: The device to render on, as for ``Scene.render``.
+            samples: Samples in each pixel, as for ``Scene.render``.
+            mode: How light is computed: "direct" or "path"; None: directly.
+            view: What to show, as for ``Scene.render``.
+
+        Raises:
+            CompileError: The scene code has mistakes, or there is no shape.
+            DeviceError: The device is missing or was lost.
+        """
+        scene = viewing.viewable(self).scene
+        assert scene is not None
+        return scene.render(size, time, params, device, samples=samples, mode=mode, view=view)
+
+
+_PARTS: Final = (Shape, Light, BaseCamera, Group, SceneValue)
+
+
+def group(*parts: Part | Iterable[Part]) -> Group:
+    """Group shapes, lights and cameras, which are then placed together.
+
+    ``Scene(group(lamp, light).translate(0, 2, 0))``: positions and directions of lights and cameras
+    move as the shapes do; a scale changes sizes and distances, and no intensity. Groups are grouped
+    and added by ``|``, also to shapes. A scene is grouped without its camera and its look.
+
+    Args:
+        parts: Shapes, lights, cameras, groups and scenes, or one list of them.
+
+    Raises:
+        SceneTypeError: A part is something else.
+        SceneValueError: There is no part, or a shape is flat.
+    """
+    return Group(*parts)
+
+
+def _contents(scene: SceneValue) -> Group:
+    """Return what a scene brings along: its shapes, and the lights that its author gave it."""
+    given = scene.arguments
+    inside = Group(given["shape"], *(given["lights"] or ()))
+    return Group(*inside._all((Shape, Light)))
+
+
+def _check_part(part: Any, place: Span | None) -> None:
+    if isinstance(part, Shape2D):
+        hint = "make it solid: .extrude(height) or .revolve()"
+        refuse(f"'{part.name}' is a flat shape; a group is of solids", hint, place)
+    if not isinstance(part, _PARTS):
+        kind = f"the class {part.__name__}" if isinstance(part, type) else f"{part!r:.60}"
+        refuse_kind(f"a group is of shapes, lights and cameras, not {kind}", _HINT, place)
