@@ -11,6 +11,9 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, NoReturn, Self, TypeAlias
 
 from distal.fields.guarantees import Operator
+from distal.lang.immutable import Immutable
+from distal.lang.lazy_module import LazyModule
+from distal.lang.option_methods import RenderedShape
 from distal.lang.presentable import Presentable
 from distal.lang.runtime_access import viewing
 from distal.lang.source_places import author_place
@@ -25,17 +28,22 @@ from distal.scene.tree.value import AuthorObject
 if TYPE_CHECKING:
     from distal.diagnostics import Span
     from distal.images.picture import Picture
-    from distal.scene.objects.argument_types import Painted, ParameterValues
+    from distal.lang.render_options import RenderOptions
+    from distal.scene.objects import shape_rows
+    from distal.scene.objects.argument_types import Painted
     from distal.scene.scene import Scene
+    from distal.scene.tree.texts import TextWriter
 
     # What a scene shows.
     Solid: TypeAlias = "Shape | Group | Scene"
     Part: TypeAlias = "Shape | Light | BaseCamera | Group | Scene"
+else:
+    shape_rows = LazyModule("distal.scene.objects.shape_rows")
 
 _HINT: Final = "group(Sphere(), PointLight((2, 3, 4)), Camera())"
 
 
-class Group(MovableSolid, AuthorObject, Presentable):
+class Group(RenderedShape, MovableSolid, AuthorObject, Immutable, Presentable):
     """Shapes, lights and cameras together, made by ``group``.
 
     A group never changes; its methods place all of it and return another group.
@@ -44,7 +52,7 @@ class Group(MovableSolid, AuthorObject, Presentable):
         parts: What it was made of, in order.
     """
 
-    __slots__ = ("parts",)
+    __slots__ = ("_kept_digest", "parts")
 
     parts: tuple[Part, ...]
 
@@ -62,30 +70,26 @@ class Group(MovableSolid, AuthorObject, Presentable):
     def __setattr__(self, name: str, value: object) -> NoReturn:
         raise AttributeError("a group does not change; make another")
 
-    def __repr__(self) -> str:
-        kinds = {"shape": Shape, "light": Light, "camera": BaseCamera}
-        found = {noun: [*self._all(kind)] for noun, kind in kinds.items()}
-        counts = [f"{len(n)} {noun}{'s' * (len(n) > 1)}" for noun, n in found.items() if n]
-        return f"<group of {', '.join(counts) or 'nothing'}>"
-
     @property
     def arguments(self) -> Mapping[str, Any]:
         """The arguments by name."""
         return MappingProxyType({"parts": self.parts})
 
-    def replace(self, **changes: Any) -> Self:
-        """Return a group of other parts: ``lamp.replace(parts=(*lamp.parts, bulb))``.
-
-        Args:
-            changes: ``parts``.
-
-        Raises:
-            SceneTypeError: Another argument is given, or a part is none.
-        """
+    def _replaced(self, changes: dict[str, Any]) -> Self:
+        """Return a group of other parts: ``lamp.replace(parts=(*lamp.parts, bulb))``."""
         for name in changes:
             if name != "parts":
                 refuse_kind(f"a group has no '{name}'", "parts=(…)", author_place())
         return type(self)(*changes.get("parts", self.parts))
+
+    def _written(self, writer: TextWriter) -> str:
+        return f"group({writer.several(self.parts, ', ')})"
+
+    def _compared(self) -> tuple[Any, ...]:
+        return "group", self.parts
+
+    def _pickled(self) -> Any:
+        return _group_of, (type(self), shape_rows.packed(self.parts))
 
     # What is in it
 
@@ -149,35 +153,11 @@ class Group(MovableSolid, AuthorObject, Presentable):
 
     # Pictures
 
-    def render(
-        self,
-        size: tuple[int, int] = (640, 480),
-        time: float = 0.0,
-        params: ParameterValues | None = None,
-        device: str = "cpu",
-        *,
-        samples: int | None = None,
-        mode: str | None = None,
-        view: str = "color",
-    ) -> Picture:
-        """Render the picture of ``Scene(group)``, whose ``render`` has more options.
-
-        Args:
-            size: Width and height in pixels.
-            time: Time in seconds.
-            params: Values of parameters by name; the others have their defaults.
-            device: The device to render on, as for ``Scene.render``.
-            samples: Samples in each pixel, as for ``Scene.render``.
-            mode: How light is computed: "direct" or "path"; None: directly.
-            view: What to show, as for ``Scene.render``.
-
-        Raises:
-            CompileError: The scene code has mistakes, or there is no shape.
-            DeviceError: The device is missing or was lost.
-        """
+    def _rendered(self, options: RenderOptions) -> Picture:
+        """Render the picture of ``Scene(group)``."""
         scene = viewing.viewable(self).scene
         assert scene is not None
-        return scene.render(size, time, params, device, samples=samples, mode=mode, view=view)
+        return scene._rendered(options)
 
 
 _PARTS: Final = (Shape, Light, BaseCamera, Group, SceneValue)
@@ -198,6 +178,11 @@ def group(*parts: Part | Iterable[Part]) -> Group:
         SceneValueError: There is no part, or a shape is flat.
     """
     return Group(*parts)
+
+
+def _group_of(kind: type[Group], packed: shape_rows.PackedShapes) -> Group:
+    """Return a group from a pickle."""
+    return kind(*shape_rows.unpacked(packed))
 
 
 def _contents(scene: SceneValue) -> Group:
