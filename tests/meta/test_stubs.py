@@ -243,7 +243,10 @@ UNTYPED = {
     "Picture.with_provenance": "the fields of a dataclass",
     "Composed.compose": "the compiler's own",
     **dict.fromkeys(
-        (f"{made}.replace" for made in ("AuthorObject", "CalledValue", "Look", "Material")),
+        (
+            f"{made}.replace"
+            for made in ("AuthorObject", "CalledValue", "Curve", "Look", "Material")
+        ),
         "each object takes arguments of its own",
     ),
     **dict.fromkeys(("SceneValue.replace", "ShapeValue.replace"), "as those of the object"),
