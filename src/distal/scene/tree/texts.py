@@ -12,7 +12,6 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final
 
-from distal.lang.expressions import Expression
 from distal.lang.parameters import Parameter
 from distal.lang.values import VectorValue
 
@@ -55,7 +54,7 @@ class TextWriter:
             items = self._joined(value, self.text)
             comma = "," if isinstance(value, tuple) and len(value) == 1 else ""
             return f"[{items}]" if isinstance(value, list) else f"({items}{comma})"
-        if isinstance(value, Parameter | Expression | VectorValue):
+        if isinstance(value, Parameter | VectorValue):
             return repr(value)
         return _in_brackets(value)
 
@@ -70,9 +69,9 @@ class TextWriter:
         """
         name = function if isinstance(function, str) else _name_of(function)
         by_name = not name.startswith(".") and not hasattr(function, "by_position")
-        given = [f"{n}={self.text(v)}" if by_name else self.text(v) for n, v in arguments.items()]
-        receiver = given.pop(0) if name.startswith(".") else ""
-        return f"{receiver}{name}({', '.join(given)})"
+        texts = [f"{n}={self.text(v)}" if by_name else self.text(v) for n, v in arguments.items()]
+        receiver = texts.pop(0) if name.startswith(".") else ""
+        return f"{receiver}{name}({', '.join(texts)})"
 
     def several(self, values: Sequence[Any], separator: str) -> str:
         """Return the texts of values, those in the middle left out if there are many."""
@@ -123,6 +122,6 @@ def _in_brackets(value: Any) -> str:
     if hasattr(value, "shape") and hasattr(value, "dtype"):
         return f"<array {tuple(value.shape)}>"
     text = repr(value)
-    if len(text) > _MOST_LETTERS:
+    if len(text) > _MOST_LETTERS or "\n" in text:
         text = f"{type(value).__name__} of {len(text)} letters"
     return text if text.startswith("<") else f"<{text}>"
