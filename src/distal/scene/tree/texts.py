@@ -1,8 +1,8 @@
 """Objects as text that evaluates to an equal object, for ``repr``: ``Sphere(radius=2.0)``.
 
 Input: the objects' arguments. Output: Python code in terms of the names of ``distal`` and
-``distal.lang``. What has no such text (a ``@func``, an array, an expression of parameters) stands
-in angle brackets, and so does what is left out of a long text; such a text does not evaluate.
+``distal.lang``. What has no such text (a ``@func``, an array, a long expression) stands in angle
+brackets, and so does what is left out of a long text; such a text does not evaluate.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final
 
+from distal.lang.expressions import Expression
 from distal.lang.parameters import Parameter
 from distal.lang.values import VectorValue
 
@@ -55,6 +56,8 @@ class TextWriter:
             comma = "," if isinstance(value, tuple) and len(value) == 1 else ""
             return f"[{items}]" if isinstance(value, list) else f"({items}{comma})"
         if isinstance(value, Parameter | VectorValue):
+            return repr(value)
+        if isinstance(value, Expression) and not repr(value).startswith("<"):
             return repr(value)
         return _in_brackets(value)
 
