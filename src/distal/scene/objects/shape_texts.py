@@ -31,7 +31,7 @@ def text_of_shape(shape: Any, writer: TextWriter) -> str:
         steps.append(_applied(shape, writer))
         (shape,) = children
     first = _first(shape, writer)
-    if first.startswith("(") and not steps and writer.depth == 1:
+    if not steps and writer.depth == 1 and _has_sign(shape) and first.startswith("("):
         first = first[1:-1]
     return "".join([first, *shortened(steps[::-1], str, "operators")])
 
@@ -47,6 +47,10 @@ def _dressed(shape: Any, writer: TextWriter) -> list[str]:
     if node.label != label:
         calls.append(f".named({writer.text(node.label)})")
     return calls
+
+
+def _has_sign(shape: Any) -> bool:
+    return shape.operator in _SIGNS and not shape.arguments
 
 
 def _applied(shape: Any, writer: TextWriter) -> str:
@@ -69,7 +73,7 @@ def _first(shape: Any, writer: TextWriter) -> str:
     if not children or name not in OPERATORS or writer.shapes_left < 0:
         count = f" of {len(children)} shapes" if children else ""
         return f"<{shape.node.rule.name}{count}>"
-    if name in _SIGNS and not shape.arguments:
+    if _has_sign(shape):
         return f"({writer.several(children, f' {_SIGNS[name]} ')})"
     first, *others = children
     numbers = "".join(f", {n}={writer.text(v)}" for n, v in shape.arguments.items())
