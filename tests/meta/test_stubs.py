@@ -245,7 +245,7 @@ UNTYPED = {
     **dict.fromkeys(
         (
             f"{made}.replace"
-            for made in ("AuthorObject", "CalledValue", "Group", "Look", "Material")
+            for made in ("AuthorObject",)
         ),
         "each object takes arguments of its own",
     ),

@@ -18,6 +18,7 @@ from distal import (
     Shape,
     Sky,
     Sphere,
+    cell,
     checker,
     copies,
     glass,
@@ -58,13 +59,14 @@ def test_shapes_say_how_they_are_made():
             ".paint(matte(color=(1.0, 0.0, 0.0)))"
         ),
         Sphere(slider("Size", 1.0, 0.5, 2.0)): "Sphere(radius=slider('Size', 1.0, 0.5, 2.0))",
+        Circle(1.0 + time): "Circle(radius=1.0 + time)",
         Bolt("M6", 25.0): "Bolt(size='M6', length=25.0)",
     }.items():
         assert repr(shape) == text
 
 
 def test_what_has_no_text_says_what_it_is():
-    assert repr(Circle(1.0 + time)).startswith("Circle(radius=<expression float: ")
+    assert repr(Circle(1.0 + 0.1 * cell.x)).startswith("Circle(radius=<expression float: ")
     assert repr(Shape.from_function(ball, r=2.0)) == (
         "Shape.from_function(function=<func ball>, r=2.0)"
     )

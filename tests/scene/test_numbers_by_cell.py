@@ -314,7 +314,7 @@ def test_values_that_are_not_known_in_python():
     with pytest.raises(ValueError, match="from 0 to 1000000, not -1"):
         random_by_cell(seed=-1)
     assert not isinstance(cell, Parameter)
-    assert "by cell" in repr(Sphere(0.3 + 0.1 * cell.x).repeat(2.0, count=(2, 1, 1)))
+    assert "<expression float: " in repr(Sphere(0.3 + 0.1 * cell.x).repeat(2.0, count=(2, 1, 1)))
 
 
 def test_blends_edges_and_counts_of_cells():

@@ -251,5 +251,5 @@ def test_what_is_wrong_is_said_at_its_line(make, message, hint):
 
 
 def test_what_depends_on_the_place_says_so():
-    assert "radius=by place" in repr(Sphere(WIDE))
+    assert "place.point" in repr(Sphere(WIDE))
     assert Camera is not None and not Sphere(WIDE).exact

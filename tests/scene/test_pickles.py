@@ -351,6 +351,7 @@ LEAVES = st.one_of(
     st.builds(Sphere, LENGTHS),
     st.builds(Box, LENGTHS, LENGTHS, LENGTHS),
     st.builds(lambda r: Sphere(slider("Größe", r, 0.05, 4.0)), LENGTHS),
+    st.builds(lambda r: Sphere(0.5 * slider("Größe", r, 0.05, 4.0) + time), LENGTHS),
     st.builds(lambda r, h: Circle(r).extrude(h), LENGTHS, LENGTHS),
     st.builds(lambda h: Bolt("M3", 5.0 + h), LENGTHS),
 )

@@ -53,7 +53,7 @@ def evaluated(value):
     return value if re.search("<[^|]", text) else eval(text, {"__builtins__": __builtins__}, NAMES)
 
 
-NAMES = {**vars(distal.lang), **{name: getattr(distal, name) for name in distal.__all__}}
+NAMES = {**vars(distal.lang), **{n: getattr(distal, n) for n in (*distal.__all__, "time")}}
 
 
 def field_of(shape):

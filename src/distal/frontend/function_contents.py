@@ -48,10 +48,10 @@ def contents_of(overload: Overload) -> FunctionContents:
     Raises:
         CompileError: The source text is not available.
     """
-    found = _contents.get(overload)
-    if found is None:
-        found = _contents.setdefault(overload, _read(overload))
-    return found
+    contents = _contents.get(overload)
+    if contents is None:
+        contents = _contents.setdefault(overload, _read(overload))
+    return contents
 
 
 def _read(overload: Overload) -> FunctionContents:
@@ -80,16 +80,16 @@ def values_read(overload: Overload) -> dict[str, Any]:
     """
     contents, python = contents_of(overload), overload.python
     cells = dict(zip(python.__code__.co_freevars, python.__closure__ or (), strict=True))
-    found = {}
+    values = {}
     for name in sorted(contents.names | contents.in_annotations):
         if name in cells:
             with suppress(ValueError):  # it has no value yet
-                found[name] = cells[name].cell_contents
+                values[name] = cells[name].cell_contents
         elif name in contents.in_annotations and name in overload.enclosing:
-            found[name] = overload.enclosing[name]
+            values[name] = overload.enclosing[name]
         elif name in python.__globals__:
-            found[name] = python.__globals__[name]
-    return found
+            values[name] = python.__globals__[name]
+    return values
 
 
 def attributes_read(overload: Overload, name: str, module: ModuleType) -> dict[str, Any]:
@@ -100,12 +100,12 @@ def attributes_read(overload: Overload, name: str, module: ModuleType) -> dict[s
 
 def _code_names(code: CodeType) -> set[str]:
     """Return the names of a code object and of those in it that are not its own variables."""
-    found, waiting = set(code.co_freevars), [code]
+    names, waiting = set(code.co_freevars), [code]
     while waiting:
         each = waiting.pop()
-        found.update(each.co_names)
+        names.update(each.co_names)
         waiting.extend(c for c in each.co_consts if isinstance(c, CodeType))
-    return found
+    return names
 
 
 def _annotation_names(node: ast.FunctionDef) -> frozenset[str]:
@@ -119,15 +119,15 @@ def _annotation_names(node: ast.FunctionDef) -> frozenset[str]:
                 waiting.append(each.annotation)
             case _:
                 pass
-    found: set[str] = set()
+    names: set[str] = set()
     while waiting:
         annotation = waiting.pop()
         for each in ast.walk(annotation) if annotation is not None else ():
             if isinstance(each, ast.Name):
-                found.add(each.id)
+                names.add(each.id)
             elif isinstance(each, ast.Constant) and isinstance(each.value, str):
                 try:
                     waiting.append(parse(each.value, mode="eval"))
                 except (SyntaxError, ValueError):
                     continue  # it is no annotation: the compiler says so
-    return frozenset(found)
+    return frozenset(names)

@@ -19,10 +19,14 @@ from distal.ir.printer import print_expression
 from distal.ir.types import FLOAT, Type, Vector
 from distal.ir.walk import nodes_in
 from distal.lang.immutable import Immutable
+from distal.lang.lazy_module import LazyModule
 from distal.lang.runtime_access import executor, python_expressions
 
 if TYPE_CHECKING:
+    from distal.lang import expression_text
     from distal.lang.parameters import Parameter
+else:
+    expression_text = LazyModule("distal.lang.expression_text")
 
 _RANGE: Final = "range takes a plain int; a live count: shape.shown(i < n) for i in range(8)"
 _LANES: Final = {"r": "x", "g": "y", "b": "z", "a": "w", **{c: c for c in "xyzw"}}
@@ -263,7 +267,9 @@ class Expression(Symbolic):
         return Expression, (self.node, self.parameters)
 
     def __repr__(self) -> str:
-        return f"<expression {self.type}: {print_expression(self.node)}>"
+        """Return the code that makes it; what it computes, in brackets, if there is none."""
+        text = expression_text.expression_text(self.node, self.parameters)
+        return text or f"<expression {self.type}: {print_expression(self.node)}>"
 
 
 def uniform_of(parameter: Parameter) -> Expression:

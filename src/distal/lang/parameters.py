@@ -82,21 +82,21 @@ class Parameter(Symbolic):
 
     def __repr__(self) -> str:
         """Return the call that declares it, without what it has by default."""
-        given = [repr(self.label)]
+        texts = [repr(self.label)]
         if self.kind is ParameterKind.CHOICE and isinstance(self.default, int):
-            given += [repr(list(self.options)), repr(self.options[self.default])]
+            texts += [repr(list(self.options)), repr(self.options[self.default])]
         else:
-            given.append(repr(self.default))
+            texts.append(repr(self.default))
         if self.kind in (ParameterKind.SLIDER, ParameterKind.INTEGER):
-            given += [repr(self.low), repr(self.high)]
+            texts += [repr(self.low), repr(self.high)]
             if self.step != (1 if self.kind is ParameterKind.INTEGER else None):
-                given.append(repr(self.step))
+                texts.append(repr(self.step))
         for name in ("log", "group", "help"):
             if value := getattr(self, name):
-                given.append(f"{name}={value!r}")
+                texts.append(f"{name}={value!r}")
         if self.name != _usual_name(self.label):
-            given.append(f"name={self.name!r}")
-        return f"{self.kind.value}({', '.join(given)})"
+            texts.append(f"name={self.name!r}")
+        return f"{self.kind.value}({', '.join(texts)})"
 
     def as_expression(self) -> Expression:
         """Return its value as an expression."""

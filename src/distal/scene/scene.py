@@ -300,7 +300,7 @@ class Scene(RenderedScene, SceneValue, Composed, Presentable):
     # The kernel is compiled once: a later change would have no effect.
 
     def __setattr__(self, name: str, value: object) -> None:
-        if "_whole" in self.__dict__ and name != "_kept_digest":
+        if "_whole" in self.__dict__:
             raise AttributeError("a scene does not change; make another: Scene(shape, …)")
         object.__setattr__(self, name, value)
 

@@ -8,7 +8,9 @@ import math
 import numpy as np
 import pytest
 
+from distal import lang
 from distal.lang import (
+    atan2,
     clamp,
     color,
     func,
@@ -19,12 +21,14 @@ from distal.lang import (
     mix,
     normalize,
     point,
+    select,
     slider,
     toggle,
     vec2,
     vec3,
 )
 from distal.lang.expressions import UFUNCS, Expression, time
+from distal.lang.places import cell
 
 size = slider("Size", 0.25, 0.0, 2.0)
 tint = color("Tint", (1.0, 0.5, 0.25))
@@ -194,4 +198,46 @@ def test_scene_code_captures_expressions() -> None:
 
 
 def test_it_tells_what_it_is() -> None:
-    assert repr(np.cos(time) * 2) == "<expression float: (mul (cos @frame.time) 2.0)>"
+    assert repr(np.cos(time) * 2) == "cos(time) * 2.0"
+
+
+SIZE = slider("Size", 1.0, 0.5, 2.0)
+COUNT = integer("Count", 3, 1, 8)
+COLOR = color("Color")
+PLACE = point("Place", (0.0, 0.0, 0.0))
+LID = toggle("Lid")
+MADE = [
+    time,
+    1.0 - 2.0 * SIZE,
+    (SIZE + 1.0) * (SIZE - 1.0) / (2.0 - time),
+    SIZE**3 - SIZE**0.5,
+    -(SIZE * -1.0) % 0.75,
+    SIZE - (-1.5e-7),
+    COUNT / 2,
+    (COUNT + 1) // 2,
+    np.sin(time) * max(SIZE, 0.5),
+    vec3(SIZE, 0.0, 1.0) * COLOR.rgb,
+    vec3(SIZE),
+    0.5 * COLOR,
+    (PLACE.xy * 2.0).x,
+    length(PLACE - vec3(SIZE)),
+    normalize(PLACE + vec3(1.0)),
+    select(LID & (SIZE < 1.0), 1.0, SIZE),
+    select(LID, vec3(SIZE), COLOR),
+    ~LID | (COUNT >= 3),
+    atan2(SIZE, time),
+]
+
+
+@pytest.mark.parametrize("expression", MADE, ids=repr)
+def test_its_text_is_code_that_makes_it(expression) -> None:
+    again = eval(repr(expression), {}, {**vars(lang), "time": time})
+    assert again == expression and hash(again) == hash(expression)
+
+
+def test_what_is_too_long_says_what_it_computes() -> None:
+    total = SIZE
+    for step in range(40):
+        total = total * (SIZE + float(step))
+    assert repr(total).startswith("<expression float: ")
+    assert repr(cell.x + SIZE).startswith("<expression float: ")

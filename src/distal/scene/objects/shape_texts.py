@@ -31,7 +31,7 @@ def text_of_shape(shape: Any, writer: TextWriter) -> str:
         steps.append(_applied(shape, writer))
         (shape,) = children
     first = _first(shape, writer)
-    if first.startswith("(") and not steps and writer.depth == 1:
+    if not steps and writer.depth == 1 and _has_sign(shape) and first.startswith("("):
         first = first[1:-1]
     return "".join([first, *shortened(steps[::-1], str, "operators")])
 
@@ -39,14 +39,18 @@ def text_of_shape(shape: Any, writer: TextWriter) -> str:
 def _dressed(shape: Any, writer: TextWriter) -> list[str]:
     """Return the calls that give a shape the materials and the name that it was not made with."""
     node, (label, material, cut_material) = shape.node, shape._made_with
-    found = []
+    calls = []
     if node.material is not material and node.material is not None:
-        found.append(f".paint({writer.text(node.material)})")
+        calls.append(f".paint({writer.text(node.material)})")
     if node.cut_material is not cut_material and node.cut_material is not None:
-        found.append(f".cut_material({writer.text(node.cut_material)})")
+        calls.append(f".cut_material({writer.text(node.cut_material)})")
     if node.label != label:
-        found.append(f".named({writer.text(node.label)})")
-    return found
+        calls.append(f".named({writer.text(node.label)})")
+    return calls
+
+
+def _has_sign(shape: Any) -> bool:
+    return shape.operator in _SIGNS and not shape.arguments
 
 
 def _applied(shape: Any, writer: TextWriter) -> str:
@@ -54,8 +58,8 @@ def _applied(shape: Any, writer: TextWriter) -> str:
     name, arguments = shape.operator, shape.arguments
     if name in ("translate", "flat translate"):
         return f".translate({writer.text(arguments['offset'])})"
-    given = "".join(f", {n}={writer.text(v)}" for n, v in arguments.items())
-    return f".apply({name!r}{given})"
+    numbers = "".join(f", {n}={writer.text(v)}" for n, v in arguments.items())
+    return f".apply({name!r}{numbers})"
 
 
 def _first(shape: Any, writer: TextWriter) -> str:
@@ -69,8 +73,9 @@ def _first(shape: Any, writer: TextWriter) -> str:
     if not children or name not in OPERATORS or writer.shapes_left < 0:
         count = f" of {len(children)} shapes" if children else ""
         return f"<{shape.node.rule.name}{count}>"
-    if name in _SIGNS and not shape.arguments:
+    if _has_sign(shape):
         return f"({writer.several(children, f' {_SIGNS[name]} ')})"
     first, *others = children
-    given = "".join(f", {n}={writer.text(v)}" for n, v in shape.arguments.items())
-    return f"{writer.text(first)}.apply({name!r}, others=[{writer.several(others, ', ')}]{given})"
+    numbers = "".join(f", {n}={writer.text(v)}" for n, v in shape.arguments.items())
+    listed = writer.several(others, ", ")
+    return f"{writer.text(first)}.apply({name!r}, others=[{listed}]{numbers})"

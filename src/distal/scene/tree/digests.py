@@ -57,8 +57,8 @@ def digest_of_node(root: Node) -> bytes:
             continue
         waiting.pop()
         node.derived("digest", lambda node=node: digest.of("node", *_parts_of(node)))  # type: ignore[misc]
-    found: bytes = root.known("digest")
-    return found
+    whole: bytes = root.known("digest")
+    return whole
 
 
 def digest_of(*values: Any) -> bytes:
@@ -181,14 +181,14 @@ class Digest:
         before, self._outermost = self._outermost, own
         self._in_progress.append(value)
         try:
-            found = digest(value)
+            computed = digest(value)
         finally:
             self._in_progress.pop()
         if self._outermost >= own:
             self._alive.append(value)
-            self._digests[id(value)] = found
+            self._digests[id(value)] = computed
         self._outermost = min(before, self._outermost)
-        return found
+        return computed
 
     def _of_fields(self, value: Any) -> bytes:
         return self.of(*_fields_of(value))

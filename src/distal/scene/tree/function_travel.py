@@ -55,18 +55,18 @@ def _is_importable(value: Any) -> bool:
     module: Any = sys.modules.get(value.__name__ if is_module else value.__module__)
     if module is None or module.__name__ == "__main__" or getattr(module, "__spec__", None) is None:
         return False
-    found = module
+    named = module
     for part in () if is_module else value.__qualname__.split("."):
-        found = getattr(found, part, None)
-    return found is value
+        named = getattr(named, part, None)
+    return named is value
 
 
 def _function_of_digest(kind: type[Func], digest: bytes, stamp: str) -> Func:
     check_stamp(stamp)
-    found = _functions.get(digest)
-    if found is None:
-        found = _functions.setdefault(digest, kind.__new__(kind))
-    return found
+    function = _functions.get(digest)
+    if function is None:
+        function = _functions.setdefault(digest, kind.__new__(kind))
+    return function
 
 
 # Writing
@@ -167,15 +167,15 @@ def _names_of_annotations(cls: Any) -> dict[str, Any]:
     texts = [a for a in cls.__annotations__.values() if isinstance(a, str)]
     nodes = (node for text in texts for node in ast.walk(ast.parse(text, mode="eval")))
     names = {node.id for node in nodes if isinstance(node, ast.Name)}
-    known = {**spaces.module, **spaces.enclosing}
-    return {name: _packed(known[name]) for name in sorted(names) if name in known}
+    values = {**spaces.module, **spaces.enclosing}
+    return {name: _packed(values[name]) for name in sorted(names) if name in values}
 
 
 def _methods_of(cls: type) -> list[tuple[str, Func, bool]]:
     """Return the scene functions of a struct: their names, and whether they are static."""
-    found = [(name, m.func, False) for name, m in vars(cls).items() if isinstance(m, Method)]
+    bound = [(name, m.func, False) for name, m in vars(cls).items() if isinstance(m, Method)]
     static = [(name, m) for name, m in vars(cls).items() if isinstance(m, staticmethod)]
-    return [*found, *((n, m.__func__, True) for n, m in static if isinstance(m.__func__, Func))]
+    return [*bound, *((n, m.__func__, True) for n, m in static if isinstance(m.__func__, Func))]
 
 
 # Reading
@@ -185,9 +185,9 @@ def _complete(function: Func, state: Mapping[str, Any]) -> None:
     """Give a function what it consists of; it may be a part of that."""
     if "overloads" in function.__dict__:
         return
-    made = {name: value for name, value in state.items() if name != "overloads"}
+    names = {name: value for name, value in state.items() if name != "overloads"}
     overloads = [_overload_of(row, state) for row in state["overloads"]]
-    function.__dict__.update(made, __wrapped__=overloads[0].python, overloads=overloads)
+    function.__dict__.update(names, __wrapped__=overloads[0].python, overloads=overloads)
 
 
 def _overload_of(row: Mapping[str, Any], state: Mapping[str, Any]) -> Overload:
@@ -218,9 +218,9 @@ def _code_of(source: Source, name: str) -> CodeType:
 def _module_of(name: str, parts: Mapping[str, Any], importable: bool) -> ModuleType:
     if importable:
         return importlib.import_module(name)
-    made = ModuleType(name)
-    made.__dict__.update(parts)
-    return made
+    module = ModuleType(name)
+    module.__dict__.update(parts)
+    return module
 
 
 def _struct_of(
@@ -233,12 +233,12 @@ def _struct_of(
     defaults: Mapping[str, Any],
 ) -> type:
     check_stamp(stamp)
-    found = _structs.get(digest)
-    if found is None:
+    cls = _structs.get(digest)
+    if cls is None:
         body = {"__annotations__": dict(annotations), "__module__": module, **defaults}
-        made = struct(type(name, (), {**body, "__qualname__": qualname}))
-        found = _structs.setdefault(digest, made)
-    return found
+        new = struct(type(name, (), {**body, "__qualname__": qualname}))
+        cls = _structs.setdefault(digest, new)
+    return cls
 
 
 def _adopt(cls: Any, state: tuple[Mapping[str, Any], list[tuple[str, Func, bool]]]) -> None:

@@ -1,8 +1,8 @@
 """Objects as text that evaluates to an equal object, for ``repr``: ``Sphere(radius=2.0)``.
 
 Input: the objects' arguments. Output: Python code in terms of the names of ``distal`` and
-``distal.lang``. What has no such text (a ``@func``, an array, an expression of parameters) stands
-in angle brackets, and so does what is left out of a long text; such a text does not evaluate.
+``distal.lang``. What has no such text (a ``@func``, an array, a long expression) stands in angle
+brackets, and so does what is left out of a long text; such a text does not evaluate.
 """
 
 from __future__ import annotations
@@ -55,7 +55,9 @@ class TextWriter:
             items = self._joined(value, self.text)
             comma = "," if isinstance(value, tuple) and len(value) == 1 else ""
             return f"[{items}]" if isinstance(value, list) else f"({items}{comma})"
-        if isinstance(value, Parameter | Expression | VectorValue):
+        if isinstance(value, Parameter | VectorValue):
+            return repr(value)
+        if isinstance(value, Expression) and not repr(value).startswith("<"):
             return repr(value)
         return _in_brackets(value)
 
@@ -70,9 +72,9 @@ class TextWriter:
         """
         name = function if isinstance(function, str) else _name_of(function)
         by_name = not name.startswith(".") and not hasattr(function, "by_position")
-        given = [f"{n}={self.text(v)}" if by_name else self.text(v) for n, v in arguments.items()]
-        receiver = given.pop(0) if name.startswith(".") else ""
-        return f"{receiver}{name}({', '.join(given)})"
+        texts = [f"{n}={self.text(v)}" if by_name else self.text(v) for n, v in arguments.items()]
+        receiver = texts.pop(0) if name.startswith(".") else ""
+        return f"{receiver}{name}({', '.join(texts)})"
 
     def several(self, values: Sequence[Any], separator: str) -> str:
         """Return the texts of values, those in the middle left out if there are many."""
@@ -123,6 +125,6 @@ def _in_brackets(value: Any) -> str:
     if hasattr(value, "shape") and hasattr(value, "dtype"):
         return f"<array {tuple(value.shape)}>"
     text = repr(value)
-    if len(text) > _MOST_LETTERS:
+    if len(text) > _MOST_LETTERS or "\n" in text:
         text = f"{type(value).__name__} of {len(text)} letters"
     return text if text.startswith("<") else f"<{text}>"

@@ -175,11 +175,11 @@ class AuthorObject:
 
     def _digest(self) -> bytes:
         """Return 16 bytes that equal objects have in common; kept when they are first needed."""
-        found: bytes | None = getattr(self, "_kept_digest", None)
-        if found is None:
-            found = digests.digest_of(*self._compared())
-            object.__setattr__(self, "_kept_digest", found)
-        return found
+        digest: bytes | None = getattr(self, "_kept_digest", None)
+        if digest is None:
+            digest = digests.digest_of(*self._compared())
+            object.__setattr__(self, "_kept_digest", digest)
+        return digest
 
     def _record(self, origin: CallRecord) -> None:
         """Keep the call that made the object."""
