@@ -118,11 +118,11 @@ def of_rows(request: type, method: str, *, positional: bool = False) -> list[Par
     return [
         Parameter(
             row.name,
-            row.option.taken or row.type,
+            row.taken or row.type,
             _written(row.default_of(method)),
-            row.doc(method),
-            positional and row.option.positional,
-            row.name if row.option.taken is None else f"{row.name} or {{}}",
+            row.doc_of(method),
+            positional and row.positional,
+            row.name if row.taken is None else f"{row.name} or {{}}",
         )
         for row in rows(request, method)
     ]

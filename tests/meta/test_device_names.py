@@ -66,7 +66,7 @@ def test_what_authors_call_names_every_device(place):
 
 def test_the_declaration_of_the_options_names_every_device():
     row = next(row for row in rows(RenderOptions) if row.name == "device")
-    assert re.findall(r'"([a-z-]+)"', row.doc("scene")) == list(DEVICE_NAMES)
+    assert re.findall(r'"([a-z-]+)"', row.doc_of("scene")) == list(DEVICE_NAMES)
 
 
 @pytest.mark.parametrize("page", ["command-line.md", "window.md"])

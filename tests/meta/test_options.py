@@ -80,7 +80,7 @@ def test_a_method_has_its_rows_in_signature_and_documentation(method):
     assert documented.keys() == parameters.keys() - {"self"}
     for row in rows(RenderOptions, method):
         assert parameters[row.name].default == row.default_of(method)
-        assert documented[row.name] == row.doc(method)
+        assert documented[row.name] == row.doc_of(method)
 
 
 def test_methods_that_render_have_no_other_options():
@@ -91,11 +91,11 @@ def test_methods_that_render_have_no_other_options():
 
 def test_every_row_is_documented_and_its_methods_exist():
     for row in rows(RenderOptions):
-        assert row.option.doc.endswith(".")
-        assert row.option.methods <= METHODS.keys() | {"window"}  # a command alone
-        others = {*row.option.docs, *row.option.defaults}
-        others |= {*row.option.flag.helps} if row.option.flag else set()
-        assert others <= row.option.methods
+        assert row.doc.endswith(".")
+        assert {*row.methods.split()} <= METHODS.keys() | {"window"}  # a command alone
+        others = {*row.docs, *row.defaults}
+        others |= {*row.flag.helps} if row.flag else set()
+        assert others <= {*row.methods.split()}
 
 
 def test_exports_and_cells_take_the_options_of_what_makes_them():
@@ -144,13 +144,13 @@ def test_an_added_row_is_an_option_of_the_command():
 def test_a_command_shows_the_default_that_it_reads():
     for method in ("scene", "video", "sweep"):
         for row in flags(method):
-            form = FORMS.get(row.option.flag.form)
+            form = FORMS.get(row.flag.form)
             if form is not None and form.written is not None:
                 assert form.read(form.written(row.default_of(method))) == row.default_of(method)
 
 
 def test_every_form_of_a_row_exists_and_is_used():
-    assert {row.option.flag.form for row in flags("scene")} - {None} == FORMS.keys()
+    assert {row.flag.form for row in flags("scene")} - {None} == FORMS.keys()
 
 
 def test_the_switch_that_changes_an_option_is_the_one_that_is_named():

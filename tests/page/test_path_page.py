@@ -95,11 +95,10 @@ def light_of(shown: NDArray[Any]) -> NDArray[np.float64]:
 
 
 def on_cpu(seen: Viewable, samples: int, size: tuple[int, int], **changes: Any) -> NDArray[Any]:
-    steering = changes.pop("steering", None)
     given = RenderOptions(
         size=size, refinement=Refinement(samples=samples), samples=samples, **changes
     )
-    return light_of(seen.render(given, steering=steering).array[..., :3])
+    return light_of(seen.render(given).array[..., :3])
 
 
 def tiles(light: NDArray[Any], side: int = 8) -> NDArray[np.float64]:

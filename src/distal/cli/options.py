@@ -14,7 +14,7 @@ from typing import Annotated, Any, Final, NamedTuple
 import typer
 
 from distal.cli.arguments import UsageError, read_plane, read_size, read_steering, read_time
-from distal.lang.options import OptionRow, rows
+from distal.lang.options import Option, rows
 from distal.lang.render_options import LARGEST_SIDE_PX, RenderOptions
 
 # The options of a request that a command was given, by name.
@@ -45,25 +45,25 @@ FORMS: Final[Mapping[str, TextForm]] = {
 }
 
 
-def flags(method: str, request: type = RenderOptions) -> Iterator[OptionRow]:
+def flags(method: str, request: type = RenderOptions) -> Iterator[Option]:
     """Yield the rows of a method that the commands have."""
-    return (row for row in rows(request, method) if row.option.flag is not None)
+    return (row for row in rows(request, method) if row.flag is not None)
 
 
-def flag_name(row: OptionRow) -> str:
+def flag_name(row: Option) -> str:
     """Return the name of an option on the command line; of a switch the one that changes it."""
     return _names(row)[0].rpartition("/")[2]
 
 
-def typer_option(row: OptionRow, method: str) -> Any:
+def typer_option(row: Option, method: str) -> Any:
     """Return the option of the command that calls a method."""
-    flag = row.option.flag
+    flag = row.flag
     assert flag is not None
     least, largest = flag.limits
     default = row.default_of(method)
     return typer.Option(
         *_names(row),
-        help=row.help(method),
+        help=row.help_of(method),
         metavar=flag.metavar,
         min=least,
         max=largest,
@@ -120,22 +120,22 @@ def request_of(asked: Asked, **more: Any) -> RenderOptions:
         raise UsageError(str(error)) from None
 
 
-def _names(row: OptionRow) -> tuple[str, ...]:
-    assert row.option.flag is not None
-    return row.option.flag.names or (f"--{row.name.replace('_', '-')}",)
+def _names(row: Option) -> tuple[str, ...]:
+    assert row.flag is not None
+    return row.flag.names or (f"--{row.name.replace('_', '-')}",)
 
 
-def _form(row: OptionRow) -> TextForm | None:
-    assert row.option.flag is not None
-    return None if row.option.flag.form is None else FORMS[row.option.flag.form]
+def _form(row: Option) -> TextForm | None:
+    assert row.flag is not None
+    return None if row.flag.form is None else FORMS[row.flag.form]
 
 
-def _read(row: OptionRow, value: Any) -> Any:
+def _read(row: Option, value: Any) -> Any:
     form = _form(row)
     return value if form is None else form.read(value)
 
 
-def _parameter(row: OptionRow, method: str) -> inspect.Parameter:
+def _parameter(row: Option, method: str) -> inspect.Parameter:
     """Return the parameter of a command; None stands for the default of the request."""
     form, default = _form(row), row.default_of(method)
     kind: Any = bool if isinstance(default, bool) else _NUMBERS.get(row.type, str | None)

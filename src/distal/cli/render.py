@@ -265,7 +265,7 @@ def check_shown(seen: Viewable, asked: Asked, exposure: float | None, tone_map: 
         UsageError: It is an ``@image``, which lacks such an option, or there is no such view.
     """
     if seen.scene is None:
-        of_scenes = [row for row in flags("scene") if "image" not in row.option.methods]
+        of_scenes = [row for row in flags("scene") if "image" not in row.methods.split()]
         given = {
             flag_name(row): asked.get(row.name, row.default) != row.default
             for row in of_scenes

@@ -8,11 +8,11 @@ with their documentation (``tools/gen_option_methods.py``), the options of comma
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import MISSING, dataclass, field, fields
-from typing import Any, Final
+from dataclasses import KW_ONLY, MISSING, dataclass, field, fields, replace
+from typing import Any, Concatenate, Final, ParamSpec
 
 _KEY: Final = "option"
-_NO_TEXTS: Final[Mapping[str, Any]] = {}
+Declared = ParamSpec("Declared")
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,11 +40,11 @@ class Flag:
 
 @dataclass(frozen=True, slots=True)
 class Option:
-    """What a row says besides the name, type and default of its field.
+    """One option: a row of the table.
 
     Attributes:
         doc: What it does, with its unit.
-        methods: The methods that take it.
+        methods: The methods that take it, with blanks between; "" if only programs set it.
         positional: Whether it may be passed by position.
         of_paths: Whether it is for mode "path" alone, which its documentation then says.
         recorded: Whether a picture's file records it.
@@ -52,114 +52,68 @@ class Option:
         check: Returns the checked value, or raises ``TypeError`` or ``ValueError``.
         flag: The option of the commands; None if they have none.
         docs: ``doc`` for some methods.
-        defaults: Its default for some methods.
+        defaults: ``default`` for some methods.
+        name: Its name, that of the field.
+        type: Its type in a request, as it is written.
+        default: Its default in a request; None if it is an empty value.
     """
 
     doc: str
-    methods: frozenset[str]
-    positional: bool
-    of_paths: bool
-    recorded: bool
-    taken: str | None
-    check: Callable[[Any], Any] | None
-    flag: Flag | None
-    docs: Mapping[str, str]
-    defaults: Mapping[str, Any]
+    methods: str = ""
+    _: KW_ONLY
+    positional: bool = False
+    of_paths: bool = False
+    recorded: bool = False
+    taken: str | None = None
+    check: Callable[[Any], Any] | None = None
+    flag: Flag | None = None
+    docs: Mapping[str, str] = field(default_factory=dict)
+    defaults: Mapping[str, Any] = field(default_factory=dict)
+    name: str = ""
+    type: str = ""
+    default: Any = None
 
-
-@dataclass(frozen=True, slots=True)
-class OptionRow:
-    """One option of a request: its field, and what its row says.
-
-    Attributes:
-        name: Its name.
-        type: Its type in a request, as it is written.
-        default: Its default in a request; None if it is an empty value.
-        option: The rest.
-    """
-
-    name: str
-    type: str
-    default: Any
-    option: Option
-
-    def doc(self, method: str) -> str:
+    def doc_of(self, method: str) -> str:
         """Return what it does, as the documentation of a method says it."""
-        text = self.option.docs.get(method, self.option.doc)
-        return _of_paths('In mode "path": ', text) if self.option.of_paths else text
+        return self._prefixed('In mode "path": ', self.docs.get(method, self.doc))
 
-    def help(self, method: str) -> str:
+    def help_of(self, method: str) -> str:
         """Return what the command says that calls a method."""
-        flag = self.option.flag
-        text = "" if flag is None else flag.helps.get(method, flag.help)
-        text = text or self.option.doc
-        return _of_paths("In mode path: ", text) if self.option.of_paths else text
+        text = "" if self.flag is None else self.flag.helps.get(method, self.flag.help)
+        return self._prefixed("In mode path: ", text or self.doc)
 
     def default_of(self, method: str) -> Any:
         """Return its default for a method."""
-        return self.option.defaults.get(method, self.default)
+        return self.defaults.get(method, self.default)
+
+    def _prefixed(self, mode: str, text: str) -> str:
+        return f"{mode}{text[:1].lower()}{text[1:]}" if self.of_paths else text
 
 
-def option(
-    default: Any,
-    doc: str,
-    methods: str = "",
-    *,
-    positional: bool = False,
-    of_paths: bool = False,
-    recorded: bool = False,
-    taken: str | None = None,
-    check: Callable[[Any], Any] | None = None,
-    flag: Flag | None = None,
-    docs: Mapping[str, str] = _NO_TEXTS,
-    defaults: Mapping[str, Any] = _NO_TEXTS,
-) -> Any:
-    """Return the field of an option of a request; see ``Option``.
+def _declaring(row: Callable[Declared, Option]) -> Callable[Concatenate[Any, Declared], Any]:
+    def option(default: Any, /, *args: Declared.args, **kwargs: Declared.kwargs) -> Any:
+        """Return the field of an option: its default (a class makes an empty value), its row."""
+        metadata = {_KEY: row(*args, **kwargs)}
+        if isinstance(default, type):
+            return field(default_factory=default, metadata=metadata)
+        return field(default=default, metadata=metadata)
 
-    Args:
-        default: Its default; a class makes an empty value.
-        doc: What it does, with its unit.
-        methods: The methods that take it, with blanks between; none if only programs set it.
-        positional: Whether it may be passed by position.
-        of_paths: Whether it is for mode "path" alone.
-        recorded: Whether a picture's file records it.
-        taken: Its type in methods, if not that of the field.
-        check: Returns the checked value.
-        flag: The option of the commands.
-        docs: ``doc`` for some methods.
-        defaults: ``default`` for some methods.
-    """
-    row = Option(
-        doc,
-        frozenset(methods.split()),
-        positional,
-        of_paths,
-        recorded,
-        taken,
-        check,
-        flag,
-        docs,
-        defaults,
-    )
-    if isinstance(default, type):
-        return field(default_factory=default, metadata={_KEY: row})
-    return field(default=default, metadata={_KEY: row})
+    return option
 
 
-def rows(request: type, method: str | None = None) -> Iterator[OptionRow]:
+option = _declaring(Option)
+
+
+def rows(request: type, method: str | None = None) -> Iterator[Option]:
     """Yield the rows of a request in their order, all or those that a method takes."""
     for each in fields(request):
         row = each.metadata[_KEY]
-        if method is None or method in row.methods:
+        if method is None or method in row.methods.split():
             default = None if each.default is MISSING else each.default
-            yield OptionRow(each.name, str(each.type), default, row)
+            yield replace(row, name=each.name, type=str(each.type), default=default)
 
 
 def checks(request: type) -> tuple[tuple[str, Callable[[Any], Any]], ...]:
     """Return the names of the options that are checked, and how."""
-    checked = ((row.name, row.option.check) for row in rows(request))
+    checked = ((row.name, row.check) for row in rows(request))
     return tuple((name, check) for name, check in checked if check is not None)
-
-
-def _of_paths(prefix: str, text: str) -> str:
-    return f"{prefix}{text[:1].lower()}{text[1:]}"

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from distal.fields.guarantees import Limit
 from distal.ir.types import FLOAT, VEC3
-from distal.lang.options import OptionRow, rows
+from distal.lang.options import Option, rows
 from distal.lang.render_options import MOST_SAMPLES, PATH_SAMPLES, Refinement, RenderOptions
 from distal.lang.source_places import author_place
 from distal.render import filters, path_film
@@ -19,9 +19,9 @@ from distal.scene.lowering.layers import OF_SAMPLES
 from distal.scene.tree.conversion import Asked, number
 from distal.scene.tree.errors import refuse_kind
 
-_OF_PATHS: Final = tuple(row for row in rows(RenderOptions) if row.option.of_paths)
+_OF_PATHS: Final = tuple(row for row in rows(RenderOptions) if row.of_paths)
 # The options of mode "path" that a picture's file records.
-RECORDED: Final = tuple(row for row in _OF_PATHS if row.option.recorded)
+RECORDED: Final = tuple(row for row in _OF_PATHS if row.recorded)
 
 
 def refinement_of(options: RenderOptions, mode: str, shutter: float = 0.0) -> Refinement | None:
@@ -71,7 +71,7 @@ def recorded(options: RenderOptions) -> dict[str, Any]:
     return _not_default(options, RECORDED)
 
 
-def _not_default(options: RenderOptions, asked: tuple[OptionRow, ...]) -> dict[str, Any]:
+def _not_default(options: RenderOptions, asked: tuple[Option, ...]) -> dict[str, Any]:
     """Return those of some options that are not at their defaults, by name."""
     values = ((row, getattr(options, row.name)) for row in asked)
     return {row.name: value for row, value in values if value != row.default}

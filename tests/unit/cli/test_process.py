@@ -22,7 +22,7 @@ from distal.cli import main
 from distal import load_watch
 from distal.scene import rendering
 
-def slow(scene, view, options):
+def slow(scene, options):
     print("rendering", flush=True)
     time.sleep(60)
 
