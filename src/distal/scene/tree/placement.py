@@ -63,7 +63,12 @@ class AffinePlacement:
 
     def turned(self, v: Vector) -> Vector:
         """Return a vector, rotated."""
-        return tuple(dot(v, row) for row in zip(self.right, self.up, self.back, strict=True))
+        r, u, b = self.right, self.up, self.back
+        return (
+            dot(v, (r[0], u[0], b[0])),
+            dot(v, (r[1], u[1], b[1])),
+            dot(v, (r[2], u[2], b[2])),
+        )
 
     def argument(self, move: Move, value: Any) -> Any:
         """Return an argument of an object that is placed.
@@ -75,7 +80,7 @@ class AffinePlacement:
         match move:
             case Move.POSITION:
                 there = self.turned(_products(self.factors, value))
-                return tuple(_sum(a, b) for a, b in zip(there, self.offset, strict=True))
+                return _sums(there, self.offset)
             case Move.DIRECTION:
                 return self.turned(value if self.is_uniform else _products(self.factors, value))
             case Move.LENGTH:
@@ -87,9 +92,7 @@ class AffinePlacement:
     def moved(self, offset: Vector) -> AffinePlacement:
         """Return the placement of what is first translated."""
         away = self.turned(_products(self.factors, offset))
-        return replace(
-            self, offset=tuple(_sum(a, b) for a, b in zip(self.offset, away, strict=True))
-        )
+        return replace(self, offset=_sums(self.offset, away))
 
     def rotated(self, columns: Sequence[Vector]) -> AffinePlacement | None:
         """Return the placement of what is first rotated; None if it is stretched after that."""
@@ -154,13 +157,24 @@ def dot(a: Vector, b: Vector) -> Any:
     """Return the sum of the products of components."""
     x, y, z = a
     u, v, w = b
-    if type(x) is type(y) is type(z) is type(u) is type(v) is type(w) is float:
-        return x * u + y * v + z * w
+    total = x * u + y * v + z * w
+    if type(total) is float:
+        return total
     return _sum(_sum(_product(u, x), _product(v, y)), _product(w, z))
 
 
 def _products(a: Vector, b: Any) -> Vector:
-    return tuple([_product(x, y) for x, y in zip(a, b, strict=True)])
+    x, y, z = a
+    u, v, w = b
+    plain = x * u, y * v, z * w
+    return plain if _is_plain(plain) else (_product(x, u), _product(y, v), _product(z, w))
+
+
+def _sums(a: Vector, b: Vector) -> Vector:
+    x, y, z = a
+    u, v, w = b
+    plain = x + u, y + v, z + w
+    return plain if _is_plain(plain) else (_sum(x, u), _sum(y, v), _sum(z, w))
 
 
 def _product(a: Any, b: Any) -> Any:
@@ -178,7 +192,8 @@ def _sum(a: Any, b: Any) -> Any:
 
 
 def _is_plain(vector: Vector) -> bool:
-    return all([type(component) is float for component in vector])
+    x, y, z = vector
+    return type(x) is type(y) is type(z) is float
 
 
 # What each operator does to a placement.
@@ -214,7 +229,8 @@ class _Arguments:
 
 def _about(axis: Vector, angle: Any) -> tuple[Vector, ...]:
     """Return the columns of a rotation (Rodrigues)."""
-    c, s = cos(angle), sin(angle)
+    is_plain = type(angle) is float
+    c, s = (math.cos(angle), math.sin(angle)) if is_plain else (cos(angle), sin(angle))
     t = 1.0 - c
     across = [[_product(t, a * b) for b in axis] for a in axis]
     sx, sy, sz = (_product(s, component) for component in axis)
@@ -254,7 +270,7 @@ def _turn_quaternion(placed: AffinePlacement, given: _Arguments) -> AffinePlacem
 def _turn_matrix(placed: AffinePlacement, given: _Arguments) -> AffinePlacement | None:
     right, up, back = (given.vector(name) for name in ("right", "up", "back"))
     image = placed.rotated([right, up, back])
-    if image is None or not _is_plain((*right, *up, *back)):
+    if image is None or not all(map(_is_plain, (right, up, back))):
         return image  # ``rotate`` refuses mirror images, and ``transform`` expressions
     across = (
         right[1] * up[2] - right[2] * up[1],
@@ -267,7 +283,7 @@ def _turn_matrix(placed: AffinePlacement, given: _Arguments) -> AffinePlacement 
 def _orient(placed: AffinePlacement, given: _Arguments) -> AffinePlacement | None:
     """Reflect a direction to its opposite, then that to the other direction."""
     source, target = (_unit(given.vector(name)) for name in ("source", "target"))
-    between = tuple(_sum(a, b) for a, b in zip(source, target, strict=True))
+    between = _sums(source, target)
     if _is_plain(between) and math.hypot(*between) < _OPPOSITE:
         x, y, z = source
         between = (-y, x, 0.0) if abs(z) < 0.7 else (0.0, -z, y)
