@@ -243,10 +243,7 @@ UNTYPED = {
     "Picture.with_provenance": "the fields of a dataclass",
     "Composed.compose": "the compiler's own",
     **dict.fromkeys(
-        (
-            f"{made}.replace"
-            for made in ("AuthorObject",)
-        ),
+        (f"{made}.replace" for made in ("AuthorObject",)),
         "each object takes arguments of its own",
     ),
     **dict.fromkeys(("SceneValue.replace", "ShapeValue.replace"), "as those of the object"),
