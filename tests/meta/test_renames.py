@@ -24,6 +24,14 @@ CALLS = {
     'ball.shell(0.1, "centre")': 'ball.shell(0.1, "center")',
     "from distal import metre": "from distal import meter",
     "class Ring: ...\nRing(0.4, 0.2)": "class Ring: ...\nRing(0.4, 0.2)",
+    "Camera.yaw_pitch_roll(p, mirror=True)": "Camera.yaw_pitch_roll(p, mirrored=True)",
+    'a.apply("xor cubic", others=[b], k=0.1)': 'a.apply("xor cubic", others=[b], smooth=0.1)',
+    "from distal import gradient\ngradient(a, b)": (
+        "from distal import linear_gradient\nlinear_gradient(a, b)"
+    ),
+    "from distal.lang import gradient\ngradient(f, p)": (
+        "from distal.lang import gradient\ngradient(f, p)"
+    ),
     "Cylinder(0.4, height=0.2)": "Cylinder(0.4, height=0.2)",
 }
 

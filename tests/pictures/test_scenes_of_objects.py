@@ -3,22 +3,23 @@ the light that its article's formulas give, and their sliders move them."""
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import distal
 from tests.pictures.comparison import difference
 
+LIBRARY = str(Path(__file__).parents[2] / "benchmarks/raymarcher_library.py")
 SDFRAY = sorted(name for name in distal.gallery() if name.startswith("sdfray_"))
 
 
 @pytest.mark.parametrize("time", [0.0, 2.9, 11.3])
 def test_objects_draw_what_the_library_draws(time):
     objects, library = (
-        distal.load(f"example:raymarcher_{name}")
-        .render(size=(160, 120), samples=1, time=time)
-        .array
-        for name in ("objects", "library")
+        distal.load(source).render(size=(160, 120), samples=1, time=time).array
+        for source in ("example:raymarcher_objects", LIBRARY)
     )
     assert difference(objects, library).is_agreement
     # The box of the objects is tighter, so that shadow rays begin and step at other places.

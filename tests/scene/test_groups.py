@@ -286,6 +286,8 @@ REFUSED = {
     "no shape": (lambda: Scene(group(LIGHT)), "a scene without shapes shows nothing"),
     "cameras": (lambda: Scene(group(SOLID, CAMERA, CAMERA)), "the group has 2 cameras"),
     "a light alone": (lambda: Scene([SOLID, LIGHT]), "group(shape, light, camera) groups them"),
+    "a light united": (lambda: Sphere() | LIGHT, "group(shape, light) places them together"),
+    "a group united": (lambda: Sphere().union(group(LIGHT)), "a | group, or group(a, b)"),
     "by cell": (lambda: LIGHT.translate(distal.cell.x, 0, 0), "a light is one: its offset differs"),
     "a letter": (lambda: LIGHT.mirror("w"), "mirror takes letters of 'xyz'"),
     "two ways": (lambda: CAMERA.rotate(x=1, quaternion=(0, 0, 0, 1)), "in exactly one way"),

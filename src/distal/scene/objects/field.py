@@ -37,6 +37,7 @@ from distal.scene.lowering.varied_cells import with_bounds_of_cells
 from distal.scene.lowering.varied_places import with_bounds_of_places
 from distal.scene.objects.binding import bound, own_node
 from distal.scene.objects.materials import as_material
+from distal.scene.objects.movable import Movable
 from distal.scene.objects.other_names import instead
 from distal.scene.objects.proving import proved
 from distal.scene.objects.shape_values import PLAIN, ShapeValue
@@ -312,6 +313,7 @@ class BaseShape(RenderedShape, ShapeValue, Composed, Presentable):
         for other in others:
             if not isinstance(other, BaseShape):
                 hint = "smooth=0.1 is given by name" if isinstance(other, float) else None
+                hint = "a | group, or group(a, b)" if isinstance(other, Movable) else hint
                 refuse_kind(f"a {kind} joins shapes, not {other!r:.60}", hint, place)
             if other.flat != self.flat:
                 refuse(

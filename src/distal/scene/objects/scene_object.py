@@ -7,7 +7,7 @@ show their arguments, and are placed by them. Does not depend on how the calls a
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from distal.fields.guarantees import Operator
 from distal.ir.nodes import Expr
@@ -16,9 +16,9 @@ from distal.lang.immutable import Immutable
 from distal.lang.source_places import author_place
 from distal.render.declarations import Declaration, Family
 from distal.scene.objects.binding import bound
-from distal.scene.objects.movable import MovableSolid
+from distal.scene.objects.movable import Movable, MovableSolid
 from distal.scene.tree.calls import FunctionCall
-from distal.scene.tree.errors import refuse
+from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.placement import AffinePlacement, placement_of
 from distal.scene.tree.value import CalledValue
 from distal.scene.tree.varying import Composer, VaryingNumber
@@ -67,6 +67,14 @@ class PlacedObject(MovableSolid, SceneObject):
         placement = placement_of(operator, numbers, constants)
         assert placement is not None, f"'{operator.name}' is no placement"
         return self._placed(placement)
+
+    if not TYPE_CHECKING:  # a checker reports the operator itself
+
+        def __ror__(self, other):
+            if isinstance(other, Movable):
+                hint = f"group(shape, {self.noun}) places them together"
+                refuse_kind(f"shapes are united by |, and this is a {self.noun}", hint)
+            return NotImplemented
 
     def _placed(self, placement: AffinePlacement) -> Self:
         """Return the same object elsewhere."""
