@@ -242,11 +242,7 @@ UNTYPED = {
     "Scene.program": "what a window passes to the view it names",
     "Picture.with_provenance": "the fields of a dataclass",
     "Composed.compose": "the compiler's own",
-    **dict.fromkeys(
-        (f"{made}.replace" for made in ("AuthorObject",)),
-        "each object takes arguments of its own",
-    ),
-    **dict.fromkeys(("SceneValue.replace", "ShapeValue.replace"), "as those of the object"),
+    "AuthorObject.replace": "each object takes arguments of its own",
 }
 
 

@@ -273,7 +273,13 @@ class Scene(RenderedScene, SceneValue, Composed, Presentable):
         exposure: float | None = None,
         tone_map: str | None = None,
     ) -> Scene:
-        """Return the scene as a command shows it, which its pictures record; None keeps its own."""
+        """Return the scene as a command shows it, which its pictures record; None keeps its own.
+
+        Args:
+            look: The name of a look.
+            exposure: A factor of the light.
+            tone_map: The name of a tone map.
+        """
         given = {"look": look, "exposure": exposure, "tone_map": tone_map}
         asked = {name: value for name, value in given.items() if value is not None}
         if not asked:
