@@ -213,6 +213,9 @@ class CompileError(Exception):
         assert self.diagnostics, "a compile error needs a diagnostic"
         super().__init__("\n\n".join(map(str, self.diagnostics)))
 
+    def __reduce__(self) -> Any:
+        return type(self), (self.diagnostics,)
+
     @classmethod
     def at(
         cls,
@@ -256,6 +259,9 @@ class LoadError(Exception):
         self.span = span
         self.reason = message if reason is None else reason
         self.hint = hint
+
+    def __reduce__(self) -> Any:
+        return type(self), (self.message, self.span, self.reason, self.hint)
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:

@@ -308,3 +308,11 @@ def test_lights_and_cameras_keep_their_other_arguments():
         assert light.translate(1, 2, 4).translate(-1, -2, -4).arguments == light.arguments
     assert CAMERA.rotate(y=math.tau).position == pytest.approx(CAMERA.position)
     assert CAMERA.translate(1, 0, 0).fov_deg == 45
+
+
+def test_a_group_that_grows_in_a_loop_is_one_list():
+    lamps = group(Sphere(0.1))
+    for number in range(2_000):
+        lamps = lamps | PointLight((number, 1, 1))
+    assert len(lamps.parts) == 2_001 == len(lamps.lights) + 1
+    assert hash(lamps.translate(0, 1, 0)) == hash(lamps.translate(0, 1, 0))

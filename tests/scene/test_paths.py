@@ -82,3 +82,23 @@ def test_a_path_that_leads_nowhere_is_refused_where_it_ends(path, message, hint)
     (found,) = caught.value.diagnostics
     assert message in found.message and hint in (found.hint or "")
     assert found.span is not None and found.span.file == __file__
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"children": [Box(2), Sphere(9)], "children.1.radius": 0.3},
+        {"children.1": Sphere(9), "children.1.radius": 0.3},
+        {"children.1.radius": 0.3, "children.1": Sphere(9)},
+    ],
+)
+def test_a_path_into_what_is_replaced_is_refused(changes):
+    with pytest.raises(SceneValueError, match=r"is a part of 'children.*', which is replaced too"):
+        (Box(1) - Sphere(0.5)).replace(**changes)
+
+
+def test_x_y_z_are_parts_of_the_only_vector_as_in_calls():
+    assert Sphere(1).translate(1, 0, 0).replace(y=2) == Sphere(1).translate(1, 2, 0)
+    assert Box(1, 2, 3).replace(x=5, z=7).size == (5.0, 2.0, 7.0)
+    with pytest.raises(SceneTypeError, match="got 'size' and its part 'x' too"):
+        Box(1, 2, 3).replace(x=5, size=(3, 3, 3))

@@ -236,6 +236,27 @@ def test_errors_of_travelled_functions_show_the_authors_line():
     assert linecache.getline("<cell 1>", 5) == "    return p\n"
 
 
+def _missing_file():
+    distal.load("no_such_file.py")
+
+
+@pytest.mark.parametrize(
+    "mistake",
+    [
+        lambda: Sphere(-1.0),
+        lambda: Sphere(radious=1.0),
+        lambda: bool(slider("Size", 0.5) == 2.0),
+        _missing_file,
+    ],
+)
+def test_errors_travel_with_their_text(mistake):
+    with pytest.raises(Exception) as caught:
+        mistake()
+    travelled = pickle.loads(pickle.dumps(caught.value))
+    assert type(travelled) is caught.type and str(travelled) == str(caught.value)
+    assert getattr(travelled, "hint", None) == getattr(caught.value, "hint", None)
+
+
 def test_a_value_that_changes_later_does_not_change_what_was_pickled():
     module = {"__name__": "__main__"}
     text = "from distal.lang import *\nK = 1.0\n\n@func\ndef away(x: float) -> float:\n"

@@ -321,7 +321,7 @@ class UnknownValue(TypeError):  # noqa: N818 (it names what is wrong)
     """
 
     def __init__(self, message: str, hint: str) -> None:
-        super().__init__(message)
+        super().__init__(message, hint)  # all arguments, for pickles
         self.hint = hint
 
     def __str__(self) -> str:

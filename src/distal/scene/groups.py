@@ -146,10 +146,11 @@ class Group(RenderedShape, MovableSolid, AuthorObject, Immutable, Presentable):
         return self._each(painted)
 
     def __or__(self, other: Part) -> Group:
-        return Group(self, other) if isinstance(other, _PARTS) else NotImplemented
+        # Placing a group places its parts: it is the list of them, and loops make no deep tree.
+        return Group(*self.parts, other) if isinstance(other, _PARTS) else NotImplemented
 
     def __ror__(self, other: Part) -> Group:
-        return Group(other, self) if isinstance(other, _PARTS) else NotImplemented
+        return Group(other, *self.parts) if isinstance(other, _PARTS) else NotImplemented
 
     # Pictures
 

@@ -16,7 +16,7 @@ from distal.scene.objects.metric_sizes import MetricSize, metric_size
 from distal.scene.objects.shape import Shape
 from distal.scene.objects.shapes import made_of
 from distal.scene.tree.conversion import is_scalar
-from distal.scene.tree.errors import refuse
+from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.value import recorded
 
 if TYPE_CHECKING:
@@ -183,6 +183,8 @@ def _threaded_length(row: MetricSize, length: Any, thread: Any, place: Any) -> A
     if thread is None:
         usual = 2.0 * row.diameter + 6.0
         return min(usual, length) if isinstance(length, float | int) else length
+    if isinstance(thread, str):
+        refuse_kind(f"thread of Bolt is a length, not {thread!r:.40}", "thread=12.0", place)
     plain = isinstance(thread, float | int) and isinstance(length, float | int)
     if plain and not row.pitch <= thread <= length:
         message = f"thread of Bolt must be from its pitch, {row.pitch:g}, to its length"

@@ -28,7 +28,7 @@ from distal.scene.objects.masked import masked
 from distal.scene.objects.movable import Movable
 from distal.scene.objects.shaped_edges import shaped_edge
 from distal.scene.tree.conversion import Asked, is_scalar, plain_choice
-from distal.scene.tree.errors import refuse
+from distal.scene.tree.errors import refuse, refuse_kind
 from distal.scene.tree.former_names import FORMER_WORDS
 from distal.scene.tree.value import refuses_unknown
 
@@ -84,6 +84,8 @@ class Placed(Movable, BaseShape):
             SceneValueError: There is no such operator, or it does not work on this shape.
         """
         place = author_place()
+        if not isinstance(operator, str):
+            refuse_kind(f"an operator is a name, not {operator!r:.60}", '"twist"', place)
         if operator not in OPERATORS:
             refuse(f"there is no operator '{operator}'", did_you_mean(operator, OPERATORS), place)
         return self._under(OPERATORS[operator], args, kwargs, place, others=tuple(others))

@@ -136,11 +136,11 @@ class ShapeValue(AuthorObject):
         children = self.children
         if "children" in changes:
             children = _checked_children(changes.pop("children"), children, self, place)
-        given = {**self.arguments, **changes}
         node = authored(self.node)
         origin = _origin_of(node)
         if origin is not None:
-            return origin.factory(**given)
+            return origin.factory(**{**self.arguments, **changes})
+        given = {**self.arguments, **_of_vector(self.arguments, changes)}
         if rule is None:
             kind = CLASSES_OF_RULES[id(node.rule)]
             return cast("Any", kind)(**given)
@@ -211,6 +211,20 @@ def shape_of(node: Node) -> BaseShape:
     return CLASSES_OF_RULES.get(id(own.rule), PLAIN[node.flat])._of_node(node, {})
 
 
+def _of_vector(arguments: Mapping[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
+    """Return changes in which x, y and z have become those of the only vector, as in calls."""
+    vectors = [name for name, value in arguments.items() if isinstance(value, tuple)]
+    if len(vectors) != 1 or vectors[0] in changes:
+        return changes
+    components = dict(zip("xyzw", arguments[vectors[0]], strict=False))
+    letters = components.keys() & changes.keys() - arguments.keys()
+    if not letters:
+        return changes
+    components |= {letter: changes[letter] for letter in letters}
+    rest = {name: value for name, value in changes.items() if name not in letters}
+    return {**rest, vectors[0]: tuple(components.values())}
+
+
 @lru_cache(maxsize=1024)
 def names_of(rule: Rule) -> tuple[str, ...]:
     """Return the names of a rule's arguments, in the declared order."""
@@ -227,7 +241,10 @@ def names_of(rule: Rule) -> tuple[str, ...]:
 def _arguments_of(node: Node) -> Mapping[str, Any]:
     known = {**node.numbers, **node.constants}
     names = [name for name in names_of(node.rule) if name in known]
-    return MappingProxyType({name: value_of(known[name]) for name in names})
+    endless = getattr(node.rule, "endless", ())
+    return MappingProxyType(
+        {name: value_of(known[name], is_endless=name in endless) for name in names}
+    )
 
 
 def _checked_children(

@@ -90,9 +90,11 @@ class Digest:
         for value in values:
             kind = type(value)
             if kind in _PLAIN:
-                yield f"{kind.__name__} {value!r}"
-            elif kind is Number and type(value.value) in (float, tuple):
-                yield f"{value.type} {value.value!r}"
+                yield f"{kind.__name__} {value + 0.0 if kind is float else value!r}"
+            elif kind is Number and type(value.value) is float:
+                yield f"{value.type} {value.value + 0.0!r}"  # -0.0 draws what 0.0 draws
+            elif kind is Number and type(value.value) is tuple:
+                yield f"{value.type} {[component + 0.0 for component in value.value]!r}"
             else:
                 yield from self._text(value)
 

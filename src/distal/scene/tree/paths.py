@@ -6,7 +6,7 @@ path. Does not depend on the objects' classes.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from distal.frontend.problems import did_you_mean
@@ -31,6 +31,25 @@ def numbers_of(whole: AuthorObject) -> dict[str, Any]:
         below = ((f"{path}.{step}" if path else step, inner) for step, inner in _steps(part))
         waiting.extend(reversed(list(below)))
     return numbers
+
+
+def check_apart(paths: Iterable[str], names: Iterable[str]) -> None:
+    """Check that no path leads into what is replaced as a whole.
+
+    Args:
+        paths: The paths.
+        names: All that is replaced, the paths too.
+
+    Raises:
+        SceneValueError: One does.
+    """
+    whole = set(names)
+    for path in paths:
+        steps = path.split(".")
+        for count in range(1, len(steps)):
+            if (above := ".".join(steps[:count])) in whole:
+                message = f"'{path}' is a part of '{above}', which is replaced too"
+                refuse(message, "replace one of them", author_place())
 
 
 def replaced(whole: Any, path: str, value: Any) -> Any:

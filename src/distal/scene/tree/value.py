@@ -129,7 +129,9 @@ class AuthorObject:
             SceneValueError: A number is beyond its limit, or there is no such part.
         """
         changed = self
-        for path in [name for name in changes if "." in name]:
+        by_path = [name for name in changes if "." in name]
+        paths.check_apart(by_path, changes)
+        for path in by_path:
             changed = paths.replaced(changed, path, changes.pop(path))
         return changed._replaced(changes) if changes else changed
 
@@ -385,8 +387,13 @@ def state_of(value: Any) -> dict[str, Any]:
     return {n: v for n, v in own.items() if n != "node" and not n.startswith("_")}
 
 
-def value_of(checked: Any) -> Any:
-    """Return a checked value as an author gives it: a float, a tuple, a slider, an expression."""
+def value_of(checked: Any, *, is_endless: bool = False) -> Any:
+    """Return a checked value as an author gives it: a float, a tuple, a slider, an expression.
+
+    Args:
+        checked: The value.
+        is_endless: Whether numbers beyond all distances stand for infinity.
+    """
     if isinstance(checked, VaryingNumber):
         return checked.expression
     if not isinstance(checked, Number):
@@ -396,6 +403,6 @@ def value_of(checked: Any) -> Any:
         node = value.node.value if isinstance(value.node, Cast) else value.node
         alone = isinstance(node, Uniform) and len(value.parameters) == 1
         return value.parameters[0] if alone else value
-    if isinstance(value, tuple):
-        return tuple([ended(component) for component in value])
-    return ended(value)
+    if not is_endless:
+        return value
+    return tuple(map(ended, value)) if isinstance(value, tuple) else ended(value)
