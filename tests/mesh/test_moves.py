@@ -16,7 +16,7 @@ from distal.mesh.moves import take_back
 SHAPES = {
     "sphere": Sphere(1.0),
     "twisted": Box(0.5, 1.0, 1.5).twist(2.0),
-    "touching": Sphere(1.0) | Torus(1.2, 0.2),
+    "crossing": Sphere(1.0) | Torus(1.1, 0.2),
 }
 
 

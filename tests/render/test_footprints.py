@@ -17,8 +17,8 @@ from distal import (
     Scene,
     Sphere,
     checker,
-    gradient,
     image_pattern,
+    linear_gradient,
     metal,
     noise,
     pattern,
@@ -249,7 +249,7 @@ def test_a_moving_camera_does_not_shimmer():
 
 def test_a_steep_gradient_is_an_even_edge():
     """Between 0 and 1 lie values by the share of the pixel, as many samples give."""
-    edge = gradient(0.0, 1.0, start=(0.0, 0.0, 0.0), end=(1e-3, 0.0, 2e-4))
+    edge = linear_gradient(0.0, 1.0, start=(0.0, 0.0, 0.0), end=(1e-3, 0.0, 2e-4))
     view = OrthographicCamera((0.0, 5.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, -1.0), height=4.0)
     found, many = light(floor(edge, camera=view)), light(floor(edge, camera=view), 256)
     assert np.abs(found - many).max() < 0.2

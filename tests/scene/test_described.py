@@ -55,7 +55,7 @@ def test_shapes_say_how_they_are_made():
             ".translate((1.0, 2.5, 3.0))"
         ),
         Sphere().union(Sphere(2), smooth=0.1).paint("red"): (
-            "Sphere(radius=1.0).apply('union quadratic', others=[Sphere(radius=2.0)], k=0.1)"
+            "Sphere(radius=1.0).apply('union quadratic', others=[Sphere(radius=2.0)], smooth=0.1)"
             ".paint(matte(color=(1.0, 0.0, 0.0)))"
         ),
         Sphere(slider("Size", 1.0, 0.5, 2.0)): "Sphere(radius=slider('Size', 1.0, 0.5, 2.0))",

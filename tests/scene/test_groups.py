@@ -233,7 +233,7 @@ def test_groups_are_added():
     lamp = group(Sphere(0.2), PointLight((0, 0.5, 0)))
     for added in (lamp | Box(), Box() | lamp, lamp | lamp, lamp | CAMERA, LIGHT | lamp):
         assert isinstance(added, distal.Group)
-        assert len(added.parts) == 2
+        assert len(added.parts) == 3
     assert (Box() | lamp).shape.operator == "union"
     with pytest.raises(TypeError):
         lamp | 3

@@ -54,6 +54,7 @@ NO_OPERATOR = {
     "measure": "mesh/test_mesh",
     "parameters": "asks",
     "emitted": "shows",
+    "paths": "scene/test_paths",
     "replace": "scene/test_values",
     "show": "shows",
     "export": "shows",

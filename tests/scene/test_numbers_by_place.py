@@ -198,7 +198,7 @@ def test_a_blend_changes_no_more_with_its_size_than_is_declared(name):
             more = [np.full(count, parts)] * len(numbers)
             above, below = (np.asarray(combine(a, b, k * f, *more)) for f in (1.01, 0.99))
             change = np.abs(above - below) / (0.02 * k)
-            assert change.max() <= 1.001 * rule.changes["k"], (kind, parts)
+            assert change.max() <= 1.001 * rule.changes["smooth"], (kind, parts)
     most = blends.BLENDS[name].change
     assert most == 1.0 or most < 4.0
 

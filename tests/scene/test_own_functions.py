@@ -106,7 +106,7 @@ def test_a_light_keeps_its_falloff_and_shows_its_arguments():
     there = lamp.translate(1, 0, 0)
     assert (there.falloff, there.position, there.intensity) == (square, (2.0, 2.0, 3.0), 5.0)
     assert lamp.replace(falloff=None).falloff is None
-    assert "position=(1, 2, 3)" in repr(lamp)
+    assert "position=(1.0, 2.0, 3.0)" in repr(lamp)
     assert {square, reinhard} <= set(Scene(SPHERE, lamp, tone_map=reinhard).functions())
     names = [p.label for p in Scene(SPHERE, PointLight((1, 2, 3), falloff=foggy)).parameters()]
     assert names == ["Density"]

@@ -356,7 +356,7 @@ ERRORS = {
     ),
     "a flat shape": (
         lambda: points_on(Circle(), 10),
-        "points_on takes a solid shape, not <Circle(radius=1)",
+        "points_on takes a solid shape, not Circle(radius=1.0)",
     ),
     "no curve": (
         lambda: points_along(3, 10),

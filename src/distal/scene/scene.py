@@ -284,7 +284,7 @@ class Scene(RenderedScene, SceneValue, Composed, Presentable):
         asked = {name: value for name, value in given.items() if value is not None}
         if not asked:
             return self
-        made = self.replace(**asked)
+        made = self._remade(asked, self.place)
         made.__dict__["asked_display"] = {**self.asked_display, **asked}
         return made
 

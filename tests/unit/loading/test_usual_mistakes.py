@@ -92,16 +92,6 @@ error: a scene shows shapes, not None
    |         ^^^^^^^^^^^^^
    = hint: a function without return gives None""",
     ),
-    "a scene in a scene": (
-        "from distal import *\nscene = Scene(Scene(Sphere(1.0)))\n",
-        """\
-error: a scene shows shapes, not Scene(shape=Sphere(radius=1.0))
-  --> scene.py:2:9
-   |
- 2 | scene = Scene(Scene(Sphere(1.0)))
-   |         ^^^^^^^^^^^^^^^^^^^^^^^^^
-   = hint: a scene is given shapes: Scene(shape)""",
-    ),
     "numbers of 0 to 255 as a color": (
         "from distal import *\nscene = Scene(Sphere(1.0).paint((255, 128, 0)))\n",
         """\
