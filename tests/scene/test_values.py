@@ -413,3 +413,21 @@ def test_every_rule_of_the_library_has_a_name():
             assert name_of(each) or each in (CELLS, PARTS), each.name
         elif isinstance(each, Primitive) and each.distance.__module__.startswith("distal.fields"):
             assert name_of(each), each.name
+
+
+def test_points_come_back_as_a_list():
+    corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]
+    triangle = distal.Polygon(corners)
+    assert triangle.points == corners
+    assert repr(triangle) == f"Polygon(points={corners})"
+    other = triangle.replace(**{"points.1": (2, 0)})
+    assert other == distal.Polygon([(0, 0), (2, 0), (0, 1)])
+    array = distal.Polygon(np.array(corners))
+    assert array == triangle
+
+
+def test_numbers_far_away_stay_numbers_and_zero_has_no_sign():
+    assert distal.Sphere(1e15).radius == 1e15
+    assert distal.Box(math.inf, 1, 1).size == (math.inf, 1.0, 1.0)
+    moved = distal.Sphere(1.0).translate
+    assert moved(0.0, 0.0, 0.0) == moved(-0.0, 0.0, 0.0) != moved(-1e-9, 0.0, 0.0)

@@ -17,6 +17,7 @@ from distal.frontend.problems import did_you_mean
 from distal.ir.nodes import Cast, Uniform
 from distal.lang.expressions import Expression
 from distal.lang.lazy_module import LazyModule
+from distal.lang.resources import Buffer
 from distal.lang.source_places import author_place
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.errors import refuse, refuse_kind
@@ -390,12 +391,16 @@ def state_of(value: Any) -> dict[str, Any]:
 def value_of(checked: Any, *, is_endless: bool = False) -> Any:
     """Return a checked value as an author gives it: a float, a tuple, a slider, an expression.
 
+    A list of numbers or points comes back as a list; an array, which may be large, as a ``Buffer``.
+
     Args:
         checked: The value.
         is_endless: Whether numbers beyond all distances stand for infinity.
     """
     if isinstance(checked, VaryingNumber):
         return checked.expression
+    if type(checked) is Buffer and isinstance(checked.data, list):
+        return list(checked.data)
     if not isinstance(checked, Number):
         return checked
     value = checked.value
