@@ -22,7 +22,7 @@ from distal import Bolt, Box, Circle, Cylinder, Gear, Nut, Scene, Shape, Sphere,
 from distal.diagnostics import CompileError
 from distal.fields.guarantees import Operator, Primitive
 from distal.fields.library import PRIMITIVES
-from distal.lang import func, integer, length, slider, vec3
+from distal.lang import choice, color, func, integer, length, point, slider, toggle, vec3
 from distal.scene.lowering.parts.table import PARTS
 from distal.scene.lowering.smooth.cells import CELLS
 from distal.scene.objects import shapes
@@ -431,3 +431,24 @@ def test_numbers_far_away_stay_numbers_and_zero_has_no_sign():
     assert distal.Box(math.inf, 1, 1).size == (math.inf, 1.0, 1.0)
     moved = distal.Sphere(1.0).translate
     assert moved(0.0, 0.0, 0.0) == moved(-0.0, 0.0, 0.0) != moved(-1e-9, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    "parameter",
+    [
+        slider("Radius", 1.0, low=0.1, high=3.0, group="Size"),
+        integer("Count", 3, low=1, high=9),
+        toggle("On", True),
+        choice("Kind", ["one", "two"], "two"),
+        color("Paint", "#ff0000"),
+        point("Place", (1, 2)),
+        slider("Größe", 0.5, name="size"),
+    ],
+)
+def test_parameters_show_their_arguments_and_make_others(parameter):
+    assert parameter.replace() == parameter
+    other = parameter.replace(group="Other", label="Else")
+    assert (other.group, other.label, other.default) == ("Other", "Else", parameter.default)
+    assert other.replace(group=parameter.group, label=parameter.label) == parameter
+    with pytest.raises(TypeError, match=f"a {parameter.kind.value} has no 'hi'; it takes label, "):
+        parameter.replace(hi=3)

@@ -11,10 +11,10 @@ from __future__ import annotations
 import keyword
 import re
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields, replace
 from enum import Enum
-from typing import Any, assert_never
+from typing import Any, Final, assert_never
 
 from distal.diagnostics import Span
 from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3, Type
@@ -97,6 +97,34 @@ class Parameter(Symbolic):
         if self.name != _usual_name(self.label):
             texts.append(f"name={self.name!r}")
         return f"{self.kind.value}({', '.join(texts)})"
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """The arguments of ``slider`` or its like, by name; no ``name`` if the label gives it."""
+        code = _DECLARED_BY[self.kind].__code__
+        names = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
+        known = {name: getattr(self, name) for name in names}
+        if self.name == _usual_name(self.label):
+            del known["name"]
+        return known
+
+    def replace(self, **changes: Any) -> Parameter:
+        """Return the parameter with other arguments: ``radius.replace(high=5.0)``.
+
+        Args:
+            changes: The arguments that change, by name.
+
+        Raises:
+            TypeError: There is no such argument, or it has the wrong type.
+            ValueError: A value is out of range.
+        """
+        for name in changes.keys() - {*self.arguments, "name"}:
+            takes = ", ".join([*self.arguments, "name"])
+            raise TypeError(f"a {self.kind.value} has no '{name}'; it takes {takes}")
+        return _DECLARED_BY[self.kind](**{**self.arguments, **changes})
+
+    def __replace__(self, /, **changes: Any) -> Parameter:
+        return self.replace(**changes)
 
     def as_expression(self) -> Expression:
         """Return its value as an expression."""
@@ -464,6 +492,16 @@ def point(
     return Parameter(
         parameter_name(label, name), label, ParameterKind.POINT, where, group=group, help=help
     )
+
+
+_DECLARED_BY: Final[dict[ParameterKind, Callable[..., Parameter]]] = {
+    ParameterKind.SLIDER: slider,
+    ParameterKind.INTEGER: integer,
+    ParameterKind.TOGGLE: toggle,
+    ParameterKind.CHOICE: choice,
+    ParameterKind.COLOR: color,
+    ParameterKind.POINT: point,
+}
 
 
 def parameter_name(label: object, name: object = None) -> str:
