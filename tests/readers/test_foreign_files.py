@@ -523,6 +523,7 @@ OWN = {
     "ir/encoding.py": "programs from distal's own cluster",
     "lessons/page.py": "distal's own style sheet",
     "lessons/scenes.py": "the scene of a lesson, which was run",
+    "library_stamp.py": "distal's own source",
     "loading.py": "the author's scene",
     "mesh/": "writes",
     "notebook/widget.py": "distal's own script",
