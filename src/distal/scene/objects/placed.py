@@ -85,7 +85,7 @@ class Placed(Movable, BaseShape):
         """
         place = author_place()
         if not isinstance(operator, str):
-            refuse_kind(f"an operator is a name, not {operator!r:.60}", '"twist"', place)
+            refuse_kind(f"an operator is a name, not {operator!r:.60}", '"shell"', place)
         if operator not in OPERATORS:
             refuse(f"there is no operator '{operator}'", did_you_mean(operator, OPERATORS), place)
         return self._under(OPERATORS[operator], args, kwargs, place, others=tuple(others))
