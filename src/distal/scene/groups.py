@@ -187,7 +187,7 @@ def _group_of(kind: type[Group], packed: shape_rows.PackedShapes) -> Group:
 
 
 def _contents(scene: SceneValue) -> Group:
-    """Return what a scene brings along: its shapes, and the lights that its author gave it."""
+    """Return the shapes of a scene, and the lights that its author gave it."""
     given = scene.arguments
     inside = Group(given["shape"], *(given["lights"] or ()))
     return Group(*inside._all((Shape, Light)))

@@ -92,7 +92,7 @@ class Scene(RenderedScene, SceneValue, Composed, Presentable):
 
     Args:
         shape: One solid shape, or several, which are united; a ``group`` with lights and a camera;
-            another scene, of which the shapes and the author's lights come along.
+            another scene, for its shapes and its author's lights.
         lights: One light or several, besides those of groups. None uses the look's, if there are
             no others and the background is no light.
         camera: The camera. None: that of a group, else one that frames the finite parts.

@@ -132,7 +132,7 @@ def one_of(what: str, name: Any, known: Sequence[str], place: Span | None) -> st
 
 def checked_tone_map(value: Any, place: Span | None) -> str | Func:
     """Return the name of a tone map, or the author's function."""
-    if isinstance(value, Func) or callable(value):
+    if callable(value):  # a ``Func``, or what is refused because it is none
         return TONE_MAP.checked(value, place)
     return one_of("tone map", value, tonemap.NAMES, place)
 

@@ -256,9 +256,7 @@ def as_background(
         return value
     if isinstance(value, Surroundings):
         made = Background.of(value.background, value if value.light else None)
-        if (origin := value._origin_or_none) is not None:
-            made._record(origin)
-        return made
+        return made._with_origin_of(value)
     if isinstance(value, Func):
         made = Background.of(_own(value, {}, place))
         made._record(CallRecord(Background, (value,), {}, Background))

@@ -163,9 +163,7 @@ class Material(CalledObject):
             emits=self.emits,
             priority=priority,
         )
-        if (origin := self._origin_or_none) is not None:
-            made._record(origin)
-        return made
+        return made._with_origin_of(self)
 
     def _written(self, writer: TextWriter) -> str:
         text = super()._written(writer)
@@ -283,10 +281,8 @@ def accept(value: Any, asked: Asked) -> Any:
     if value.result is asked.type:
         return value
     if asked.type is VEC3 and value.result is FLOAT:
-        made = Pattern("grey", grey, {"amount": value}, value.place)
-        if (origin := value._origin_or_none) is not None:
-            made._record(origin)
-        return made
+        grays = Pattern("grey", grey, {"amount": value}, value.place)
+        return grays._with_origin_of(value)
     refuse_kind(
         f"'{asked.label}' takes a {asked.type}; {value.what} gives a {value.result}",
         place=asked.place,

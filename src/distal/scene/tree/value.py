@@ -227,6 +227,12 @@ class CalledValue(AuthorObject):
         """The call that made the object; None for what a scene makes, such as its camera."""
         return getattr(self, "_origin", None)
 
+    def _with_origin_of(self, other: CalledValue) -> Self:
+        """Keep the call that made another object, if it is known; return this one."""
+        if (origin := other._origin_or_none) is not None:
+            self._record(origin)
+        return self
+
     def _written(self, writer: texts.TextWriter) -> str:
         origin = self._origin_or_none
         if origin is None:
