@@ -461,9 +461,10 @@ def test_a_mistake_in_a_call_is_pythons_own_error(case):
 
 
 def heard(make):
-    """What is warned of, and where."""
+    """What is warned of, and where; not what the garbage collector finds of other tests."""
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always")
+        warnings.simplefilter("ignore", ResourceWarning)
         make()
     return [(str(w.message), w.filename) for w in found]
 

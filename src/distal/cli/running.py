@@ -11,9 +11,12 @@ import io
 import os
 import sys
 import threading
+import time
 import warnings
+from _thread import start_new_thread
 from collections.abc import Callable
 from contextlib import suppress
+from types import FrameType
 from typing import Final, NoReturn
 
 from distal.cli import COMMANDS, SHORT
@@ -55,9 +58,20 @@ def _open_what_is_closed() -> None:
 def _unraisable(unraisable: sys.UnraisableHookArgs) -> None:
     """Interrupt again where ctrl-C came in the middle of a finalizer, which would ignore it."""
     if isinstance(unraisable.exc_value, KeyboardInterrupt):
-        threading.Timer(0.01, interrupt_main).start()
+        start_new_thread(_interrupt_later, (sys._getframe(),))
     else:
         sys.__unraisablehook__(unraisable)
+
+
+def _interrupt_later(hook: FrameType) -> None:
+    """Interrupt the main thread as soon as it has left the hook, which would ignore it again."""
+    frame: FrameType | None = hook
+    while frame is hook:
+        time.sleep(0.01)
+        frame = sys._current_frames().get(threading.main_thread().ident or 0)
+        while frame is not None and frame is not hook:
+            frame = frame.f_back
+    interrupt_main()
 
 
 def _is_scene(argument: str) -> bool:

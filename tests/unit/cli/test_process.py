@@ -41,6 +41,16 @@ LOST = SLOW_SCENE.replace(
     time.sleep(60)""",
 )
 
+# The same on a busy machine: the hook that is told of it is still running after a while.
+LOST_TWICE = LOST.replace(
+    "main()\n",
+    """from distal.cli import running
+start = running.start_new_thread
+running.start_new_thread = lambda *given: (start(*given), time.sleep(0.2))
+main()
+""",
+)
+
 SMALL = (sys.executable, "-m", "distal.cli", "render", "example:melting", "-o", "a.png", "--stats")
 
 
@@ -48,9 +58,10 @@ def environment():
     return {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
 
 
-def test_ctrl_c_in_a_finalizer_is_not_lost(tmp_path):
+@pytest.mark.parametrize("script", [LOST, LOST_TWICE])
+def test_ctrl_c_in_a_finalizer_is_not_lost(tmp_path, script):
     done = subprocess.run(
-        [sys.executable, "-c", LOST, "render", "s.py", "-o", "a.png"],
+        [sys.executable, "-c", script, "render", "s.py", "-o", "a.png"],
         cwd=tmp_path,
         env=environment(),
         capture_output=True,
