@@ -52,6 +52,19 @@ SURFACE: Final = """\
 `Surface`, from `distal`, is what a function passed to `pattern` returns if it decides the whole
 material of a place: `Surface(color=vec3(0.8), roughness=0.3)`. Its fields are those of
 [`Material`](objects.md#materials).
+
+`furnace(material)`, from `distal`, tells how much light a material gives back, and what is wrong
+with its functions. From `distal.render.sampling.warps`, for a scattering function of your own
+([path tracing](../guide/paths.md#a-scattering-function-of-your-own)); `u` has random numbers in
+[0, 1):
+
+| function | result |
+|---|---|
+| `axes_about(n: vec3) -> Axes` | axes whose third one, `n`, is a unit vector |
+| `into_space(axes: Axes, v: vec3) -> vec3`, `along_axes(axes: Axes, v: vec3) -> vec3` | from coordinates along the axes to space, and back |
+| `in_cosine_hemisphere(u: vec2) -> vec3`, `cosine_density(cosine: float) -> float` | a direction about z, as dense as the cosine, and its density |
+| `in_cone(u: vec2, narrow: float) -> vec3`, `cone_density(narrow: float) -> float` | one in a cone of 1 - cos(half the opening) = `narrow`: 1 a hemisphere, 2 the sphere |
+| `visible_facet(v: vec3, alpha: float, u: vec2) -> vec3` | a facet of GGX, of width `alpha`, that is seen from `v` |
 """
 
 

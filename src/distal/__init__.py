@@ -29,6 +29,7 @@ _HAND_WRITTEN = {
     "distal.export.compiling": ("compile",),
     "distal.loading": ("load",),
     "distal.render.material": ("Surface",),
+    "distal.scene.checks.furnace": ("furnace",),
     "distal.scene.groups": ("Group", "group"),
     "distal.scene.looks.look": ("Look",),
     "distal.scene.objects.alternatives": ("choose",),

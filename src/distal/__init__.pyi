@@ -23,6 +23,7 @@ from distal.example_files import gallery as gallery
 from distal.export.compiling import compile as compile
 from distal.loading import load as load
 from distal.render.material import Surface as Surface
+from distal.scene.checks.furnace import furnace as furnace
 from distal.scene.groups import Group as Group
 from distal.scene.groups import group as group
 from distal.scene.looks.look import Look as Look
@@ -4289,6 +4290,7 @@ __all__ = [
     "emissive",
     "facing",
     "foot",
+    "furnace",
     "gallery",
     "glass",
     "glossy",

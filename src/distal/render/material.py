@@ -17,7 +17,7 @@ SILVER = vec3(0.91, 0.92, 0.92)
 
 @struct
 class Surface:
-    """The material at a point. Every field is a number that blends linearly.
+    """The material at a point. Every field but ``bsdf`` is a number that blends linearly.
 
     Attributes:
         color: Fraction of red, green and blue that is scattered, mirrored by a metal, or
@@ -36,6 +36,9 @@ class Surface:
             glass 0.3, flint 0.6, diamond 0.36), 0 for not at all. Only paths show it.
         height: How high the surface seems to be, in scene units, where a bump is painted on it.
         tilt: The gradient of the height in the scene's space, which ``bump`` turns the normal by.
+        bsdf_share: The share of light that an author's scattering function takes in paths; the
+            other fields scatter the rest.
+        bsdf: The number of this function in the scene.
     """
 
     color: vec3 = WHITE
@@ -51,6 +54,8 @@ class Surface:
     dispersion: float = 0.0
     height: float = 0.0
     tilt: vec3 = BLACK
+    bsdf_share: float = 0.0
+    bsdf: int = 0
 
 
 @material("matte")
@@ -154,7 +159,11 @@ def emissive(color: vec3 = WHITE, strength: float = 1.0) -> Surface:
 
 @func
 def mix_surfaces(a: Surface, b: Surface, t: float) -> Surface:
-    """Interpolate linearly from ``a`` (t = 0) to ``b`` (t = 1)."""
+    """Interpolate linearly from ``a`` (t = 0) to ``b`` (t = 1).
+
+    Of two scattering functions of authors the larger share takes the place of both.
+    """
+    is_second = b.bsdf_share * t > a.bsdf_share * (1.0 - t)
     return Surface(
         color=mix(a.color, b.color, t),
         diffuse=mix(a.diffuse, b.diffuse, t),
@@ -169,6 +178,8 @@ def mix_surfaces(a: Surface, b: Surface, t: float) -> Surface:
         dispersion=mix(a.dispersion, b.dispersion, t),
         height=mix(a.height, b.height, t),
         tilt=mix(a.tilt, b.tilt, t),
+        bsdf_share=mix(a.bsdf_share, b.bsdf_share, t),
+        bsdf=b.bsdf if is_second else a.bsdf,
     )
 
 
@@ -189,6 +200,8 @@ def choose_surface(a: Surface, b: Surface, is_second: bool) -> Surface:
         dispersion=b.dispersion if is_second else a.dispersion,
         height=b.height if is_second else a.height,
         tilt=b.tilt if is_second else a.tilt,
+        bsdf_share=b.bsdf_share if is_second else a.bsdf_share,
+        bsdf=b.bsdf if is_second else a.bsdf,
     )
 
 

@@ -24,7 +24,7 @@ from distal.render.paths import (
     WAVELENGTH,
 )
 from distal.render.sampling.points import Stream, single, triple
-from distal.render.scatter import all_specular, meet, sample_from
+from distal.render.scatter import Meeting, Scattering, all_specular, meet
 from distal.render.vertices import Start, start_from, straight_on, vertex_at
 
 # Mirrors and sheets of clear glass that are looked through.
@@ -54,6 +54,7 @@ def first_scattering(
     next_hit: Callable[[Ray, int, float, int], Hit],
     field_of: Callable[[vec3, int], float],
     surface: Callable[[vec3, Footprint, int], Surface],
+    scatter: Callable[[Meeting, vec3], Scattering],
     numbers: March,
     bodies: int,
     common: int,
@@ -71,6 +72,7 @@ def first_scattering(
         next_hit: The next surface along a ray from a surface; as for ``paths.path_light``.
         field_of: Signed distance near a surface of a part (``Hit.part``).
         surface: The material at a point of a part, averaged over a footprint.
+        scatter: A random direction; as for ``paths.path_light``.
         numbers: The parameters of the march.
         bodies: How many bodies the scene has (``media``); a constant.
         common: The body of shapes without a priority; a constant.
@@ -104,7 +106,7 @@ def first_scattering(
             continue
         meeting = meet(met.surface, -here.direction, vertex.n, met.inside)
         u = triple(stream, CAMERA_DECISIONS + DECISIONS * i + DIRECTION)
-        onward = sample_from(meeting, u)
+        onward = scatter(meeting, u)
         if not all_specular(met.surface) or not onward.specular:
             found = True
             color = throughput * met.surface.color

@@ -29,7 +29,7 @@ from distal.render.lights import LightSample
 from distal.render.march import PASSED, Hit
 from distal.render.material import Surface, brightest
 from distal.render.photon_aim import is_followed, is_followed_from_afar
-from distal.render.scatter import Meeting, emitted, respond_to
+from distal.render.scatter import Meeting, Response, emitted
 from distal.render.shade import Lit, Shading
 from distal.render.surroundings import DirectionSample
 from distal.render.trace import hit_point
@@ -116,6 +116,7 @@ def light_from(
     aim: AimedLight,
     vertex: Vertex,
     meeting: Meeting,
+    respond: Callable[[Meeting, vec3], Response],
     next_hit: Callable[[Ray, int, float, int], Hit],
     surface: Callable[[vec3, Footprint, int], Surface],
     look: Shading,
@@ -127,12 +128,13 @@ def light_from(
         aim: The direction.
         vertex: The surface.
         meeting: The surface and the direction to the eye, for its response.
+        respond: The response; as for ``paths.path_light``.
         next_hit: The next surface along a ray from a surface.
         surface: The material at a point of a part, averaged over a footprint.
         look: The density of fog.
         has_shapes: Whether shapes emit light; a constant.
     """
-    found = respond_to(meeting, aim.direction)
+    found = respond(meeting, aim.direction)
     color = found.value * aim.weight
     start = start_from(vertex, aim.direction)
     if brightest(abs(color)) <= 0.0 or start.within != 0:

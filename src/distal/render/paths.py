@@ -51,7 +51,7 @@ from distal.render.normals import EXACT
 from distal.render.path_lights import aim_at_light, light_from
 from distal.render.photon_aim import bundles, is_followed, is_followed_from_afar
 from distal.render.sampling.points import Stream, single, triple
-from distal.render.scatter import Meeting, all_specular, emitted, meet, sample_from
+from distal.render.scatter import Meeting, Response, Scattering, all_specular, emitted, meet
 from distal.render.shade import Shading
 from distal.render.surroundings import DirectionSample
 from distal.render.vertices import Start, Vertex, start_from, straight_on, vertex_at
@@ -116,6 +116,8 @@ def path_light(
     next_hit: Callable[[Ray, int, float, int], Hit],
     field_of: Callable[[vec3, int], float],
     surface: Callable[[vec3, Footprint, int], Surface],
+    respond: Callable[[Meeting, vec3], Response],
+    scatter: Callable[[Meeting, vec3], Scattering],
     lights: Callable[[int, vec3], LightSample],
     around: Callable[[vec3], vec3],
     directions: Callable[[vec3], DirectionSample],
@@ -149,6 +151,8 @@ def path_light(
             slope with which it leaves the surface, and the part that has this surface.
         field_of: Signed distance near a surface of a part (``Hit.part``).
         surface: The material at a point of a part, averaged over a footprint.
+        respond: How much of the light of a direction goes to the eye (``scatter.respond_to``).
+        scatter: A random direction by three random numbers (``scatter.sample_from``).
         lights: The light with a given index, from 0, at a point.
         around: Ambient light from a direction.
         directions: Random directions for ambient light, by three random numbers.
@@ -251,11 +255,13 @@ def path_light(
                 vertex, lights, light_count, lamps, lamp_count, around, directions,
                 has_directions, chance, u, which, target,
             )  # fmt: skip
-            direct = light_from(aim, vertex, meeting, next_hit, surface, look, lamp_count > 0)
+            direct = light_from(
+                aim, vertex, meeting, respond, next_hit, surface, look, lamp_count > 0
+            )  # fmt: skip
             left = scattered and bundling and aim.is_followed
             color += throughput * select(left, vec3(0.0), direct.color)
             lost = merged(lost, select(direct.lost, SHADOWS, 0))
-        onward = sample_from(meeting, triple(stream, decision + DIRECTION))
+        onward = scatter(meeting, triple(stream, decision + DIRECTION))
         # Light that a bump's normal mirrors into the surface is lost, and likewise.
         if dot(onward.direction, vertex.shown) * dot(onward.direction, vertex.n) < 0.0:
             break

@@ -78,7 +78,8 @@ def bundles(surface: Surface) -> bool:
     Photons are followed over such surfaces; they end at others, unless these mirror perfectly.
     """
     narrow = surface.roughness * surface.roughness <= WIDEST
-    return narrow and brightest(surface.color) * surface.diffuse <= 0.0
+    even = max(brightest(surface.color) * surface.diffuse, surface.bsdf_share)
+    return narrow and even <= 0.0
 
 
 @func

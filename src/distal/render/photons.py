@@ -52,7 +52,7 @@ from distal.render.normals import EXACT
 from distal.render.paths import LIKELIEST, MOST_SEGMENTS, SURE
 from distal.render.photon_aim import TARGET_DECISIONS, WAVELENGTH, bundles, departure
 from distal.render.sampling.points import Stream, reversed_bits, single, triple
-from distal.render.scatter import Meeting, meet, respond_to, sample_from
+from distal.render.scatter import Meeting, Response, Scattering, meet
 from distal.render.shade import Shading
 from distal.render.surroundings import DirectionSample
 from distal.render.vertices import Start, Vertex, start_from, straight_on, vertex_at
@@ -259,6 +259,7 @@ def deposit(
     field: Field3,
     field_of: Callable[[vec3, int], float],
     surface: Callable[[vec3, Footprint, int], Surface],
+    scatter: Callable[[Meeting, vec3], Scattering],
     bodies: int,
     common: int,
     lights: Callable[[int, vec3], LightSample],
@@ -286,6 +287,7 @@ def deposit(
         field: Signed distance to the scene.
         field_of: Signed distance near a surface of a part.
         surface: The material at a point of a part, averaged over a footprint.
+        scatter: A random direction; as for ``paths.path_light``.
         bodies: How many bodies the scene has (``media``); a constant.
         common: The body of shapes without a priority; a constant.
         lights: The light with a given index, from 0, at a point.
@@ -343,7 +345,7 @@ def deposit(
             power = power * color_of(wavelength)
             is_tinted = True
         decision = TARGET_DECISIONS + DECISIONS * i
-        onward = sample_from(meeting, triple(stream, decision + DIRECTION))
+        onward = scatter(meeting, triple(stream, decision + DIRECTION))
         ending = single(stream, decision + ENDING)
         if dot(onward.direction, vertex.shown) * dot(onward.direction, vertex.n) < 0.0:
             break
@@ -352,7 +354,9 @@ def deposit(
             mirror = meeting.lobes.mirror_specular
             mixed = not mirror and meeting.lobes.through_specular and material.transmission > 0.0
             ends = ending < 0.5 if mixed else not onward.specular
-            chance = select(mixed, 0.5, select(mirror, meeting.lobes.even, 1.0))
+            own = material.bsdf_share
+            even = own + (1.0 - own) * meeting.lobes.even
+            chance = select(mixed, 0.5, select(mirror, even, 1.0))
             if ends or not onward.specular:
                 if ends and bundled:
                     cell = floor(vertex.p * (0.5 / cells.radius))
@@ -382,6 +386,7 @@ def gathered(
     cells: PhotonCells,
     vertex: Vertex,
     meeting: Meeting,
+    respond: Callable[[Meeting, vec3], Response],
     stream: Stream,
 ) -> vec3:
     """Return the light of photons that a surface sends to the eye.
@@ -397,6 +402,7 @@ def gathered(
         cells: The grid.
         vertex: The surface.
         meeting: The surface and the direction to the eye, for its response.
+        respond: The response; as for ``paths.path_light``.
         stream: The random numbers of the path.
 
     Source: V. A. Epanechnikov, "Non-Parametric Estimation of a Multivariate Probability Density"
@@ -433,7 +439,7 @@ def gathered(
     direction = arrivals[2 * chosen].xyz
     color = arrivals[2 * chosen + 1].xyz
     cosine = max(abs(dot(direction, vertex.n)), 1e-3)
-    response = respond_to(meeting, direction).value / cosine
+    response = respond(meeting, direction).value / cosine
     return response * color * (total * cells.share * narrow * (2.0 / PI))
 
 

@@ -348,7 +348,8 @@ def sample(surface: Surface, view: vec3, n: vec3, inside: bool, u: vec3) -> Scat
 def all_specular(surface: Surface) -> bool:
     """Return whether only ``sample`` finds the surface's light: lights need not be sampled."""
     smooth = surface.roughness * surface.roughness < SHARPEST
-    return smooth and brightest(surface.color) * surface.diffuse <= 0.0
+    even = max(brightest(surface.color) * surface.diffuse, surface.bsdf_share)
+    return smooth and even <= 0.0
 
 
 @func

@@ -20,6 +20,7 @@ from distal.render.sampling.points import Stream
 from distal.render.scatter import SHARPEST, Meeting
 from distal.render.vertices import Vertex
 from distal.scene.lowering.ray_functions import Define
+from distal.scene.lowering.scattering import scattering_functions
 from distal.scene.lowering.shapes import ShapeComposer
 from distal.scene.lowering.union_parts import painted_parts_of
 from distal.scene.tree.conversion import Number
@@ -146,7 +147,8 @@ class PhotonFunctions:
         def make(body: StatementList, given: Mapping[str, Expr]) -> Expr:
             if tables is None:
                 return self._composer.call(photons.none_gathered, given)
-            return self._composer.call(photons.gathered, {**given, **tables})
+            respond = scattering_functions(self._composer, self._define)["respond"]
+            return self._composer.call(photons.gathered, {**given, **tables, "respond": respond})
 
         struct = self._composer.assembly.struct
         params = [("vertex", struct(Vertex)), ("meeting", struct(Meeting))]

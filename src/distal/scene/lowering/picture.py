@@ -6,7 +6,8 @@ that connects them by a renderer of the library. Values are bound by parameter n
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final, cast
 
 from distal.fields.guarantees import UNBOUNDED
@@ -22,7 +23,7 @@ from distal.ir.nodes import (
     Read,
     Return,
 )
-from distal.ir.types import BOOL, FLOAT, FRAME, INT, IVEC4, VEC2, VEC3, VEC4, FunctionType, Type
+from distal.ir.types import BOOL, FLOAT, FRAME, INT, IVEC4, VEC2, VEC3, VEC4, Type
 from distal.lang.functions import Func
 from distal.render import (
     bounce,
@@ -60,7 +61,8 @@ from distal.scene.lowering.glass_shadows import colored_shadow, split_glass
 from distal.scene.lowering.light_functions import LightFunctions
 from distal.scene.lowering.parts.table import has_table, rolled_for, split_table
 from distal.scene.lowering.photon_functions import PhotonFunctions
-from distal.scene.lowering.ray_functions import RayFunctions, step_limit
+from distal.scene.lowering.ray_functions import RayFunctions, function_in, step_limit
+from distal.scene.lowering.scattering import number_bsdfs, scattering_functions
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.lowering.union_parts import united
 from distal.scene.tree.node import Node
@@ -110,6 +112,7 @@ class SceneLowering:
         """
         self._assembly = assembly
         self._scene = scene
+        self._function = partial(function_in, assembly)
         rolls = scene.acceleration and not self._hybrid
         node = scene.shape.node
         bodies, common = [node], 0
@@ -136,6 +139,10 @@ class SceneLowering:
         }
         self.camera = CameraFunctions(self.composer, scene, self.node, self._function)
         self._lights = LightFunctions(self.composer, scene, self._numbers, self._function)
+        if paths:
+            nodes = scene.shape.node.walk()
+            painted = (m for node in nodes for m in (node.material, node.cut_material))
+            number_bsdfs(self.composer, [scene.material, *painted])
 
     def main(
         self,
@@ -385,6 +392,7 @@ class SceneLowering:
         if paths:
             given |= {"around": self._lights.ambient("direction"), **self._lights.directions()}
             given |= self._lights.lamps(scene.shape.node)
+            given |= scattering_functions(composer, self._function)
         return given
 
     def given_of_layers(
@@ -442,25 +450,6 @@ class SceneLowering:
         values = self.composer.values.all(self.node)
         divisor = self.composer.bounds.of(body, self.node, values).divisor
         return body.let("steps", step_limit(divisor, in_glass=self._scene.renderer == "refracted"))
-
-    def _function(
-        self,
-        name: str,
-        params: Sequence[tuple[str, Type]],
-        make: Callable[[StatementList, Mapping[str, Expr]], Expr],
-        captured: Sequence[Expr] = (),
-    ) -> FunctionRef:
-        """Add a function, and return it as a value.
-
-        The values of ``captured`` are bound to its last parameters.
-        """
-        body = StatementList(taken={n for n, _ in params})
-        result = make(body, {n: Read(n, t) for n, t in params})
-        body.statements.append(Return(result))
-        declared = tuple(Param(n, t) for n, t in params)
-        defined = self._assembly.define(name, declared, result.type, body.statements)
-        free = tuple(t for _, t in params[: len(params) - len(captured)])
-        return FunctionRef(defined, tuple(captured), FunctionType(free, result.type))
 
     def _shown(self, view: str) -> Func:
         """Return the library function that computes a view along a ray."""

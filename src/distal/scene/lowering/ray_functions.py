@@ -13,11 +13,23 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Final, TypeAlias
 
 from distal.fields.guarantees import UNBOUNDED, Primitive
+from distal.frontend import Assembly
 from distal.ir.build import boolean, builtin, cast, compare, integer, multiply
 from distal.ir.build import field as field_of
 from distal.ir.build import number as constant_number
-from distal.ir.nodes import Call, CompareOp, Const, Construct, Expr, FunctionRef, If, Return
-from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3, Kind, Type
+from distal.ir.nodes import (
+    Call,
+    CompareOp,
+    Const,
+    Construct,
+    Expr,
+    FunctionRef,
+    If,
+    Param,
+    Read,
+    Return,
+)
+from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3, FunctionType, Kind, Type
 from distal.lang.functions import Func
 from distal.passes.fold.fold import fold_expression
 from distal.render import (
@@ -81,6 +93,27 @@ _TAKEN: Final = (
 Make: TypeAlias = "Callable[[StatementList, Mapping[str, Expr]], Expr]"
 Params: TypeAlias = "Sequence[tuple[str, Type]]"
 Define: TypeAlias = "Callable[[str, Params, Make, Sequence[Expr]], FunctionRef]"
+
+
+def function_in(
+    assembly: Assembly, name: str, params: Params, make: Make, captured: Sequence[Expr] = ()
+) -> FunctionRef:
+    """Add a function to a program, and return it as a value.
+
+    Args:
+        assembly: The program.
+        name: The preferred name.
+        params: Names and types of its parameters.
+        make: Adds its statements and returns its result.
+        captured: Values that are bound to its last parameters.
+    """
+    body = StatementList(taken={n for n, _ in params})
+    result = make(body, {n: Read(n, t) for n, t in params})
+    body.statements.append(Return(result))
+    declared = tuple(Param(n, t) for n, t in params)
+    defined = assembly.define(name, declared, result.type, body.statements)
+    free = tuple(t for _, t in params[: len(params) - len(captured)])
+    return FunctionRef(defined, tuple(captured), FunctionType(free, result.type))
 
 
 def step_limit(divisor: Expr, *, in_glass: bool = False) -> Expr:

@@ -21,7 +21,7 @@ from distal.lang.functions import Func
 from distal.lang.source_places import author_place
 from distal.lang.values import VectorValue
 from distal.render import material as library
-from distal.render import named_materials
+from distal.render import named_materials, own_scattering
 from distal.render.bump import raised
 from distal.render.declarations import MATERIALS, Declaration
 from distal.scene.objects.declared import declared_function, scene_call
@@ -31,6 +31,7 @@ from distal.scene.tree.calls import FunctionCall, Pattern
 from distal.scene.tree.conversion import Asked, number, unwrapped
 from distal.scene.tree.conversion import Number as CheckedNumber
 from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.own_functions import DENSITY, EVALUATE, SAMPLE, OwnBsdf
 from distal.scene.tree.value import CallRecord, recorded, value_of
 
 if TYPE_CHECKING:
@@ -203,6 +204,56 @@ class Material(CalledObject):
         made._record(CallRecord(_bumped, (), given, Material))
         return made
 
+    def bsdf(
+        self, evaluate: Func, sample: Func | None = None, density: Func | None = None
+    ) -> Material:
+        """Return the material with light scattered by a function of your own in mode "path".
+
+        Other modes show the material itself. Its colors and numbers, patterns included, are the
+        first argument of each function: ``surface.color``, ``surface.roughness``. All directions
+        are unit vectors of space and lead away from the surface; ``n`` is on the side of the view.
+        ``surface.ior`` is the index beyond the surface, relative to the side of the view. Try it
+        with ``furnace``.
+
+        Args:
+            evaluate: ``(surface: Surface, n: vec3, view: vec3, light: vec3) -> vec3``, the
+                fraction of light from a direction that goes to the view, per solid angle (1 / sr),
+                without the cosine. It may be above 0 on the other side of the surface.
+            sample: ``(surface: Surface, n: vec3, view: vec3, u: vec3) -> vec3``, a direction to
+                the light for three random numbers in [0, 1); of length 0 where there is none. By
+                default as dense as the cosine, on the side of the view.
+            density: ``(surface: Surface, n: vec3, view: vec3, light: vec3) -> float``, the density
+                of these directions (1 / sr).
+
+        Raises:
+            TypeError: A function takes or returns something else, or one of ``sample`` and
+                ``density`` is missing.
+        """
+        place = author_place()
+        if (sample is None) is not (density is None):
+            missing = "density" if density is None else "sample"
+            refuse_kind(
+                f"bsdf needs '{missing}': sample and density belong together",
+                "density is that of the directions of sample, by solid angle; or leave out both",
+                place,
+            )
+        own = OwnBsdf(
+            EVALUATE.checked(evaluate, place),
+            own_scattering.even_sample if sample is None else SAMPLE.checked(sample, place),
+            own_scattering.even_density if density is None else DENSITY.checked(density, place),
+        )
+        values = {"surface": self, "bsdf": own}
+        made = Material.of(
+            FunctionCall("bsdf", own_scattering.with_bsdf, values, place),
+            reflects=self.reflects,
+            refracts=self.refracts,
+            emits=self.emits,
+        )
+        chosen = {} if sample is None else {"sample": sample, "density": density}
+        given = {"surface": self, "evaluate": evaluate, **chosen}
+        made._record(CallRecord(_scattered, (), given, Material))
+        return made
+
     @property
     def has_bump(self) -> bool:
         """Whether a relief is painted on it, or on a part of it."""
@@ -230,6 +281,16 @@ def _bumped(surface: Material, height: Number | Varying) -> Material:
 
 
 cast("Any", _bumped).written_as = ".bump"
+
+
+def _scattered(
+    surface: Material, evaluate: Func, sample: Func | None = None, density: Func | None = None
+) -> Material:
+    """Return ``surface.bsdf(evaluate, …)``."""
+    return surface.bsdf(evaluate, sample, density)
+
+
+cast("Any", _scattered).written_as = ".bsdf"
 
 
 @func

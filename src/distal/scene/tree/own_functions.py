@@ -6,18 +6,22 @@ error at the author's line. Does not depend on what the function computes.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
 from distal.diagnostics import Span
+from distal.frontend.signatures.annotations import to_type
 from distal.frontend.signatures.signatures import MISSING
-from distal.ir.types import FLOAT, VEC3, FunctionType, Type
+from distal.ir.nodes import Expr
+from distal.ir.types import FLOAT, INT, VEC3, FunctionType, Type
 from distal.lang.functions import Func
+from distal.render.material import Surface
 from distal.scene.tree.arguments import slots_of
 from distal.scene.tree.calls import result_of
 from distal.scene.tree.conversion import type_name
 from distal.scene.tree.errors import refuse_kind
+from distal.scene.tree.varying import Composer
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,3 +77,58 @@ class OwnFunction:
 
 TONE_MAP: Final = OwnFunction("a tone map", (("light", VEC3),), VEC3)
 FALLOFF: Final = OwnFunction("a falloff", (("distance", FLOAT),), FLOAT)
+_SEEN: Final = (("surface", to_type(Surface)), ("n", VEC3), ("view", VEC3))
+EVALUATE: Final = OwnFunction("a scattering function", (*_SEEN, ("light", VEC3)), VEC3)
+SAMPLE: Final = OwnFunction("a function of directions", (*_SEEN, ("u", VEC3)), VEC3)
+DENSITY: Final = OwnFunction("a density of directions", (*_SEEN, ("light", VEC3)), FLOAT)
+
+
+@dataclass(frozen=True, slots=True)
+class OwnBsdf:
+    """An author's scattering function as a value of a material; a program knows it by number.
+
+    Attributes:
+        evaluate: The function of the surface, the normal, the view and the light.
+        sample: A random direction of light.
+        density: The density of these directions by solid angle.
+    """
+
+    evaluate: Func
+    sample: Func
+    density: Func
+
+    @staticmethod
+    def known(composer: Composer) -> dict[OwnBsdf, BsdfInProgram]:
+        """Return the functions of a program so far."""
+        found: dict[OwnBsdf, BsdfInProgram] = composer.assembly.made.setdefault(OwnBsdf, {})
+        return found
+
+    def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
+        """Return the number of the function in a program.
+
+        Programs that do not call it read its parameters and have its mistakes, too.
+        """
+        known = self.known(composer)
+        if self not in known:
+            reference = composer.assembly.reference
+            known[self] = BsdfInProgram(
+                composer.assembly.constant(len(known) + 1, INT),
+                reference(self.evaluate, EVALUATE.type),
+                reference(self.sample, SAMPLE.type),
+                reference(self.density, DENSITY.type),
+            )
+        return known[self].number
+
+    def functions(self) -> Iterator[Func]:
+        """Yield the scene functions."""
+        yield from (self.evaluate, self.sample, self.density)
+
+
+@dataclass(frozen=True, slots=True)
+class BsdfInProgram:
+    """An author's scattering function in a program: its number, from 1, and function values."""
+
+    number: Expr
+    evaluate: Expr
+    sample: Expr
+    density: Expr

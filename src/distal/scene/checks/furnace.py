@@ -1,0 +1,322 @@
+"""A material in a white furnace: how much light it gives back, and whether its sampling is right.
+
+Input: a material. Output: a ``Furnace``: what a surface scatters of light from all sides, once by
+its random directions and once by counting over all directions, and every contradiction between its
+functions. Meant for scattering functions of authors (``Material.bsdf``); right for every material.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from distal.ir.build import boolean, builtin, compose, number, swizzle
+from distal.ir.nodes import Apply, Expr, Param, Read, Return
+from distal.ir.types import VEC3, FunctionType, Type
+from distal.lang.composed import Composed
+from distal.lang.functions import Func
+from distal.lang.runtime_access import executor
+from distal.lang.source_places import author_place
+from distal.render import scatter
+from distal.render.footprint import point_footprint
+from distal.render.sampling.warps import in_cone
+from distal.scene.lowering.ray_functions import function_in
+from distal.scene.lowering.scattering import number_bsdfs, scattering_functions
+from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
+from distal.scene.objects.materials import Material, as_material
+from distal.scene.tree.errors import refuse
+from distal.scene.tree.values import StatementList
+
+if TYPE_CHECKING:
+    from distal.frontend import Assembly
+    from distal.scene.objects.argument_types import Color, Varying
+
+COSINES: Final = (1.0, 0.8, 0.5, 0.25, 0.1)
+# Random directions, and directions that are counted over, for each view.
+SAMPLES: Final = 1 << 14
+COUNTED: Final = 2 * 724 * 724
+# Cells of the sphere, by height and turn, in which directions are counted.
+ROWS: Final = 16
+COLUMNS: Final = 24
+# Deviations beyond these are faults: of chi-square in standard deviations, of shares in light.
+SURPRISING: Final = 5.0
+NOTICED: Final = 0.05
+SLACK: Final = 0.01
+# A scattering function differs from its mirrored one by this share of its mean.
+RECIPROCAL: Final = 0.02
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """What a material does with light from all sides, of brightness 1, seen at one angle.
+
+    Attributes:
+        cosine: The cosine of the angle to the normal.
+        albedo: The red, green and blue light that goes to the view, by random directions.
+        counted: The same without perfect mirrors and smooth glass, by all directions.
+        specular: The part of ``albedo`` that perfect mirrors and smooth glass make.
+        density: The integral of the density over all directions.
+        sampled: The share of random directions that have a density.
+    """
+
+    cosine: float
+    albedo: tuple[float, float, float]
+    counted: tuple[float, float, float]
+    specular: tuple[float, float, float]
+    density: float
+    sampled: float
+
+
+@dataclass(frozen=True, slots=True)
+class Furnace:
+    """What a material does with light, and what is wrong with it.
+
+    Attributes:
+        views: The light at each angle.
+        reciprocity: How far the function changes if view and light change places, as a share of
+            its mean; 0 for a reciprocal one.
+        faults: What is wrong, one sentence for each kind, at the first angle that shows it.
+        notes: What may be meant.
+    """
+
+    views: tuple[View, ...]
+    reciprocity: float
+    faults: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        rows = ["cosine  albedo               counted              density"]
+        for view in self.views:
+            albedo = " ".join(f"{share:.4f}" for share in view.albedo)
+            counted = " ".join(f"{share:.4f}" for share in view.counted)
+            rows.append(f"{view.cosine:<6.2f}  {albedo}  {counted}  {view.density:.4f}")
+        rows += [f"fault: {fault}" for fault in self.faults]
+        rows += [f"note: {note}" for note in self.notes]
+        return "\n".join(rows)
+
+
+def furnace(
+    material: Material | Color | Varying,
+    cosines: Sequence[float] = COSINES,
+    *,
+    inside: bool = False,
+    params: Mapping[str, Any] | None = None,
+) -> Furnace:
+    """Return how much light a material gives back, and what is wrong with its functions.
+
+    The surface is lit from all sides by light of brightness 1 (a white furnace). No material may
+    give back more; a white one that loses nothing gives back 1. ``print(furnace(m))`` shows a
+    table; a test asserts that ``furnace(m).faults`` is empty.
+
+    Args:
+        material: The material, with a scattering function of your own (``bsdf``) or without; its
+            patterns are seen at the origin.
+        cosines: The angles of the view: cosines to the normal, above 0, at most 1.
+        inside: Whether the view is on the inside of the solid.
+        params: Values of parameters by name; the others have their defaults.
+
+    Raises:
+        CompileError: A function of the material has mistakes.
+        ValueError: A cosine is out of its range.
+        TypeError: It is no material.
+    """
+    place = author_place()
+    tried = as_material(material, place)
+    for cosine in cosines:
+        if not 0.0 < cosine <= 1.0:
+            refuse(f"furnace: cosine {cosine:g} is out of range", "above 0, at most 1", place)
+    trial = _Trial(tried, params or {}, inside=inside)
+    found = [trial.seen_at(cosine) for cosine in cosines]
+    reciprocity = trial.reciprocity()
+    notes = []
+    if reciprocity > RECIPROCAL:
+        share = f"{100 * reciprocity:.1f} %"
+        notes.append(f"view and light change places: the function differs by {share} of its mean")
+    faults: dict[str, str] = {}
+    for _, of_view in found:
+        faults = {**of_view, **faults}
+    views = tuple(view for view, _ in found)
+    return Furnace(views, reciprocity, tuple(faults.values()), tuple(notes))
+
+
+class _Trial:
+    """A material whose functions are evaluated at many directions."""
+
+    def __init__(self, material: Material, params: Mapping[str, Any], *, inside: bool) -> None:
+        self._params = params
+        self._respond = _Program(material, "respond", "light", inside=inside)
+        self._scatter = _Program(material, "scatter", "u", inside=inside)
+        side = round(math.sqrt(COUNTED / 2))
+        upper = np.asarray(in_cone(_middles(side), 1.0), np.float32)
+        self._around = np.concatenate([upper, upper * np.array([1, 1, -1], np.float32)])
+
+    def _called(self, program: _Program, view: Any, other: Any) -> Any:
+        views = np.broadcast_to(np.asarray(view, np.float32), other.shape)
+        return executor().call(program, (views.copy(), other), {}, params=self._params)
+
+    def seen_at(self, cosine: float) -> tuple[View, dict[str, str]]:
+        """Return what is seen at an angle, and what is wrong there, by kind."""
+        view = (math.sqrt(max(1.0 - cosine * cosine, 0.0)), 0.0, cosine)
+        onward = self._called(self._scatter, view, self._numbers())
+        weight = np.asarray(onward.weight, float)
+        density = np.asarray(onward.density, float)
+        specular = np.asarray(onward.specular, bool)
+        response = self._called(self._respond, view, self._around)
+        value, dense = np.asarray(response.value, float), np.asarray(response.density, float)
+        area = 4.0 * math.pi / len(self._around)
+        spread = np.where(specular[:, None], 0.0, weight)
+        seen = View(
+            cosine,
+            _color(weight.mean(0)),
+            _color(value.sum(0) * area),
+            _color((weight - spread).mean(0)),
+            float(dense.sum() * area),
+            float(np.mean((density > 0.0) & ~specular)),
+        )
+        numbers = (weight, density, value, dense)
+        if not all(np.isfinite(found).all() for found in numbers):
+            return seen, {"finite": f"a value is not finite {_at(seen)}"}
+        directions = np.asarray(onward.direction, float)[(density > 0.0) & ~specular]
+        error = spread.std(0).max() / math.sqrt(len(spread))
+        faults = _faults_of(seen, error, least=min(found.min() for found in numbers))
+        missed = float(value[dense <= 0.0].sum(0).max() * area)
+        if missed > SLACK:
+            share = f"{missed:.3f} of the light"
+            faults = {"missed": f"{share} comes from directions of density 0 {_at(seen)}"}
+        elif not faults:
+            faults = self._misplaced(seen, directions, dense * area * len(spread))
+        return seen, faults
+
+    def _misplaced(self, seen: View, directions: Any, expected: Any) -> dict[str, str]:
+        """Return whether random directions are as dense as they say, by cells of the sphere."""
+        counts = np.bincount(self._cells(directions), minlength=ROWS * COLUMNS).astype(float)
+        wanted = np.bincount(self._cells(self._around), expected, minlength=ROWS * COLUMNS)
+        differ = float(np.abs(counts - wanted).sum()) / max(2.0 * counts.sum(), 1.0)
+        if differ <= NOTICED or deviation(counts, wanted) <= SURPRISING:
+            return {}
+        share = f"{100 * differ:.0f} %"
+        return {"dense": f"sample and density disagree in {share} of directions {_at(seen)}"}
+
+    def _cells(self, directions: Any) -> Any:
+        row = np.clip(0.5 * ROWS * (directions[:, 2] + 1.0), 0, ROWS - 1).astype(int)
+        turn = np.arctan2(directions[:, 1], directions[:, 0]) / (2.0 * math.pi) % 1.0
+        return row * COLUMNS + np.minimum((turn * COLUMNS).astype(int), COLUMNS - 1)
+
+    def reciprocity(self) -> float:
+        """Return how far the function changes if view and light change places, on one side."""
+        count = 1 << 12
+        flat = (np.random.default_rng(3).random((2, count, 2))).astype(np.float32)
+        a, b = (np.asarray(in_cone(side, 0.95), np.float32) for side in flat)
+        there = executor().call(self._respond, (a, b), {}, params=self._params).value
+        back = executor().call(self._respond, (b, a), {}, params=self._params).value
+        one = np.asarray(there, float) / b[:, 2:]
+        other = np.asarray(back, float) / a[:, 2:]
+        mean = float(np.abs(one).mean())
+        return float(np.abs(one - other).mean()) / mean if mean > 0.0 else 0.0
+
+    def _numbers(self) -> Any:
+        """Return random triples; the first two spread evenly."""
+        side = round(math.sqrt(SAMPLES))
+        rng = np.random.default_rng(5)
+        flat = _middles(side) + (rng.random((side * side, 2)) - 0.5) / side
+        return np.column_stack([flat, rng.random(side * side)]).astype(np.float32)
+
+
+class _Program(Composed):
+    """A function of one material, of a view and another vector, about the normal (0, 0, 1)."""
+
+    def __init__(self, material: Material, function: str, other: str, *, inside: bool) -> None:
+        self._material, self._function, self._inside = material, function, inside
+        self.name = f"{material.call.what} ({function})"
+        self.signature = (("view", VEC3), (other, VEC3))
+        self.result: Type = VEC3
+
+    def compose(self, assembly: Assembly) -> str:
+        """Add the function, and return its name."""
+        body = StatementList(taken={name for name, _ in self.signature})
+        composer = ShapeComposer(assembly, [])
+        number_bsdfs(composer, [self._material])
+        functions = scattering_functions(composer, partial(function_in, assembly))
+        view, other = (Read(name, type) for name, type in self.signature)
+        n = compose(VEC3, number(0.0), number(0.0), number(1.0))
+        site: dict[str, Expr] = {
+            "p": number(0.0, VEC3),
+            "n": n,
+            "cell": ZERO_CELL,
+            "footprint": composer.call(point_footprint, {}),
+            "facing": builtin("abs", swizzle(view, "z")),
+        }
+        surface = body.let("surface", self._material.emit(composer, site))
+        met = {"surface": surface, "view": view, "n": n, "inside": boolean(self._inside)}
+        meeting = body.let("meeting", composer.call(scatter.meet, met))
+        called = functions[self._function]
+        assert isinstance(called.type, FunctionType)
+        result = Apply(called, (meeting, other), called.type.result)
+        self.result = result.type
+        body.statements.append(Return(result))
+        params = tuple(Param(name, type) for name, type in self.signature)
+        return assembly.define("tried", params, self.result, body.statements)
+
+    def functions(self) -> Iterable[Func]:
+        """Yield the scene functions that the material calls."""
+        return self._material.call.functions()
+
+
+def _faults_of(seen: View, error: float, *, least: float) -> dict[str, str]:
+    """Return what is wrong with the light at an angle, by kind.
+
+    Args:
+        seen: The light.
+        error: The standard deviation of the light by random directions.
+        least: The least of all values.
+    """
+    slack = SLACK + 4.0 * error
+    faults: dict[str, str] = {}
+    if least < 0.0:
+        faults["sign"] = f"a value is below 0 ({least:.3g}) {_at(seen)}"
+    most = max(seen.albedo)
+    if most > 1.0 + slack:
+        faults["energy"] = f"gives back {most:.3f} of the light {_at(seen)}: more than it gets"
+    whole = [a + b for a, b in zip(seen.counted, seen.specular, strict=True)]
+    if max(abs(a - b) for a, b in zip(seen.albedo, whole, strict=True)) > slack:
+        a, b = (" ".join(f"{share:.3f}" for share in color) for color in (seen.albedo, whole))
+        faults["sample"] = f"sample finds {a} of the light {_at(seen)}, all directions have {b}"
+    if abs(seen.density - seen.sampled) > NOTICED:
+        whole_density = f"{seen.density:.3f} instead of {seen.sampled:.3f}"
+        faults["density"] = f"the density adds up to {whole_density} {_at(seen)}"
+    return faults
+
+
+def deviation(counts: Any, expected: Any) -> float:
+    """Return how far counts are from those expected, in standard deviations.
+
+    Cells that expect less than five are counted together. Wilson and Hilferty's cube root makes a
+    normal variable of chi-square.
+    """
+    few = expected < 5
+    pairs = [(c, e) for c, e in zip(counts[~few], expected[~few], strict=True)]
+    pairs.append((counts[few].sum(), expected[few].sum()))
+    statistic = sum((c - e) ** 2 / e for c, e in pairs if e > 1e-9)
+    freedom = max(len(pairs) - 1, 1)
+    middle = 1 - 2 / (9 * freedom)
+    return float(((statistic / freedom) ** (1 / 3) - middle) / math.sqrt(2 / (9 * freedom)))
+
+
+def _middles(side: int) -> Any:
+    """Return the middles of the cells of the unit square."""
+    places = (np.arange(side, dtype=np.float32) + np.float32(0.5)) / np.float32(side)
+    return np.stack(np.meshgrid(places, places, indexing="ij"), -1).reshape(-1, 2)
+
+
+def _color(values: Any) -> tuple[float, float, float]:
+    red, green, blue = (float(value) for value in values)
+    return red, green, blue
+
+
+def _at(seen: View) -> str:
+    return f"at cosine {seen.cosine:g}"
