@@ -2,7 +2,7 @@
 
 A host that knows the exported files alone draws them (``consumer``); its picture is the CPU's.
 ``make sweep`` sets ``DISTAL_ALL_PICTURES=1`` and draws every example by every target that has an
-interface, which takes an hour.
+interface, which takes ten minutes.
 """
 
 from __future__ import annotations
@@ -105,7 +105,8 @@ def compare(obj, folder: Path, target: str, name: str = "", time: float = 0.5) -
         shown = consumer.drawn(path, SIZE, time)
     except (egl.EglUnavailableError, gpu.GpuUnavailableError) as error:
         pytest.skip(str(error))
-    expected = obj.render(SIZE, samples=1, time=time)
+    options = {"mode": "direct"} if isinstance(obj, distal.Scene) else {}
+    expected = obj.render(SIZE, samples=1, time=time, **options)
     found = difference(expected.array, shown)
     assert found.is_agreement_of(name), found
     assert float(as_float(expected.array).std()) > 0.01, "a picture of one color shows nothing"
@@ -128,13 +129,32 @@ def test_all_that_a_picture_reads_is_exported(tmp_path, seed, target):
     compare(written(tmp_path, seed), tmp_path, target)
 
 
-@pytest.mark.parametrize("target", DESCRIBED)
-@pytest.mark.parametrize("name", sorted(distal.gallery()) if ALL else ["raymarcher"])
+# Without buffers the text is the whole tree, 1,600 bricks: Mesa's compiler takes over 20 GB.
+TOO_LARGE = {("bricks", "glsl-es100"), ("ripples", "glsl-es100")}
+# Mesa's lavapipe clips the triangle to two: along their common side its pixels lose shadows.
+LAVAPIPE = pytest.mark.xfail(reason="pixels along the diagonal of lavapipe's triangles")
+OF_DRIVERS = {("beach", "wgsl"): LAVAPIPE, ("forest", "wgsl"): LAVAPIPE}
+
+
+@pytest.mark.parametrize(
+    ("name", "target"),
+    [
+        pytest.param(name, target, marks=OF_DRIVERS.get((name, target), ()))
+        for name in (sorted(distal.gallery()) if ALL else ["raymarcher"])
+        for target in DESCRIBED
+        if (name, target) not in TOO_LARGE
+    ],
+)
 def test_examples_are_drawn_from_their_files(tmp_path, name, target):
     try:
         compare(distal.load(f"example:{name}"), tmp_path, target, name)
     except distal.CompileError as error:
         assert error.diagnostics[0].span is not None, error
+
+
+def test_a_text_of_a_scene_of_paths_says_that_it_is_direct_light(tmp_path):
+    with pytest.warns(UserWarning, match="a text draws direct light, and the scene is in mode"):
+        distal.load("example:prism").export(tmp_path / "out.glsl", target="glsl-es300")
 
 
 BALLS = """

@@ -28,6 +28,7 @@ from distal.ir.nodes import EntryKind, Module, Origin
 from distal.lang.chosen_values import checked_values
 from distal.lang.composed import Composed
 from distal.lang.lazy_module import LazyModule
+from distal.scene.tree.errors import warn
 from distal.version import __version__
 
 if TYPE_CHECKING:
@@ -172,6 +173,12 @@ def text_files(seen: Viewable, target: str, options: TextOptions, stem: str) -> 
         CompileError: The text cannot hold all that the picture reads.
     """
     values = checked_values(seen.parameters, options.params)
+    if seen.scene is not None and seen.is_traced(options.view):
+        warn(
+            "a text draws direct light, and the scene is in mode 'path': export a page for paths, "
+            "or give the scene mode='direct'",
+            seen.scene.place,
+        )
     image = seen.image(options.view, encoded=True)
     description = TEXT_TARGETS[target]
     of_text = image.emitted() if isinstance(image, Composed) else image

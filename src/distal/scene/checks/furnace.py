@@ -52,7 +52,7 @@ RECIPROCAL: Final = 0.02
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class FurnaceView:
     """What a material does with light from all sides, of brightness 1, seen at one angle.
 
     Attributes:
@@ -84,7 +84,7 @@ class Furnace:
         notes: What may be meant.
     """
 
-    views: tuple[View, ...]
+    views: tuple[FurnaceView, ...]
     reciprocity: float
     faults: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
@@ -149,17 +149,17 @@ class _Trial:
 
     def __init__(self, material: Material, params: Mapping[str, Any], *, inside: bool) -> None:
         self._params = params
-        self._respond = _Program(material, "respond", "light", inside=inside)
-        self._scatter = _Program(material, "scatter", "u", inside=inside)
+        self._respond = _ScatteringProgram(material, "respond", "light", inside=inside)
+        self._scatter = _ScatteringProgram(material, "scatter", "u", inside=inside)
         side = round(math.sqrt(COUNTED / 2))
         upper = np.asarray(in_cone(_middles(side), 1.0), np.float32)
         self._around = np.concatenate([upper, upper * np.array([1, 1, -1], np.float32)])
 
-    def _called(self, program: _Program, view: Any, other: Any) -> Any:
+    def _called(self, program: _ScatteringProgram, view: Any, other: Any) -> Any:
         views = np.broadcast_to(np.asarray(view, np.float32), other.shape)
         return executor().call(program, (views.copy(), other), {}, params=self._params)
 
-    def seen_at(self, cosine: float) -> tuple[View, dict[str, str]]:
+    def seen_at(self, cosine: float) -> tuple[FurnaceView, dict[str, str]]:
         """Return what is seen at an angle, and what is wrong there, by kind."""
         view = (math.sqrt(max(1.0 - cosine * cosine, 0.0)), 0.0, cosine)
         onward = self._called(self._scatter, view, self._numbers())
@@ -170,7 +170,7 @@ class _Trial:
         value, dense = np.asarray(response.value, float), np.asarray(response.density, float)
         area = 4.0 * math.pi / len(self._around)
         spread = np.where(specular[:, None], 0.0, weight)
-        seen = View(
+        seen = FurnaceView(
             cosine,
             _color(weight.mean(0)),
             _color(value.sum(0) * area),
@@ -192,7 +192,7 @@ class _Trial:
             faults = self._misplaced(seen, directions, dense * area * len(spread))
         return seen, faults
 
-    def _misplaced(self, seen: View, directions: Any, expected: Any) -> dict[str, str]:
+    def _misplaced(self, seen: FurnaceView, directions: Any, expected: Any) -> dict[str, str]:
         """Return whether random directions are as dense as they say, by cells of the sphere."""
         counts = np.bincount(self._cells(directions), minlength=ROWS * COLUMNS).astype(float)
         wanted = np.bincount(self._cells(self._around), expected, minlength=ROWS * COLUMNS)
@@ -227,7 +227,7 @@ class _Trial:
         return np.column_stack([flat, rng.random(side * side)]).astype(np.float32)
 
 
-class _Program(Composed):
+class _ScatteringProgram(Composed):
     """A function of one material, of a view and another vector, about the normal (0, 0, 1)."""
 
     def __init__(self, material: Material, function: str, other: str, *, inside: bool) -> None:
@@ -267,7 +267,7 @@ class _Program(Composed):
         return self._material.call.functions()
 
 
-def _faults_of(seen: View, error: float, *, least: float) -> dict[str, str]:
+def _faults_of(seen: FurnaceView, error: float, *, least: float) -> dict[str, str]:
     """Return what is wrong with the light at an angle, by kind.
 
     Args:
@@ -318,5 +318,5 @@ def _color(values: Any) -> tuple[float, float, float]:
     return red, green, blue
 
 
-def _at(seen: View) -> str:
+def _at(seen: FurnaceView) -> str:
     return f"at cosine {seen.cosine:g}"
