@@ -334,20 +334,36 @@ def _syntax_error(error: SyntaxError, filename: str) -> CompileError:
 
 
 def _pick(module: types.ModuleType, file: Path, name: str | None) -> SceneCode:
-    found = {k: v for k, v in vars(module).items() if isinstance(v, Func | Composed)}
+    found = _scene_code(module)
     if name is not None:
         if name not in found:
             raise LoadError(f"{file} has no scene, @image or @func '{name}'; {_listed(found)}")
-        return found[name]
+        return _shown(found[name])
     offered, what = _offered(module)
     if len(set(map(id, offered.values()))) == 1:
-        return next(iter(offered.values()))
+        return _shown(next(iter(offered.values())))
     for wanted in _DEFAULT_NAMES:
         if wanted in offered:
-            return offered[wanted]
+            return _shown(offered[wanted])
     if not offered:
         raise _nothing_shown(module, file, found)
     raise LoadError(f"{file} defines several {what}; say which: {file}:NAME; {_listed(offered)}")
+
+
+def _scene_code(module: types.ModuleType) -> dict[str, Any]:
+    """Return what a file makes, by name; a group of shapes and lights is among it."""
+    named = vars(module).items()
+    return {k: v for k, v in named if isinstance(v, Func | Composed) or _is_group(v)}
+
+
+def _is_group(value: Any) -> bool:
+    return hasattr(type(value), "as_scene")
+
+
+def _shown(value: Any) -> SceneCode:
+    """Return scene code; of a group, a scene of what it has."""
+    shown: SceneCode = value.as_scene() if _is_group(value) else value
+    return shown
 
 
 def _nothing_shown(
@@ -359,14 +375,14 @@ def _nothing_shown(
     return LoadError(text, None, reason, hint)
 
 
-def _offered(module: types.ModuleType) -> tuple[dict[str, SceneCode], str]:
+def _offered(module: types.ModuleType) -> tuple[dict[str, Any], str]:
     """Return the objects that need no name to be shown, and what they are."""
-    found = {k: v for k, v in vars(module).items() if isinstance(v, Func | Composed)}
+    found = _scene_code(module)
     pictures = {key: value for key, value in found.items() if _is_own_picture(value, module)}
     # Buffers are drawn for a picture; one is shown by its name.
     shown = {k: v for k, v in pictures.items() if not isinstance(v, FrameBuffer)}
     pictures = shown or pictures
-    shapes: dict[str, SceneCode] = {k: v for k, v in found.items() if isinstance(v, Composed)}
+    shapes = {k: v for k, v in found.items() if isinstance(v, Composed) or _is_group(v)}
     return (pictures, "pictures") if pictures else (shapes, "shapes")
 
 

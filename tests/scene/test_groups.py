@@ -316,3 +316,16 @@ def test_a_group_that_grows_in_a_loop_is_one_list():
         lamps = lamps | PointLight((number, 1, 1))
     assert len(lamps.parts) == 2_001 == len(lamps.lights) + 1
     assert hash(lamps.translate(0, 1, 0)) == hash(lamps.translate(0, 1, 0))
+
+
+def test_a_command_shows_a_group_by_its_name(tmp_path):
+    file = tmp_path / "lamp.py"
+    file.write_text(
+        "from distal import *\nball = Sphere(0.2)\nlamp = group(ball, PointLight((0, 2, 0)))\n",
+        encoding="utf-8",
+    )
+    shown = distal.load(f"{file}:lamp")
+    assert isinstance(shown, distal.Scene)
+    assert len(shown.lights) == 1
+    file.write_text("from distal import *\nlamp = group(Sphere(0.2))\n", encoding="utf-8")
+    assert isinstance(distal.load(file), distal.Scene)

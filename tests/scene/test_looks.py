@@ -386,3 +386,14 @@ def test_a_field_without_a_box_is_seen():
     scene = Scene(Shape.from_function(ball_field, radius=0.8).paint("#ff0000"))
     picture = scene.render(size=(24, 18), view="material").array
     assert (picture[..., 0] > 0.9).any()
+
+
+def test_the_ground_of_a_room_that_is_placed_keeps_the_floors_material():
+    room = Sphere(1.0).paint("red") | Plane(-1.0)
+    still, moved = Scene(room), Scene(room.translate(5.0, 0.0, 0.0))
+    turned = Scene((room.rotate(y=0.5) | Box(0.2).translate(1.5, 0, 0)).scale(2.0))
+    painted = Scene(room.paint("blue").translate(5.0, 0.0, 0.0))
+    for scene, has_ground in ((still, True), (moved, True), (turned, True), (painted, False)):
+        (plane,) = (node for node in scene.shape.node.walk() if node.rule.name == "Plane")
+        assert (plane.material is not None) is has_ground
+    assert np.abs(moved.render((40, 30)).array - still.render((40, 30)).array).mean() < 1e-3

@@ -102,3 +102,9 @@ def test_x_y_z_are_parts_of_the_only_vector_as_in_calls():
     assert Box(1, 2, 3).replace(x=5, z=7).size == (5.0, 2.0, 7.0)
     with pytest.raises(SceneTypeError, match="got 'size' and its part 'x' too"):
         Box(1, 2, 3).replace(x=5, size=(3, 3, 3))
+
+
+def test_what_was_not_given_has_no_parts_to_replace():
+    with pytest.raises(SceneValueError, match=r"'lights' has no parts .*was not given") as told:
+        Scene(Sphere()).replace(**{"lights.0.intensity": 2})
+    assert "give it: replace(lights=…)" in str(told.value)

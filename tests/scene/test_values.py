@@ -466,3 +466,21 @@ def test_parameters_show_their_arguments_and_make_others(parameter):
     assert other.replace(group=parameter.group, label=parameter.label) == parameter
     with pytest.raises(TypeError, match=f"a {parameter.kind.value} has no 'hi'; it takes label, "):
         parameter.replace(hi=3)
+
+
+def test_a_plan_that_is_extruded_shows_how():
+    plan = Circle(1.0).extrude(0.5, along="y", chamfer=0.1)
+    assert repr(plan) == "Circle(radius=1.0).extrude(height=0.5, along='y', chamfer=0.1)"
+    assert evaluated(plan) == plan == pickle.loads(pickle.dumps(plan))
+    assert plan.replace(along="z") == Circle(1.0).extrude(0.5, chamfer=0.1)
+    assert plan.replace(**{"outline.radius": 2}) == Circle(2).extrude(0.5, along="y", chamfer=0.1)
+
+
+@pytest.mark.parametrize(
+    "kind",
+    ["Bolt", "Nut", "MetricThread", "MetricHole", "Gear", "Rack", "RingGear", "Text", "SvgPath"],
+)
+def test_editors_know_the_attributes_of_what_is_written_by_hand(kind):
+    made = getattr(distal, kind)
+    arguments = [*inspect.signature(made.__init__).parameters][1:]
+    assert set(arguments) <= set(made.__annotations__)

@@ -273,7 +273,7 @@ class Expression(Symbolic):
 
 
 def uniform_of(parameter: Parameter) -> Expression:
-    """Return the value of a parameter as an expression."""
+    """Return the value of a parameter as an expression; the compiler declares the uniform."""
     return Expression(Uniform(parameter.name, parameter.type), (parameter,))
 
 

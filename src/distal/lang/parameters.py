@@ -3,7 +3,8 @@
 Input: the author's definitions (``slider("Softness", 0.3)``) and later the values from a caller or
 a command line. Output: frozen ``Parameter`` objects and plain Python values whose type and range
 have been checked. A mistake raises a ``ValueError`` or ``TypeError`` that names the label. In a
-compiled program each parameter is a uniform called ``name``; this module does not handle that.
+compiled program each parameter is a uniform called ``name``: ``frontend/lowering/compilation.py``
+declares it, ``runtime/uniform_values.py`` sets its value.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """What all marches along rays have in common: their parameters, their result, and boxes.
 
 Input: a ray and a box. Output: the part of the ray within it. ``segment`` finds surfaces of signed
-fields, ``heightfield_march`` those of terrain, ``closed_hits`` those of solids with chords.
+fields (a hit is decided in its ``moved``), ``heightfield_march`` those of terrain, ``closed_hits``
+those of solids with chords.
 """
 
 from __future__ import annotations

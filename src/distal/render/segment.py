@@ -296,6 +296,7 @@ def moved(
     crossed = value < -tiny
     touching = divisor * (way.step - 2.0 * noise) <= way.free + abs(value)
     early = way.last == 0.0 and way.step > shortest
+    # The hit: the field has changed its sign by more than its rounding error (decision 94).
     enters = not enclosed and crossed and (touching or (near and not early))
     goes = not enclosed and not crossed and (touching or agrees)
     # False position; an end that stays a second time counts half (Illinois). ``rise`` is then the

@@ -1,4 +1,4 @@
-"""Compute the value of every uniform: of the frame, the parameters and a scene's numbers.
+"""Compute the value of every uniform: of the frame, parameters (sliders, …), a scene's numbers.
 
 Input: modules, and the caller's values: time, parameters by name, settings. Output: checked plain
 numbers by the uniforms' names in kernels. Does not depend on a device.

@@ -15,7 +15,6 @@ from distal.lang.immutable import Immutable
 from distal.lang.lazy_module import LazyModule
 from distal.lang.option_methods import RenderedShape
 from distal.lang.presentable import Presentable
-from distal.lang.runtime_access import viewing
 from distal.lang.source_places import author_place
 from distal.scene.objects.cameras import BaseCamera
 from distal.scene.objects.lights import Light
@@ -69,6 +68,12 @@ class Group(RenderedShape, MovableSolid, AuthorObject, Immutable, Presentable):
 
     def __setattr__(self, name: str, value: object) -> NoReturn:
         raise AttributeError("a group does not change; make another")
+
+    def as_scene(self) -> Scene:
+        """Return a scene of the group: ``Scene(group)``."""
+        from distal.scene.scene import Scene  # noqa: PLC0415 (a scene takes groups)
+
+        return Scene(self)
 
     @property
     def arguments(self) -> Mapping[str, Any]:
@@ -156,9 +161,7 @@ class Group(RenderedShape, MovableSolid, AuthorObject, Immutable, Presentable):
 
     def _rendered(self, options: RenderOptions) -> Picture:
         """Render the picture of ``Scene(group)``."""
-        scene = viewing.viewable(self).scene
-        assert scene is not None
-        return scene._rendered(options)
+        return self.as_scene()._rendered(options)
 
 
 _PARTS: Final = (Shape, Light, BaseCamera, Group, SceneValue)

@@ -27,7 +27,7 @@ from distal.packages import PackageError
 from distal.scene.lowering.bounds import BoundsComposer
 from distal.scene.lowering.parts.table import rolled
 from distal.scene.lowering.smooth.cells import celled
-from distal.scene.lowering.union_parts import parts_of
+from distal.scene.lowering.union_parts import is_placed, parts_of, placed_parts_of
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values
@@ -48,14 +48,15 @@ class SubjectBox:
     Attributes:
         low: Lower corner.
         high: Upper corner.
-        endless: The parts of the scene that are infinite, such as planes.
+        endless: The parts of the scene that are infinite, such as planes: each as it is placed,
+            and itself.
         cut: Whether the box is that of an infinite part, cut.
         parts: The finite parts and their boxes; none if they are too many to look at each.
     """
 
     low: tuple[float, ...]
     high: tuple[float, ...]
-    endless: tuple[Node, ...]
+    endless: tuple[tuple[Node, Node], ...]
     cut: bool
     parts: tuple[tuple[Node, Corners], ...] = ()
 
@@ -78,8 +79,8 @@ class SubjectBox:
 def subject_box(root: Node, params: Mapping[str, Any], time: float) -> SubjectBox:
     """Return the box around the finite parts of a scene.
 
-    Parts are the members of the union at the root. If all of them are infinite, the box of the
-    whole is cut.
+    Parts are the members of the union at the root, also below a placement if one is infinite. If
+    all of them are infinite, the box of the whole is cut.
 
     Args:
         root: The scene's shape; not flat.
@@ -93,17 +94,26 @@ def subject_box(root: Node, params: Mapping[str, Any], time: float) -> SubjectBo
         parts = list(parts_of(table.node))
         sources = [table.node, *(member.source for member, _ in table.beside)]
     known = list(zip(sources, _boxes(parts, params, time), strict=True))
+    own: dict[int, Node] = {}
+    placed = [p for p, box in known if box is not None and not _is_finite(*box) and is_placed(p)]
+    if placed:
+        pairs = [pair for part in placed for pair in placed_parts_of(part)]
+        own = {id(member): node for member, node in pairs}
+        members = [member for member, _ in pairs]
+        known = [(part, box) for part, box in known if part not in placed]
+        known += zip(members, _boxes(members, params, time), strict=True)
     parts_there = [(part, box) for part, box in known if box is not None and _is_finite(*box)]
     finite = [box for _, box in parts_there]
-    endless = tuple(part for part, box in known if box is not None and not _is_finite(*box))
+    infinite = [part for part, box in known if box is not None and not _is_finite(*box)]
+    endless = tuple((part, own.get(id(part), part)) for part in infinite)
     if finite:
         low = tuple(map(min, zip(*(low for low, _ in finite), strict=True)))
         high = tuple(map(max, zip(*(high for _, high in finite), strict=True)))
         few = () if root.parts > MOST_FOLDED else tuple(parts_there)
         return SubjectBox(low, high, endless, cut=False, parts=few)
     whole = _boxes([root], params, time)[0] or ((-math.inf,) * 3, (math.inf,) * 3)
-    pairs = [_cut(a, b) for a, b in zip(*whole, strict=True)]
-    return SubjectBox(tuple(a for a, _ in pairs), tuple(b for _, b in pairs), endless, cut=True)
+    sides = [_cut(a, b) for a, b in zip(*whole, strict=True)]
+    return SubjectBox(tuple(a for a, _ in sides), tuple(b for _, b in sides), endless, cut=True)
 
 
 def plain_number(number: Number, params: Mapping[str, Any], time: float) -> Any:

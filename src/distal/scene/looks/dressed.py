@@ -18,7 +18,7 @@ from distal.scene.looks.boxes import subject_box
 from distal.scene.looks.dressing import Dressing
 from distal.scene.looks.look import Look
 from distal.scene.lowering.parts.table import keep_table
-from distal.scene.lowering.union_parts import parts_of
+from distal.scene.lowering.union_parts import placed_parts_of
 from distal.scene.objects.backgrounds import Background, Surroundings, as_background
 from distal.scene.objects.cameras import BaseCamera
 from distal.scene.objects.field import BaseShape
@@ -31,6 +31,7 @@ from distal.scene.scene_arguments import (
     with_surroundings,
 )
 from distal.scene.tree.node import Node
+from distal.scene.tree.placement import is_placement
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,10 +113,11 @@ class Dressed:
 
     def _unpainted_ground(self) -> set[int]:
         """Return the ids of the infinite parts without a material, around finite ones."""
-        if all(_is_painted(part) for part in parts_of(self.shape.node)):
+        if all(_is_painted(placed) for placed, _ in placed_parts_of(self.shape.node)):
             return set()
         box = self._dressing.box
-        return set() if box.cut else {id(n) for n in box.endless if not _is_painted(n)}
+        found = {id(node) for placed, node in box.endless if not _is_painted(placed)}
+        return set() if box.cut else found
 
     @cached_property
     def background(self) -> Background:
@@ -181,7 +183,7 @@ def _is_painted(root: Node) -> bool:
 
 
 def _painted(node: Node, parts: set[int], material: Material) -> Node:
-    """Return a tree of unions with a material on some of its parts.
+    """Return a tree of unions and placements with a material on some of its parts.
 
     Args:
         node: The root.
@@ -190,6 +192,7 @@ def _painted(node: Node, parts: set[int], material: Material) -> Node:
     """
     if id(node) in parts:
         return replace(node, material=material)
-    if node.rule is not joins.UNION or node.material is not None:
+    passes = node.rule is joins.UNION or is_placement(node.rule)
+    if not passes or node.material is not None:
         return node
     return replace(node, children=tuple(_painted(c, parts, material) for c in node.children))

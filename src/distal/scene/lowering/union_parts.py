@@ -8,6 +8,7 @@ from typing import Any
 
 from distal.fields.combine.joins import UNION
 from distal.scene.tree.node import Node
+from distal.scene.tree.placement import is_placement
 
 
 def parts_of(root: Node) -> Iterator[Node]:
@@ -25,6 +26,31 @@ def painted_parts_of(root: Node) -> Iterator[tuple[Node, Any]]:
             stack.extend((child, paint) for child in reversed(node.children))
         else:
             yield node, outer
+
+
+def placed_parts_of(root: Node) -> Iterator[tuple[Node, Node]]:
+    """Yield the parts that unions unite below placements: as they are placed, and themselves."""
+    stack: list[tuple[Node, tuple[Node, ...]]] = [(root, ())]
+    while stack:
+        node, above = stack.pop()
+        if node.rule is UNION:
+            stack.extend((child, above) for child in reversed(node.children))
+        elif is_placed(node):
+            stack.append((node.children[0], (*above, node)))
+        else:
+            placed = node
+            for outer in reversed(above):
+                placed = replace(outer, children=(placed,))
+            yield placed, node
+
+
+def is_placed(node: Node) -> bool:
+    """Return whether a node is a union that is placed."""
+    while is_placement(node.rule):
+        node = node.children[0]
+        if node.rule is UNION:
+            return True
+    return False
 
 
 def united(root: Node, nodes: Sequence[Node]) -> Node:

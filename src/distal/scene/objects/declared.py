@@ -1,4 +1,4 @@
-"""Public classes and functions, made from the declarations beside their scene functions.
+"""Public lights, cameras, backgrounds, materials, patterns, made of declarations in ``render``.
 
 Input: declarations of ``render``. Output: signatures and docstrings; calls of scene functions with
 checked arguments; the classes and functions that authors call. Does not depend on what the

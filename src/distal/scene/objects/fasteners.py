@@ -44,6 +44,12 @@ class MetricThread(Shape):
         CompileError: At the author's line: there is no such size, or a number is beyond its limit.
     """
 
+    # The arguments, of which ``recorded`` makes attributes.
+    size: Any
+    length: Any
+    pitch: Any
+    left: Any
+
     def __init__(
         self, size: str, length: Amount = 20.0, *, pitch: float | None = None, left: bool = False
     ) -> None:
@@ -69,6 +75,15 @@ class MetricHole(Shape):
     Raises:
         CompileError: At the author's line: there is no such size, or a number is beyond its limit.
     """
+
+    # The arguments, of which ``recorded`` makes attributes.
+    size: Any
+    length: Any
+    gap: Any
+    threaded: Any
+    pitch: Any
+    left: Any
+    through: Any
 
     def __init__(
         self,
@@ -111,6 +126,12 @@ class Bolt(Shape):
         CompileError: At the author's line: there is no such size, or a number is beyond its limit.
     """
 
+    # The arguments, of which ``recorded`` makes attributes.
+    size: Any
+    length: Any
+    thread: Any
+    left: Any
+
     def __init__(
         self, size: str, length: Amount = 20.0, *, thread: Amount | None = None, left: bool = False
     ) -> None:
@@ -146,6 +167,10 @@ class Nut(Shape):
     Raises:
         CompileError: At the author's line: there is no such size, or a number is beyond its limit.
     """
+
+    # The arguments, of which ``recorded`` makes attributes.
+    size: Any
+    gap: Any
 
     pitch: float
     left: bool

@@ -72,6 +72,16 @@ class Gear(Toothed):
         CompileError: At the author's line: a number is beyond its limit.
     """
 
+    # The arguments, of which ``recorded`` makes attributes.
+    module: Any
+    teeth: Any
+    width: Any
+    pressure_angle: Any
+    tip_gap: Any
+    backlash: Any
+    helix: Any
+    bore_diameter: Any
+
     def __init__(
         self,
         module: float = 1.0,
@@ -114,6 +124,16 @@ class RingGear(Toothed):
     Raises:
         CompileError: At the author's line: a number is beyond its limit.
     """
+
+    # The arguments, of which ``recorded`` makes attributes.
+    module: Any
+    teeth: Any
+    width: Any
+    rim: Any
+    pressure_angle: Any
+    tip_gap: Any
+    backlash: Any
+    helix: Any
 
     def __init__(
         self,
@@ -160,6 +180,15 @@ class Rack(Toothed):
     Raises:
         CompileError: At the author's line: a number is beyond its limit.
     """
+
+    # The arguments, of which ``recorded`` makes attributes.
+    module: Any
+    teeth: Any
+    width: Any
+    base: Any
+    pressure_angle: Any
+    tip_gap: Any
+    backlash: Any
 
     def __init__(
         self,

@@ -41,6 +41,13 @@ class Text(Shape2D):
         CompileError: At the author's line: the text is blank, or the font or a letter is missing.
     """
 
+    # The arguments, of which ``recorded`` makes attributes.
+    text: Any
+    font: Any
+    size: Any
+    justify: Any
+    line_spacing: Any
+
     def __init__(
         self,
         text: str,
@@ -69,6 +76,11 @@ class SvgPath(Shape2D):
     Raises:
         CompileError: At the author's line, if the path cannot be read.
     """
+
+    # The arguments, of which ``recorded`` makes attributes.
+    path: Any
+    size: Any
+    even_odd: Any
 
     def __init__(self, path: str, *, size: float | None = None, even_odd: bool = False) -> None:
         place = author_place()

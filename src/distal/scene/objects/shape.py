@@ -37,6 +37,7 @@ from distal.scene.objects.shape_values import PLAIN
 from distal.scene.objects.shaped_edges import PLAN
 from distal.scene.objects.turns import warn_of_degrees
 from distal.scene.tree.errors import refuse
+from distal.scene.tree.value import CallRecord
 
 if TYPE_CHECKING:
     from distal.images.height_map import HeightMap
@@ -461,7 +462,12 @@ class Shape2D(Outlined):
             refuse(f'extrude goes along "z" or "y", not {along!r:.40}', hint, author_place())
         if along == "y":
             standing = self.extrude(height, rounding=rounding, chamfer=chamfer)
-            return standing._with(placing.ROTATE_MATRIX, **PLAN)
+            lying = standing._with(placing.ROTATE_MATRIX, **PLAN)
+            edges = {"rounding": rounding, "chamfer": chamfer}
+            given = {"outline": self, "height": height, "along": along}
+            given |= {name: size for name, size in edges.items() if size is not None}
+            lying._record(CallRecord(_extruded, (), given, Shape))
+            return lying
         if height is None:
             if rounding is not None or chamfer is not None:
                 hint = "extrude(height, rounding=…), or leave out rounding and chamfer"
@@ -595,3 +601,17 @@ def ease_number(name: str) -> int:
 
 
 PLAIN.update({False: Shape, True: Shape2D})
+
+
+def _extruded(
+    outline: Shape2D,
+    height: Number | None,
+    along: str,
+    rounding: Number | None = None,
+    chamfer: Number | None = None,
+) -> Shape:
+    """Return ``outline.extrude(…)``."""
+    return outline.extrude(height, along=along, rounding=rounding, chamfer=chamfer)
+
+
+cast("Any", _extruded).written_as, cast("Any", _extruded).by_name = ".extrude", True

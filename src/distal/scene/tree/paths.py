@@ -93,7 +93,7 @@ def _steps(part: Any) -> Iterator[tuple[str, Any]]:
 def _part(owner: Any, step: str, path: Sequence[str]) -> Any:
     parts = dict(_steps(owner))
     if step not in parts:
-        _refuse_step(path, list(parts))
+        _refuse_step(owner, path, list(parts))
     return parts[step]
 
 
@@ -109,7 +109,11 @@ def _with_part(owner: Any, step: str, value: Any, path: Sequence[str]) -> Any:
     return type(owner)(changed)
 
 
-def _refuse_step(path: Sequence[str], steps: Sequence[str]) -> None:
+def _refuse_step(owner: Any, path: Sequence[str], steps: Sequence[str]) -> None:
+    step = path[-1]
+    if hasattr(owner, "_parts") and step in owner.arguments:
+        message = f"'{step}' has no parts that can be replaced: it was not given"
+        refuse(message, f"give it: replace({step}=…)", author_place())
     hint = did_you_mean(path[-1], steps) or (
         f"it has {', '.join(steps)}" if steps else "it has no parts"
     )

@@ -127,6 +127,11 @@ class AffinePlacement:
         return replace(self, planes=(self.planes, (*way, away)))
 
 
+def is_placement(rule: Any) -> bool:
+    """Return whether an operator places its shape: what it does to a union it does to each part."""
+    return rule in _STEPS
+
+
 def placement_of(
     operator: Operator,
     numbers: Numbers,

@@ -66,14 +66,17 @@ class TextWriter:
 
         Args:
             function: Its name, or itself. Its ``written_as`` is the name that authors call it by.
-                With a dot before it, it is a method of its first argument; a function with
-                ``by_position`` takes no arguments by name.
+                With a dot before it, it is a method of its first argument, which takes the others
+                by position, or with ``by_name`` by name; a function with ``by_position`` takes none
+                by name.
             arguments: By name.
         """
         name = function if isinstance(function, str) else _name_of(function)
-        by_name = not name.startswith(".") and not hasattr(function, "by_position")
-        texts = [f"{n}={self.text(v)}" if by_name else self.text(v) for n, v in arguments.items()]
-        receiver = texts.pop(0) if name.startswith(".") else ""
+        is_method = name.startswith(".")
+        by_name = hasattr(function, "by_name" if is_method else "by_position") is is_method
+        values = iter(arguments.items())
+        receiver = self.text(next(values)[1]) if is_method else ""
+        texts = [f"{n}={self.text(v)}" if by_name else self.text(v) for n, v in values]
         return f"{receiver}{name}({', '.join(texts)})"
 
     def several(self, values: Sequence[Any], separator: str) -> str:
