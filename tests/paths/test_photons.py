@@ -249,3 +249,15 @@ def test_photons_fly_on_the_device_of_the_picture(monkeypatch):
     off = np.abs(there - here).max(axis=2)
     assert there.mean() == pytest.approx(here.mean(), rel=1e-3)
     assert (off > 0.02).mean() < 0.01
+
+
+@pytest.mark.parametrize("ior", [1.1, 1.5])
+def test_caustics_inside_of_glass_are_those_of_paths(ior):
+    """Radiance counts divided by the square of the index, in photons as in paths."""
+    ball = Sphere(1.0).paint(glass(ior), priority=1)
+    inner = Sphere(0.6).paint(matte("white"), priority=2)
+    lamp = PointLight((0.0, 4.0, 0.5), intensity=20.0, radius=1.2)
+    scene = lit(ball | inner, lamp, camera=Camera((0.0, 2.0, 4.0), fov_deg=30.0))
+    plain = tiles(scene, 256, 1, caustics=False)
+    found = tiles(scene, 64, 2, caustics=True)
+    assert found.mean() == pytest.approx(plain.mean(), rel=0.04)

@@ -283,7 +283,7 @@ PLAIN: dict[str, Any] = {
     **{"color": (1.0, 1.0, 1.0), "diffuse": 1.0, "specular": 0.0, "transmission": 0.0},
     **{"ior": 1.5, "roughness": 0.0, "metal": 0.0, "emission": (0.0,) * 3},
     **{"absorption": (0.0,) * 3, "fresnel": 0.0, "dispersion": 0.0},
-    **{"height": 0.0, "tilt": (0.0,) * 3},
+    **{"height": 0.0, "tilt": (0.0,) * 3, "bsdf_share": 0.0, "bsdf": 0},
 }
 
 

@@ -36,8 +36,8 @@ class Surface:
             glass 0.3, flint 0.6, diamond 0.36), 0 for not at all. Only paths show it.
         height: How high the surface seems to be, in scene units, where a bump is painted on it.
         tilt: The gradient of the height in the scene's space, which ``bump`` turns the normal by.
-        bsdf_share: The share of light that an author's scattering function takes in paths; the
-            other fields scatter the rest.
+        bsdf_share: In paths: the share of an author's scattering function; the weights of the other
+            fields are those of the rest.
         bsdf: The number of this function in the scene.
     """
 

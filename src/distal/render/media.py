@@ -39,6 +39,7 @@ class Interface:
         inside: Whether the ray comes from the inside of what has the surface.
         surface: The material, with the index relative to what is around it.
         absorption: The absorption coefficient of the ray's way to the surface, per scene unit.
+        index: The index of refraction of the medium through which the ray came.
     """
 
     within: int
@@ -46,6 +47,7 @@ class Interface:
     inside: bool
     surface: Surface
     absorption: vec3
+    index: float
 
 
 @func
@@ -138,23 +140,26 @@ def interface_at(
     leaves = hit.side < 0.0
     absorption = select(leaves, own.absorption, vec3(0.0))
     if bodies == 1:
-        return Interface(select(leaves, 0, 1), True, leaves, own, absorption)
+        index = select(leaves, own.ior, 1.0)
+        return Interface(select(leaves, 0, 1), True, leaves, own, absorption, index)
     body = body_of(hit.part, common)
     bit = bit_of(body)
     others = within - select(leaves, bit, 0)
     beyond = select(leaves, others, others + bit)
     around = highest(others, bodies)
     if around == NONE:
-        return Interface(beyond, True, leaves, own, absorption)
+        index = select(leaves, own.ior, 1.0)
+        return Interface(beyond, True, leaves, own, absorption, index)
     medium = at_wavelength(surface(p, footprint, part_of(around, common)), wavelength)
     is_boundary = body > around
     taken = select(leaves and is_boundary, own.absorption, medium.absorption)
+    index = select(leaves and is_boundary, own.ior, medium.ior)
     if leaves and medium.transmission <= 0.0:
         # What is around is opaque: the ray meets its surface.
         medium.ior = medium.ior / own.ior
-        return Interface(beyond, is_boundary, False, medium, taken)
+        return Interface(beyond, is_boundary, False, medium, taken, index)
     own.ior = own.ior / medium.ior
-    return Interface(beyond, is_boundary, leaves, own, taken)
+    return Interface(beyond, is_boundary, leaves, own, taken, index)
 
 
 @func

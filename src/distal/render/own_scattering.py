@@ -2,7 +2,7 @@
 
 Input: a surface as a path meets it, and the author's functions. Output: ``Scattering`` and
 ``Response``, as those of ``scatter``. A surface has a share of the author's function
-(``Surface.bsdf_share``); the rest is scattered by its other fields.
+(``Surface.bsdf_share``); the weights of its other fields are those of the rest.
 
 The author's functions take vectors of space: the unit normal ``n`` on the side of the view, the
 unit directions to the eye and to the light. The surface that they get has the index of refraction
@@ -30,7 +30,7 @@ from distal.render.scatter import (
     sample_from,
 )
 
-# A direction of the author's below this length is none.
+# A direction of the author's is none if the square of its length is below this.
 SHORTEST = 1e-12
 
 
@@ -40,9 +40,14 @@ def with_bsdf(surface: Surface, bsdf: int) -> Surface:
 
     Args:
         surface: The material.
-        bsdf: The number of the function in the scene.
+        bsdf: The number of the function in the scene; 0 in programs that call none.
     """
+    if bsdf == 0:
+        return surface
     made = surface
+    made.diffuse = 0.0
+    made.specular = 0.0
+    made.transmission = 0.0
     made.bsdf_share = 1.0
     made.bsdf = bsdf
     return made
@@ -112,7 +117,7 @@ def respond_with_own(
     if share >= 1.0:
         return own
     rest = respond_to(meeting, light)
-    value = own.value * share + rest.value * (1.0 - share)
+    value = own.value * share + rest.value
     return Response(value, own.density * share + rest.density * (1.0 - share))
 
 
@@ -138,7 +143,8 @@ def scatter_with_own(
         # What is left of the third number is uniform again.
         left = min((u.z - share) / max(1.0 - share, 1e-9), 0.99999994)
         found = sample_from(meeting, vec3(u.xy, left))
-        # A perfect mirror has the share of its probability.
+        if found.specular:
+            found.weight = found.weight / max(1.0 - share, 1e-9)
         if share <= 0.0 or found.specular or found.density <= 0.0:
             return found
         direction = found.direction

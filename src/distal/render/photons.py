@@ -440,7 +440,9 @@ def gathered(
     color = arrivals[2 * chosen + 1].xyz
     cosine = max(abs(dot(direction, vertex.n)), 1e-3)
     response = respond(meeting, direction).value / cosine
-    return response * color * (total * cells.share * narrow * (2.0 / PI))
+    # Photons carry power; radiance counts divided by the square of the index (``scatter``).
+    index = vertex.interface.index
+    return response * color * (total * cells.share * narrow * (2.0 / PI) / (index * index))
 
 
 @func

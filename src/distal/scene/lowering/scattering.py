@@ -37,7 +37,7 @@ def number_bsdfs(composer: ShapeComposer, materials: Iterable[Any]) -> None:
     """Give the scattering functions of a scene's materials their numbers, in order."""
     for material in materials:
         for bsdf in own_bsdfs_in(material):
-            bsdf.emit(composer, {})
+            bsdf.number(composer)
 
 
 def scattering_functions(composer: ShapeComposer, define: Define) -> dict[str, Expr]:

@@ -209,11 +209,14 @@ class Material(CalledObject):
     ) -> Material:
         """Return the material with light scattered by a function of your own in mode "path".
 
-        Other modes show the material itself. Its colors and numbers, patterns included, are the
-        first argument of each function: ``surface.color``, ``surface.roughness``. All directions
-        are unit vectors of space and lead away from the surface; ``n`` is on the side of the view.
-        ``surface.ior`` is the index beyond the surface, relative to the side of the view. Try it
-        with ``furnace``.
+        Other modes show the material itself. Its color and numbers, patterns included, are the
+        first argument of each function: ``surface.color``, ``surface.roughness``; but for its
+        weights, which are 0, for the library scatters nothing. All directions are unit vectors of
+        space and lead away from the surface; ``n`` is on the side of the view. ``surface.ior`` is
+        the index beyond the surface, relative to the side of the view; light that is refracted
+        has no factor for it, because radiance counts divided by the square of the index. Of two
+        functions in one mixture, that of the larger share has the light of both. Try it with
+        ``furnace``.
 
         Args:
             evaluate: ``(surface: Surface, n: vec3, view: vec3, light: vec3) -> vec3``, the
@@ -248,6 +251,7 @@ class Material(CalledObject):
             reflects=self.reflects,
             refracts=self.refracts,
             emits=self.emits,
+            priority=self.priority,
         )
         chosen = {} if sample is None else {"sample": sample, "density": density}
         given = {"surface": self, "evaluate": evaluate, **chosen}

@@ -63,6 +63,11 @@ class OwnFunction:
         needed = [slot.type for slot in slots if slot.default is MISSING]
         first = [slot.type for slot in slots[: len(self.takes)]]
         wanted = [type for _, type in self.takes]
+        names = [slot.name for slot in slots[: len(self.takes)]]
+        expected = [name for name, _ in self.takes]
+        if names != expected and sorted(names) == sorted(expected):
+            order = f"{', '.join(expected)}; '{value.name}' has {', '.join(names)}"
+            refuse_kind(f"{self.noun} takes {order}", self._hint(value.name), place)
         if first != wanted or len(needed) > len(wanted) or result_of(value) is not self.gives:
             took = ", ".join(str(slot.type) for slot in slots) or "nothing"
             gave = result_of(value) or "no declared type"
@@ -104,20 +109,30 @@ class OwnBsdf:
         return found
 
     def emit(self, composer: Composer, site: Mapping[str, Expr]) -> Expr:
-        """Return the number of the function in a program.
+        """Return the number of the function in a program; 0 in one that does not call it.
 
-        Programs that do not call it read its parameters and have its mistakes, too.
+        Such programs read its parameters and have its mistakes, too.
         """
         known = self.known(composer)
+        if self in known:
+            return known[self].number
+        self._in_program(composer, 0)
+        return composer.assembly.constant(0, INT)
+
+    def number(self, composer: Composer) -> None:
+        """Give the function a number in a program that calls it."""
+        known = self.known(composer)
         if self not in known:
-            reference = composer.assembly.reference
-            known[self] = BsdfInProgram(
-                composer.assembly.constant(len(known) + 1, INT),
-                reference(self.evaluate, EVALUATE.type),
-                reference(self.sample, SAMPLE.type),
-                reference(self.density, DENSITY.type),
-            )
-        return known[self].number
+            known[self] = self._in_program(composer, len(known) + 1)
+
+    def _in_program(self, composer: Composer, number: int) -> BsdfInProgram:
+        reference = composer.assembly.reference
+        return BsdfInProgram(
+            composer.assembly.constant(number, INT),
+            reference(self.evaluate, EVALUATE.type),
+            reference(self.sample, SAMPLE.type),
+            reference(self.density, DENSITY.type),
+        )
 
     def functions(self) -> Iterator[Func]:
         """Yield the scene functions."""
