@@ -61,10 +61,14 @@ with its functions. From `distal.render.sampling.warps`, for a scattering functi
 | function | result |
 |---|---|
 | `axes_about(n: vec3) -> Axes` | axes whose third one, `n`, is a unit vector |
-| `into_space(axes: Axes, v: vec3) -> vec3`, `along_axes(axes: Axes, v: vec3) -> vec3` | from coordinates along the axes to space, and back |
-| `in_cosine_hemisphere(u: vec2) -> vec3`, `cosine_density(cosine: float) -> float` | a direction about z, as dense as the cosine, and its density |
-| `in_cone(u: vec2, narrow: float) -> vec3`, `cone_density(narrow: float) -> float` | one in a cone of 1 - cos(half the opening) = `narrow`: 1 a hemisphere, 2 the sphere |
-| `visible_facet(v: vec3, alpha: float, u: vec2) -> vec3` | a facet of GGX, of width `alpha`, that is seen from `v` |
+| `into_space(axes: Axes, v: vec3) -> vec3`, `along_axes(axes: Axes, v: vec3) -> vec3` |\
+ from coordinates along the axes to space, and back |
+| `in_cosine_hemisphere(u: vec2) -> vec3`, `cosine_density(cosine: float) -> float` |\
+ a direction about z, as dense as the cosine, and its density |
+| `in_cone(u: vec2, narrow: float) -> vec3`, `cone_density(narrow: float) -> float` |\
+ one in a cone of 1 - cos(half the opening) = `narrow`: 1 a hemisphere, 2 the sphere |
+| `visible_facet(v: vec3, alpha: float, u: vec2) -> vec3` |\
+ a facet of GGX, of width `alpha`, that is seen from `v` |
 """
 
 

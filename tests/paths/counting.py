@@ -7,28 +7,19 @@ from typing import Any
 
 import numpy as np
 
+from distal.scene.checks import furnace
+
 # The deviation of a chi-square, in standard deviations of a normal variable, at which a test fails:
 # 4.5 is passed by chance once in 300,000 tests. All seeds are fixed.
 SURPRISING = 4.5
 
 
 def deviation(counts: Any, expected: Any) -> float:
-    """How far counts are from those expected, in standard deviations.
-
-    Cells that expect less than five are counted together. Wilson and Hilferty's cube root makes a
-    normal variable of chi-square.
-    """
+    """How far counts are from those expected, in standard deviations (``furnace.deviation``)."""
     counts, expected = np.ravel(counts).astype(float), np.ravel(expected).astype(float)
-    few = expected < 5
-    counts = np.append(counts[~few], counts[few].sum())
-    expected = np.append(expected[~few], expected[few].sum())
-    used = expected > 1e-9
-    assert counts[~used].sum() <= 1e-3 * counts.sum(), "samples where none are expected"
-    counts, expected = counts[used], expected[used]
-    freedom = max(len(counts) - 1, 1)
-    statistic = ((counts - expected) ** 2 / expected).sum()
-    middle = 1 - 2 / (9 * freedom)
-    return float(((statistic / freedom) ** (1 / 3) - middle) / math.sqrt(2 / (9 * freedom)))
+    outside = counts[expected <= 1e-9].sum()
+    assert outside <= 1e-3 * counts.sum(), "samples where none are expected"
+    return furnace.deviation(counts, expected)
 
 
 def grid(count: int) -> Any:
