@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn, Self, TypeAlias
 from distal.fields.guarantees import Operator
 from distal.lang.immutable import Immutable
 from distal.lang.lazy_module import LazyModule
+from distal.lang.runtime_access import viewing
 from distal.lang.option_methods import RenderedShape
 from distal.lang.presentable import Presentable
 from distal.lang.source_places import author_place
@@ -71,9 +72,9 @@ class Group(RenderedShape, MovableSolid, AuthorObject, Immutable, Presentable):
 
     def as_scene(self) -> Scene:
         """Return a scene of the group: ``Scene(group)``."""
-        from distal.scene.scene import Scene  # noqa: PLC0415 (a scene takes groups)
-
-        return Scene(self)
+        scene = viewing.viewable(self).scene
+        assert scene is not None
+        return scene
 
     @property
     def arguments(self) -> Mapping[str, Any]:

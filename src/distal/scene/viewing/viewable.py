@@ -334,7 +334,7 @@ def viewable(
     """
     if isinstance(obj, Viewable):
         return obj
-    picture = checked_picture(obj.as_scene() if isinstance(obj, Group) else obj)
+    picture = checked_picture(Scene(obj) if isinstance(obj, Group) else obj)
     if isinstance(picture, BaseShape):
         return Viewable(picture.name, stage(picture, params, time, look))
     if isinstance(picture, Scene):
