@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn, Self, TypeAlias
 from distal.fields.guarantees import Operator
 from distal.lang.immutable import Immutable
 from distal.lang.lazy_module import LazyModule
-from distal.lang.runtime_access import viewing
 from distal.lang.option_methods import RenderedShape
 from distal.lang.presentable import Presentable
+from distal.lang.runtime_access import viewing
 from distal.lang.source_places import author_place
 from distal.scene.objects.cameras import BaseCamera
 from distal.scene.objects.lights import Light
