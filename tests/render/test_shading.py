@@ -237,13 +237,16 @@ def test_a_mixed_surface_mixes_all_its_numbers():
         *(vec3(0.1, 0.2, 0.3), 0.5, 0.2, 0.1, 1.3, 0.4, 0.2),
         *(vec3(1.0, 2.0, 3.0), vec3(0.5), 0.0, 0.1),
         **bump,
+        bsdf_share=0.5,
+        bsdf=3,
     )
     b = Surface(
         *(vec3(0.9, 0.7, 0.2), 0.1, 0.3, 0.6, 2.3, 0.9, 0.8),
         *(vec3(0.0, 4.0, 1.0), vec3(0.1), 1.0, 0.7),
     )
     mixed = material.mix_surfaces(a, b, 0.3)
-    for name in Surface.__annotations__:
+    assert (mixed.bsdf, material.mix_surfaces(b, a, 0.3).bsdf) == (3, 3)
+    for name in set(Surface.__annotations__) - {"bsdf"}:
         first, second = (np.asarray(getattr(s, name), float) for s in (a, b))
         found = np.asarray(getattr(mixed, name), float)
         assert found == pytest.approx(0.7 * first + 0.3 * second, abs=1e-6), name

@@ -115,7 +115,7 @@ def furnace(
     The surface is lit from all sides by light of brightness 1 (a white furnace). No material may
     give back more; a white one that loses nothing gives back 1. ``print(furnace(m))`` shows a
     table; a test asserts that ``furnace(m).faults`` is empty. Each angle is tried with the normal
-    (0, 0, 1) and with another one, of which only faults are told.
+    (0, 0, 1), whose light is in ``views``, and with another one.
 
     Args:
         material: The material, with a scattering function of your own (``bsdf``) or without; its

@@ -195,4 +195,6 @@ def _painted(node: Node, parts: set[int], material: Material) -> Node:
     passes = node.rule is joins.UNION or is_placement(node.rule)
     if not passes or node.material is not None:
         return node
-    return replace(node, children=tuple(_painted(c, parts, material) for c in node.children))
+    children = tuple(_painted(c, parts, material) for c in node.children)
+    changes = any(new is not old for new, old in zip(children, node.children, strict=True))
+    return replace(node, children=children) if changes else node
