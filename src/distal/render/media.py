@@ -139,8 +139,8 @@ def interface_at(
     own = at_wavelength(own, wavelength)
     leaves = hit.side < 0.0
     absorption = select(leaves, own.absorption, vec3(0.0))
+    index = select(leaves, own.ior, 1.0)
     if bodies == 1:
-        index = select(leaves, own.ior, 1.0)
         return Interface(select(leaves, 0, 1), True, leaves, own, absorption, index)
     body = body_of(hit.part, common)
     bit = bit_of(body)
@@ -148,7 +148,6 @@ def interface_at(
     beyond = select(leaves, others, others + bit)
     around = highest(others, bodies)
     if around == NONE:
-        index = select(leaves, own.ior, 1.0)
         return Interface(beyond, True, leaves, own, absorption, index)
     medium = at_wavelength(surface(p, footprint, part_of(around, common)), wavelength)
     is_boundary = body > around

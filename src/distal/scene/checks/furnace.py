@@ -49,8 +49,7 @@ NOTICED: Final = 0.05
 SLACK: Final = 0.01
 # A scattering function differs from its mirrored one by this share of its mean.
 RECIPROCAL: Final = 0.02
-
-
+# The axes along a surface and its normal, as columns.
 UPRIGHT: Final = np.eye(3)
 
 
@@ -249,9 +248,8 @@ class _Trial:
         count = 1 << 12
         flat = (np.random.default_rng(3).random((2, count, 2))).astype(np.float32)
         a, b = (np.asarray(in_cone(side, 0.95), np.float32) for side in flat)
-        n = np.broadcast_to(np.array([0.0, 0.0, 1.0], np.float32), a.shape).copy()
-        there = executor().call(self._respond, (a, b, n), {}, params=self._params).value
-        back = executor().call(self._respond, (b, a, n), {}, params=self._params).value
+        there = self._called(self._respond, a, b, UPRIGHT[:, 2]).value
+        back = self._called(self._respond, b, a, UPRIGHT[:, 2]).value
         one = np.asarray(there, float) / b[:, 2:]
         other = np.asarray(back, float) / a[:, 2:]
         mean = float(np.abs(one).mean())

@@ -100,7 +100,8 @@ def subject_box(root: Node, params: Mapping[str, Any], time: float) -> SubjectBo
         pairs = [pair for part in placed for pair in placed_parts_of(part)]
         own = {id(member): node for member, node in pairs}
         members = [member for member, _ in pairs]
-        known = [(part, box) for part, box in known if part not in placed]
+        whole = set(map(id, placed))
+        known = [(part, box) for part, box in known if id(part) not in whole]
         known += zip(members, _boxes(members, params, time), strict=True)
     parts_there = [(part, box) for part, box in known if box is not None and _is_finite(*box)]
     finite = [box for _, box in parts_there]
@@ -111,8 +112,8 @@ def subject_box(root: Node, params: Mapping[str, Any], time: float) -> SubjectBo
         high = tuple(map(max, zip(*(high for _, high in finite), strict=True)))
         few = () if root.parts > MOST_FOLDED else tuple(parts_there)
         return SubjectBox(low, high, endless, cut=False, parts=few)
-    whole = _boxes([root], params, time)[0] or ((-math.inf,) * 3, (math.inf,) * 3)
-    sides = [_cut(a, b) for a, b in zip(*whole, strict=True)]
+    around = _boxes([root], params, time)[0] or ((-math.inf,) * 3, (math.inf,) * 3)
+    sides = [_cut(a, b) for a, b in zip(*around, strict=True)]
     return SubjectBox(tuple(a for a, _ in sides), tuple(b for _, b in sides), endless, cut=True)
 
 
