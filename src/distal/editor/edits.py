@@ -19,6 +19,7 @@ from distal.editor.literals import (
     written,
 )
 from distal.editor.messages import Change, Edit, LiteralValue
+from distal.frontend.parsing import parse
 from distal.lang.parameters import parameter_name
 
 # The functions of the language that declare a parameter, whose second argument is the default.
@@ -88,7 +89,7 @@ def _literal(file: str, text: str, at: tuple[int, int], value: LiteralValue) -> 
 
 def _parameter(file: str, text: str, name: str, value: LiteralValue) -> Edit:
     positions = Positions(text)
-    for node in ast.walk(ast.parse(text)):
+    for node in ast.walk(parse(text)):
         default = _default_of(node, name)
         if default is not None:
             start, end = positions.span(default)
@@ -122,12 +123,12 @@ def _default_of(node: ast.AST, name: str) -> ast.expr | None:
 def _camera(file: str, text: str, camera: str) -> list[Edit]:
     """Return the edits that place the camera of the last scene of a file."""
     try:
-        call = ast.parse(camera, mode="eval").body
+        call = parse(camera, mode="eval").body
     except (SyntaxError, ValueError):
         call = None
     if not isinstance(call, ast.Call):
         raise EditError("a camera is written as a call")
-    tree = ast.parse(text)
+    tree = parse(text)
     scenes = [n for n in ast.walk(tree) if isinstance(n, ast.Call) and _name_of(n) == "Scene"]
     if not scenes:
         raise EditError(f"there is no 'Scene(' in {file}")

@@ -20,6 +20,7 @@ import distal
 from distal import lang
 from distal.editor.messages import LiteralValue, SourceLiteral
 from distal.fields.guarantees import USUAL_LIMITS, Limit
+from distal.frontend.parsing import parse
 from distal.lang.resources import WRAPS, TextureValue
 from distal.render.declarations import BACKGROUNDS, CAMERAS, LIGHTS, MATERIALS
 from distal.scene.scene import WORDS, Scene
@@ -102,7 +103,7 @@ def piece(text: str, start: int, end: int) -> str:
 def find_literals(file: str, text: str) -> tuple[SourceLiteral, ...]:
     """Return the literals of a file in the order of the text; none if it is not Python."""
     try:
-        tree = ast.parse(text)
+        tree = parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return ()
     return tuple(sorted(_Finder(file, text).found(tree), key=lambda found: found.start))

@@ -19,6 +19,7 @@ from distal.export.page_options import PageOptions
 from distal.export.page_programs import Compile, PagePrograms
 from distal.export.pasted_code import code_around
 from distal.fields.library import OPERATORS
+from distal.frontend.parsing import parse
 from distal.lang.chosen_values import checked_values
 from distal.lang.functions import Image
 from distal.lang.parameters import Parameter
@@ -159,7 +160,7 @@ def _documentation(seen: Viewable) -> str:
     if seen.file is None:
         return ""
     try:
-        return ast.get_docstring(ast.parse(decoded(seen.file.read_bytes()))) or ""
+        return ast.get_docstring(parse(decoded(seen.file.read_bytes()))) or ""
     except (OSError, ValueError, SyntaxError):  # edited or deleted since it was loaded
         return ""
 

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from distal.diagnostics import CompileError, LoadError
 from distal.example_files import EXAMPLE_PREFIX
+from distal.frontend.parsing import parse
 from distal.lang.parameter_values import Value
 from distal.lessons.document import Goal, Layers, Lesson, Phrases, Try
 from distal.lessons.mistakes import choice_hint, mistake
@@ -139,7 +140,7 @@ def _source(seen: Viewable) -> str:
 def _definitions(source: str) -> dict[str, ast.stmt]:
     """Return the statements at the top of a file by the names that they define."""
     found: dict[str, ast.stmt] = {}
-    for statement in ast.parse(source).body:
+    for statement in parse(source).body:
         if isinstance(statement, ast.FunctionDef | ast.ClassDef):
             found[statement.name] = statement
         elif isinstance(statement, ast.Assign):

@@ -22,6 +22,7 @@ from distal.editor.messages import Changed, DiskProblem, Saved
 from distal.editor.scene_folder import check_name
 from distal.file_writer import ChangedError, LinkedError, digest_of, save
 from distal.forking import new_lock
+from distal.frontend.parsing import parse
 from distal.source_text import SourceTextError, decoded, with_plain_ends
 
 
@@ -310,7 +311,7 @@ def version_text(data: bytes) -> str:
 def _imported(text: str) -> set[str]:
     """Return the names of the top-level modules that a text imports; none if it is not Python."""
     try:
-        tree = ast.parse(text)
+        tree = parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return set()
     names: set[str] = set()

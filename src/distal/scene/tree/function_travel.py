@@ -20,6 +20,7 @@ from typing import Any, Final
 from weakref import WeakValueDictionary
 
 from distal.frontend.function_contents import attributes_read, values_read
+from distal.frontend.parsing import parse
 from distal.frontend.source import parse_definition
 from distal.lang.functions import Func, Overload
 from distal.lang.source import Source
@@ -165,7 +166,7 @@ def _names_of_annotations(cls: Any) -> dict[str, Any]:
     """Return the values of the names in the annotations of a struct that are text."""
     spaces: StructNames = cls.__distal_struct__
     texts = [a for a in cls.__annotations__.values() if isinstance(a, str)]
-    nodes = (node for text in texts for node in ast.walk(ast.parse(text, mode="eval")))
+    nodes = (node for text in texts for node in ast.walk(parse(text, mode="eval")))
     names = {node.id for node in nodes if isinstance(node, ast.Name)}
     values = {**spaces.module, **spaces.enclosing}
     return {name: _packed(values[name]) for name in sorted(names) if name in values}
