@@ -14,7 +14,7 @@ from distal import (
     Plane,
     Prism,
     Scene,
-    Triangle2,
+    Triangle,
     concrete,
     gold,
     steel,
@@ -54,7 +54,7 @@ bars = Cylinder(0.02, 0.9).repeat(0.12, 1.0, 1.0, count=(5, 1, 1)).translate(0.0
 keep = Prism(0.6, 2.4, count=6).translate(y=1.2).paint(STONE) | Cone(0.75, 0.9).translate(
     y=2.85
 ).paint(ROOF)
-flag = Triangle2((0.0, 0.0), (0.5, 0.14), (0.0, 0.28)).extrude(0.03).translate(y=3.5)
+flag = Triangle((0.0, 0.0), (0.5, 0.14), (0.0, 0.28)).extrude(0.03).translate(y=3.5)
 pole = Cylinder(0.02, 0.7).translate(y=3.45)
 
 castle = towers.union(

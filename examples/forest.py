@@ -18,7 +18,7 @@ from distal import (
     Shape,
     Sky,
     Sphere,
-    Triangle2,
+    Triangle,
     copies,
     emissive,
     matte,
@@ -78,7 +78,7 @@ crowns = copies(
 )
 trunks = trunk.array(places, scale=grown)
 
-gable = Triangle2((-0.45, 0.5), (0.45, 0.5), (0.0, 0.88)).extrude(0.7)
+gable = Triangle((-0.45, 0.5), (0.45, 0.5), (0.0, 0.88)).extrude(0.7)
 walls = (Box(0.9, 0.55, 0.7).translate(y=0.27) | gable).paint("#6b4a33")
 roof = Box(0.78, 0.06, 0.92).rotate(z=-0.7).translate(0.27, 0.68, 0.0)
 roof = (roof | roof.rotate(y=np.pi)).paint("#3b3036")

@@ -180,34 +180,32 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
         Rectangle((0.5, 0.15)).rotate(0.3).translate(0.6, 0.1).kaleidoscope(6)
     ),
     "repeat": lambda: _PEBBLE.repeat(0.6, 0.6, 0.6) & Box(1.9),
-    "repeat neighbours": lambda: Sphere(0.36).repeat(0.6, 0.6, 0.6, neighbours=1) & Box(1.9),
+    "repeat neighbors": lambda: Sphere(0.36).repeat(0.6, 0.6, 0.6, neighbors=1) & Box(1.9),
     "repeat mirrored": lambda: (
         _LEAF.translate(-0.5, 0, 0).repeat(0.8, 0.8, 0.8, mirrored=True) & Box(1.9)
     ),
     "repeat limited": lambda: _PEBBLE.repeat(0.6, 0.6, 0.6, count=(3, 2, 3)),
-    "repeat limited neighbours": lambda: Sphere(0.36).repeat(
-        0.6, 0.6, 0.6, count=(3, 2, 3), neighbours=1
+    "repeat limited neighbors": lambda: Sphere(0.36).repeat(
+        0.6, 0.6, 0.6, count=(3, 2, 3), neighbors=1
     ),
     "repeat interval": lambda: _PEBBLE.apply(
         "repeat interval", (0.5, 0.5, 0.5), last_x=2, last_z=3
     ),
     "repeat half": lambda: _PEBBLE.repeat_half(0.6, 0, 0.6) & Box(4.0),
     "repeat polar": lambda: RoundBox((0.5, 0.3, 0.2), 0.05).translate(0.6, 0, 0).repeat_polar(7),
-    "repeat polar neighbours": lambda: (
-        RoundBox((0.5, 0.3, 0.5), 0.1).translate(0.6, 0, 0).repeat_polar(7, neighbours=1)
+    "repeat polar neighbors": lambda: (
+        RoundBox((0.5, 0.3, 0.5), 0.1).translate(0.6, 0, 0).repeat_polar(7, neighbors=1)
     ),
     "repeat polar all": lambda: (
-        Torus(0.4, 0.08).translate(0.35, 0, 0).repeat_polar(5, neighbours="all")
+        Torus(0.4, 0.08).translate(0.35, 0, 0).repeat_polar(5, neighbors="all")
     ),
     "flat repeat": lambda: _STAR.scale(0.7).apply("flat repeat", (1.1, 1.1)),
-    "flat repeat neighbours": lambda: _STAR.apply(
-        "flat repeat neighbours", (1.0, 1.0), neighbours=1
-    ),
+    "flat repeat neighbors": lambda: _STAR.apply("flat repeat neighbors", (1.0, 1.0), neighbors=1),
     "flat repeat limited": lambda: _STAR.scale(0.3).apply(
         "flat repeat limited", (0.5, 0.5), count_x=3, count_y=2
     ),
-    "flat repeat limited neighbours": lambda: _STAR.scale(0.45).apply(
-        "flat repeat limited neighbours", (0.5, 0.5), count_x=3, count_y=2, neighbours=1
+    "flat repeat limited neighbors": lambda: _STAR.scale(0.45).apply(
+        "flat repeat limited neighbors", (0.5, 0.5), count_x=3, count_y=2, neighbors=1
     ),
     "flat repeat mirrored": lambda: (
         Heart(0.6).rotate(0.6).apply("flat repeat mirrored", (1.1, 1.1))
@@ -215,11 +213,11 @@ SHOWN: Final[dict[str, Callable[[], Any]]] = {
     "flat repeat polar": lambda: (
         Heart(0.25).rotate(-np.pi / 2).translate(0.45, 0).apply("flat repeat polar", 6)
     ),
-    "flat repeat polar neighbours": lambda: (
+    "flat repeat polar neighbors": lambda: (
         Heart(0.35)
         .rotate(-np.pi / 2)
         .translate(0.45, 0)
-        .apply("flat repeat polar neighbours", 6, neighbours=1)
+        .apply("flat repeat polar neighbors", 6, neighbors=1)
     ),
     "flat repeat polar all": lambda: Rectangle((1.6, 0.3)).apply("flat repeat polar all", 3),
     "flat repeat at": lambda: _STAR.scale(0.35).apply("flat repeat at", OUTLINE),

@@ -74,7 +74,7 @@ class Renames(cst.CSTTransformer):
         """Spell public objects as they are spelled now."""
         name = updated_node.value
         if name in FORMER_OBJECTS and name in self._from_distal:
-            return updated_node.with_changes(value=FORMER_OBJECTS[name])
+            return updated_node.with_changes(value=FORMER_OBJECTS[name].name)
         return updated_node.with_changes(value=FORMER_SPELLINGS.get(name, name))
 
 

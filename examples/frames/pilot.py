@@ -39,7 +39,7 @@ def held(code: int) -> float:
 
 @buffer
 def state(frame: Frame) -> vec4:
-    """The place (in heights of the picture) and the velocity; its neighbour has the angle."""
+    """The place (in heights of the picture) and the velocity; its neighbor has the angle."""
     is_angle = int(frame.coord.x) == 1
     body, more = texel(state, ivec2(0, 0)), texel(state, ivec2(1, 0))
     if frame.index == 0:

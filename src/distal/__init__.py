@@ -65,10 +65,7 @@ def _unknown(name: str) -> str:
     message = f"module 'distal' has no attribute '{name}'"
     former = importlib.import_module("distal.scene.tree.former_names").FORMER_OBJECTS
     if name in former:
-        return (
-            f"{message}; a blend of two colors is '{former[name]}', and the derivative is "
-            f"that of distal.lang"
-        )
+        return f"{message}; it is {former[name].now}"
     if name in importlib.import_module("distal.lang").__all__:
         return f"{message}; from distal.lang import {name}"
     near = importlib.import_module("difflib").get_close_matches(name, _MODULE_OF, 1)

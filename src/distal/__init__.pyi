@@ -2375,22 +2375,6 @@ class DeathStar(Shape):
         distance: Number = 1.25,
     ) -> None: ...
 
-class Diamond(Shape):
-    """Schwarz D (diamond) surface: tubes along the bonds of the atoms in a diamond."""
-
-    cell_size: Final[Any]
-    thickness: Final[Any]
-    level: Final[Any]
-    solid: Final[Any]
-
-    def __init__(
-        self,
-        cell_size: Number = 1.0,
-        thickness: Number = 0.1,
-        level: Number = 0.0,
-        solid: bool = False,
-    ) -> None: ...
-
 class DiamondLattice(Shape):
     """Infinite diamond lattice: struts along the bonds of the atoms in a diamond."""
 
@@ -2524,20 +2508,21 @@ class GearProfile(Shape2D):
     """Gear with involute teeth, one of them at the top; gears with equal teeth mesh."""
 
     radius: Final[Any]
-    pressure_angle: Final[Any]
-    count: Final[Any]
     addendum: Final[Any]
     dedendum: Final[Any]
     backlash: Final[Any]
+    count: Final[Any]
+    pressure_angle: Final[Any]
 
     def __init__(
         self,
         radius: Number = 0.5,
-        pressure_angle: Number = 0.3490658503988659,
-        count: int = 12,
         addendum: Number = 1.0,
         dedendum: Number = 1.25,
         backlash: Number = 0.0,
+        count: int = 12,
+        *,
+        pressure_angle: Number = 0.3490658503988659,
     ) -> None: ...
 
 class GradientNoiseSolid(Shape):
@@ -2840,9 +2825,9 @@ class KnurledCylinder(Shape):
     radius: Final[Any]
     height: Final[Any]
     depth: Final[Any]
-    slant: Final[Any]
     bevel: Final[Any]
     count: Final[Any]
+    slant: Final[Any]
     crossed: Final[Any]
 
     def __init__(
@@ -2850,9 +2835,10 @@ class KnurledCylinder(Shape):
         radius: Number = 0.5,
         height: Number = 1.0,
         depth: Number = 0.04,
-        slant: Number = 0.5235987755982988,
         bevel: Number = 0.04,
         count: int = 30,
+        *,
+        slant: Number = 0.5235987755982988,
         crossed: bool = True,
     ) -> None: ...
 
@@ -3261,20 +3247,21 @@ class RackProfile(Shape2D):
     """Toothed rack along x, teeth upwards, its pitch line at y = 0; gears of equal module mesh."""
 
     module: Final[Any]
-    pressure_angle: Final[Any]
     base: Final[Any]
     backlash: Final[Any]
     tip_gap: Final[Any]
     count: Final[Any]
+    pressure_angle: Final[Any]
 
     def __init__(
         self,
         module: Number = 0.1,
-        pressure_angle: Number = 0.3490658503988659,
         base: Number = 0.15,
         backlash: Number = 0.0,
         tip_gap: Number = 0.25,
         count: int = 8,
+        *,
+        pressure_angle: Number = 0.3490658503988659,
     ) -> None: ...
 
 class Rectangle(Shape2D):
@@ -3306,7 +3293,19 @@ class RegularStar(Shape2D):
 
     def __init__(self, radius: Number = 0.5, inner: Number = 0.25, count: int = 7) -> None: ...
 
-class Rhombus(Shape):
+class Rhombus(Shape2D):
+    """Rhombus with its diagonals along the axes."""
+
+    diagonals: Final[Any]
+
+    @overload
+    def __init__(self, diagonals: Vector = ...) -> None: ...
+    @overload
+    def __init__(self, diagonals_x: Number, diagonals_y: Number, /) -> None: ...
+    @overload
+    def __init__(self, *, x: Number = ..., y: Number = ...) -> None: ...
+
+class RhombusPrism(Shape):
     """Upright prism over a rhombus whose vertical edges are rounded."""
 
     diagonals: Final[Any]
@@ -3338,18 +3337,6 @@ class Rhombus(Shape):
         height: Number = 1.0,
         rounding: Number = 0.05,
     ) -> None: ...
-
-class Rhombus2(Shape2D):
-    """Rhombus with its diagonals along the axes."""
-
-    size: Final[Any]
-
-    @overload
-    def __init__(self, size: Vector | Number = ...) -> None: ...
-    @overload
-    def __init__(self, size_x: Number, size_y: Number, /) -> None: ...
-    @overload
-    def __init__(self, *, x: Number = ..., y: Number = ...) -> None: ...
 
 class Ring(Shape2D):
     """Arc of a ring with straight ends, symmetric about the y axis."""
@@ -3525,6 +3512,22 @@ class ScatteredBalls(Shape):
         jitter: Number = 0.8,
         seed: int = 0,
         holes: bool = False,
+    ) -> None: ...
+
+class SchwarzD(Shape):
+    """Schwarz D (diamond) surface: tubes along the bonds of the atoms in a diamond."""
+
+    cell_size: Final[Any]
+    thickness: Final[Any]
+    level: Final[Any]
+    solid: Final[Any]
+
+    def __init__(
+        self,
+        cell_size: Number = 1.0,
+        thickness: Number = 0.1,
+        level: Number = 0.0,
+        solid: bool = False,
     ) -> None: ...
 
 class SchwarzP(Shape):
@@ -3845,7 +3848,28 @@ class TriPrism(Shape):
 
     def __init__(self, inradius: Number = 0.4, height: Number = 1.0) -> None: ...
 
-class Triangle(Shape):
+class Triangle(Shape2D):
+    """Triangle with three given corners."""
+
+    a: Final[Any]
+    b: Final[Any]
+    c: Final[Any]
+
+    @overload
+    def __init__(self, a: Vector = ..., b: Vector = ..., c: Vector = ...) -> None: ...
+    @overload
+    def __init__(
+        self,
+        a_x: Number,
+        a_y: Number,
+        b_x: Number,
+        b_y: Number,
+        c_x: Number,
+        c_y: Number,
+        /,
+    ) -> None: ...
+
+class TriangleSheet(Shape):
     """Flat triangle without thickness."""
 
     a: Final[Any]
@@ -3866,27 +3890,6 @@ class Triangle(Shape):
         c_x: Number,
         c_y: Number,
         c_z: Number,
-        /,
-    ) -> None: ...
-
-class Triangle2(Shape2D):
-    """Triangle with three given corners."""
-
-    first: Final[Any]
-    second: Final[Any]
-    third: Final[Any]
-
-    @overload
-    def __init__(self, first: Vector = ..., second: Vector = ..., third: Vector = ...) -> None: ...
-    @overload
-    def __init__(
-        self,
-        first_x: Number,
-        first_y: Number,
-        second_x: Number,
-        second_y: Number,
-        third_x: Number,
-        third_y: Number,
         /,
     ) -> None: ...
 
@@ -4108,7 +4111,6 @@ __all__ = [
     "Cylinder",
     "CylinderBetween",
     "DeathStar",
-    "Diamond",
     "DiamondLattice",
     "Disc",
     "DistantLight",
@@ -4200,7 +4202,7 @@ __all__ = [
     "RegularPolygon",
     "RegularStar",
     "Rhombus",
-    "Rhombus2",
+    "RhombusPrism",
     "Ring",
     "RingGear",
     "RoundBox",
@@ -4213,6 +4215,7 @@ __all__ = [
     "RoundedX",
     "ScatteredBalls",
     "Scene",
+    "SchwarzD",
     "SchwarzP",
     "Segment",
     "Shape",
@@ -4246,7 +4249,7 @@ __all__ = [
     "Torus",
     "TriPrism",
     "Triangle",
-    "Triangle2",
+    "TriangleSheet",
     "TruncatedIcosahedron",
     "TruncatedOctahedron",
     "Tunnel",

@@ -42,14 +42,14 @@ class LoadedFrom:
     Attributes:
         source: ``FILE[:NAME]`` or ``example:NAME[:NAME]`` as the caller wrote it, as Unicode text.
         files: The file, and the modules in its folder that it imported.
-        neighbours: The paths of these modules relative to the folder of the file, with slashes.
+        neighbors: The paths of these modules relative to the folder of the file, with slashes.
         digest: The result of ``digest_of`` for them.
         began_ns: When loading began, as ``time.time_ns`` counts.
     """
 
     source: str
     files: tuple[Path, ...]
-    neighbours: tuple[str, ...]
+    neighbors: tuple[str, ...]
     digest: str
     began_ns: int = field(default=0, compare=False)
 
@@ -144,9 +144,9 @@ def _made(
     written = readable(path).replace(os.sep, "/")  # the same on every system
     source = written if name is None else f"{written}:{name}"
     folder = file.resolve().parent
-    neighbours = tuple(path.relative_to(folder).as_posix() for path in modules)
-    digest = _digest(text, folder, neighbours)
-    _loaded[found] = LoadedFrom(source, (file, *modules), neighbours, digest, began_ns)
+    neighbors = tuple(path.relative_to(folder).as_posix() for path in modules)
+    digest = _digest(text, folder, neighbors)
+    _loaded[found] = LoadedFrom(source, (file, *modules), neighbors, digest, began_ns)
     return found, module
 
 
@@ -161,7 +161,7 @@ def split_source(text: str) -> tuple[str, str | None]:
     return prefix + file, name or None
 
 
-def digest_of(path: str | Path, neighbours: Iterable[str] = ()) -> str:
+def digest_of(path: str | Path, neighbors: Iterable[str] = ()) -> str:
     """Return the SHA-256 of the text of a file and of modules in its folder, without running them.
 
     The digest of a single file is the hash of its text with Unix line ends; the name of the file is
@@ -169,13 +169,13 @@ def digest_of(path: str | Path, neighbours: Iterable[str] = ()) -> str:
 
     Args:
         path: As for ``load``.
-        neighbours: The paths of the modules relative to the folder of the file, with slashes.
+        neighbors: The paths of the modules relative to the folder of the file, with slashes.
 
     Raises:
         LoadError: There is no such file.
     """
     file = file_of(str(path))
-    return _digest(_read(file), file.resolve().parent, neighbours)
+    return _digest(_read(file), file.resolve().parent, neighbors)
 
 
 def file_of(path: str) -> Path:
@@ -244,8 +244,8 @@ def _run(
     finally:
         if folder in sys.path:  # the author's code may have changed it
             sys.path.remove(folder)
-        neighbours = _forget_neighbours(Path(folder), known)
-    return module, neighbours
+        neighbors = _forget_neighbors(Path(folder), known)
+    return module, neighbors
 
 
 @contextlib.contextmanager
@@ -265,15 +265,15 @@ def _same_folder_after() -> Iterator[None]:
                 os.chdir(before)
 
 
-def _digest(text: str, folder: Path, neighbours: Iterable[str]) -> str:
+def _digest(text: str, folder: Path, neighbors: Iterable[str]) -> str:
     whole = hashlib.sha256(text.encode("utf-8", "surrogatepass"))
-    for place in neighbours:
+    for place in neighbors:
         whole.update(f"\0{place}\0".encode("utf-8", "surrogatepass"))
-        whole.update(_neighbour(folder, place))
+        whole.update(_neighbor(folder, place))
     return whole.hexdigest()
 
 
-def _neighbour(folder: Path, place: str) -> bytes:
+def _neighbor(folder: Path, place: str) -> bytes:
     """Return the text of a module; if it cannot be read, a byte that differs from every text."""
     try:
         file = (folder / place).resolve()
@@ -284,7 +284,7 @@ def _neighbour(folder: Path, place: str) -> bytes:
         return b"\0"
 
 
-def _forget_neighbours(folder: Path, known: Set[str]) -> list[Path]:
+def _forget_neighbors(folder: Path, known: Set[str]) -> list[Path]:
     """Remove the modules of a folder from ``sys.modules``; return their files, sorted.
 
     Python caches modules by name only, so ``shapes`` of one folder would also be imported by scenes

@@ -235,7 +235,7 @@ def test_an_unknown_view_and_a_wrong_message_are_answered(child: Child) -> None:
     assert "is not the name of a Python file" in folder["mistakes"][0]["message"]
 
 
-def test_neighbours_are_imported_and_follow_their_text(child: Child) -> None:
+def test_neighbors_are_imported_and_follow_their_text(child: Child) -> None:
     main = "from parts import ball\nfrom distal import Scene\nscene = Scene(ball)\n"
     parts = "from distal import Sphere\nball = Sphere({})\n"
     for radius in (0.5, 0.75):

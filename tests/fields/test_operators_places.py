@@ -181,12 +181,12 @@ def in_cells(p: vec3) -> float:
 
 
 @func
-def in_neighbours(p: vec3) -> float:
+def in_neighbors(p: vec3) -> float:
     return nearest_copy_distance(ball_in, p, endless(SPACING), ball_box(0.0), 1, False)
 
 
 @func
-def in_more_neighbours(p: vec3) -> float:
+def in_more_neighbors(p: vec3) -> float:
     return nearest_copy_distance(ball_in, p, endless(SPACING), ball_box(0.0), 2, False)
 
 
@@ -197,7 +197,7 @@ def in_block(p: vec3) -> float:
 
 
 @func
-def in_block_neighbours(p: vec3) -> float:
+def in_block_neighbors(p: vec3) -> float:
     return nearest_copy_distance(ball_in, p, counted(SPACING, 2, 1, 3), ball_box(0.0), 1, True)
 
 
@@ -222,10 +222,10 @@ RING = np.array(
 
 ALL = [
     pytest.param(in_cells, GRID, id="cells"),
-    pytest.param(in_neighbours, GRID, id="neighbours"),
-    pytest.param(in_more_neighbours, GRID, id="more neighbours"),
+    pytest.param(in_neighbors, GRID, id="neighbors"),
+    pytest.param(in_more_neighbors, GRID, id="more neighbors"),
     pytest.param(in_block, BLOCK, id="block"),
-    pytest.param(in_block_neighbours, BLOCK, id="block, neighbours"),
+    pytest.param(in_block_neighbors, BLOCK, id="block, neighbors"),
     pytest.param(on_line, LINE, id="line"),
     pytest.param(on_ring, RING, id="ring"),
 ]
@@ -247,7 +247,7 @@ def test_a_repetition_is_the_union_of_its_copies(field, offsets):
 
 
 @pytest.mark.parametrize(("field", "offsets"), ALL[1:3])
-def test_neighbours_make_a_repetition_exact(field, offsets):
+def test_neighbors_make_a_repetition_exact(field, offsets):
     assert np.abs(field(POINTS) - nearest(POINTS, offsets)).max() < 1e-6
 
 
@@ -314,12 +314,12 @@ def rider_in(p: vec3, cell: vec3) -> float:
 
 
 @func
-def carousel_neighbours(p: vec3) -> float:
+def carousel_neighbors(p: vec3) -> float:
     box = Bounds(vec3(1.0, -0.25, -0.25), vec3(1.5, 0.25, 0.25))
     return repeated_polar_around(rider_in, p, 7, box, 1)
 
 
-@pytest.mark.parametrize("field", [carousel, carousel_neighbours])
+@pytest.mark.parametrize("field", [carousel, carousel_neighbors])
 def test_polar_copies_are_turned_about_the_y_axis(field):
     angles = 2.0 * np.pi * np.arange(7) / 7.0
     middles = 1.25 * np.stack([np.cos(angles), 0.0 * angles, -np.sin(angles)], axis=1)

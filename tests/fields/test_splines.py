@@ -12,7 +12,7 @@ T = np.linspace(0.0, 1.0, 400)[:, None]
 
 
 def velocities(points: np.ndarray, closed: bool) -> np.ndarray:
-    """Catmull and Rom: half the way between the neighbours; at an end, to the only one."""
+    """Catmull and Rom: half the way between the neighbors; at an end, to the only one."""
     if closed:
         return 0.5 * (np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0))
     return np.gradient(points, axis=0)

@@ -13,7 +13,7 @@ from tests.fields.library import primitives
 SURFACES = {
     "Gyroid": (tpms.GYROID_STEEPEST, tpms.GYROID_TYPICAL),
     "SchwarzP": (tpms.SCHWARZ_P_STEEPEST, tpms.SCHWARZ_P_TYPICAL),
-    "Diamond": (tpms.DIAMOND_STEEPEST, tpms.DIAMOND_TYPICAL),
+    "SchwarzD": (tpms.SCHWARZ_D_STEEPEST, tpms.SCHWARZ_D_TYPICAL),
     "Neovius": (tpms.NEOVIUS_STEEPEST, tpms.NEOVIUS_TYPICAL),
     "Lidinoid": (tpms.LIDINOID_STEEPEST, tpms.LIDINOID_TYPICAL),
     "SplitP": (tpms.SPLIT_P_STEEPEST, tpms.SPLIT_P_TYPICAL),

@@ -188,7 +188,7 @@ def test_a_buffer_shows_itself() -> None:
 def test_several_samples_are_of_the_picture_alone() -> None:
     one = pieces.mean.render(size=SIZE, index=4).array
     four = pieces.mean.render(size=SIZE, index=4, samples=4).array
-    # Samples lie in the pixel and around it: its neighbours have a share.
+    # Samples lie in the pixel and around it: its neighbors have a share.
     assert 0.0 < float(np.abs(one - four).max()) < 0.5
     assert float(four.mean()) == pytest.approx(float(one.mean()), abs=0.02)
 

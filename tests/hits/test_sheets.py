@@ -21,7 +21,7 @@ from distal import (
     Shape,
     Shape2D,
     Sphere,
-    Triangle,
+    TriangleSheet,
     union,
 )
 from distal.lang import abs, acos, atan2, clamp, cos, func, length, log, max, pow, sin, vec2, vec3
@@ -114,7 +114,14 @@ def test_whether_a_shape_has_an_inside(name):
 def test_sheets_are_seen(mode):
     """As solids of two thousandths are; lines are there."""
     given = {"mode": mode, "samples": 4 if mode == "path" else 1, "size": 96}
-    for thin in (Disc(1), Quad(), Triangle(), own(sheet), Disc(1).scale(2), Disc(1) - Box(0.5)):
+    for thin in (
+        Disc(1),
+        Quad(),
+        TriangleSheet(),
+        own(sheet),
+        Disc(1).scale(2),
+        Disc(1) - Box(0.5),
+    ):
         assert cover(thin, EYE, 50, **given) == pytest.approx(
             cover(thin.round(2e-3), EYE, 50, **given), abs=6e-3
         )

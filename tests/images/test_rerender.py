@@ -399,7 +399,7 @@ def test_garbled_texts_are_told_in_one_line(run, changes):
         ({"steering": "[0, 0, 0, 0, 0]"}, "zoom is a factor above 0"),
         ({"source": "\0"}, "it names no .py file, only '\\x00'"),
         ({"source": "nowhere/" * 2000 + "a.py"}, "there is no"),
-        ({"neighbours": '["/dev/zero", "../../x"]'}, "it has changed since"),
+        ({"neighbors": '["/dev/zero", "../../x"]'}, "it has changed since"),
     ],
     ids=lambda value: f"{value}"[:40],
 )

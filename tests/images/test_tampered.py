@@ -148,7 +148,7 @@ def with_texts(base, **texts):
 def test_file_that_a_picture_must_not_choose(run, base, tmp_path, source):
     evil = str(tmp_path / "out" / "evil.py")
     texts = {"source": source.replace("ABSOLUTE", evil), "source_hash": digest_of(evil)}
-    Path("a.png").write_bytes(with_texts(base, **texts, neighbours="[]"))
+    Path("a.png").write_bytes(with_texts(base, **texts, neighbors="[]"))
     for words in ((), ("--force",)):
         result = run("rerender", "a.png", *words)
         assert result.exit_code == 1
@@ -187,12 +187,9 @@ LONG_NUMBER = "9" * 4000
             for text in ('{"x\x1b":1}', '{"x":NaN}', '{"x":[[]]}', "null", DEEP)
         ),
         {"parameters": json.dumps({str(i): 1 for i in range(50_000)})},
-        *(
-            {"neighbours": text}
-            for text in ('"ab"', "[1]", '["\\u0000"]', '["x.py", "x.py"]', DEEP)
-        ),
-        {"neighbours": json.dumps([f"\x1b{i}.py" for i in range(20_000)])},
-        {"neighbours": json.dumps([f"{i}\u202e" * 50 for i in range(2000)])},
+        *({"neighbors": text} for text in ('"ab"', "[1]", '["\\u0000"]', '["x.py", "x.py"]', DEEP)),
+        {"neighbors": json.dumps([f"\x1b{i}.py" for i in range(20_000)])},
+        {"neighbors": json.dumps([f"{i}\u202e" * 50 for i in range(2000)])},
         *({"plane": text} for text in ("[[0,0,1]]", '[[0,0,1],"x"]', "[[NaN,0,1],0]", "{}", DEEP)),
         *({"exposure": text} for text in ("nan", "inf", "x", "-1")),
         *({"view": text} for text in ("\x1b]0;x\x07", "x" * 10**5, "local:\x1b", "\u200b")),

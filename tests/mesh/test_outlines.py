@@ -63,7 +63,7 @@ def max_of(a: Any, b: Any) -> Any:
 
 
 def crossings(loops: Any) -> int:
-    """How many pairs of lines meet that are no neighbours, in whole numbers without rounding."""
+    """How many pairs of lines meet that are no neighbors, in whole numbers without rounding."""
     lines = []
     for number, loop in enumerate(loops):
         # A float is a whole number of 2^-120, unless it is below 2^-68.

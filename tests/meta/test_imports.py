@@ -68,7 +68,7 @@ def test_gallery_is_not_empty():
 
 
 # What GLSL ES 1.00 lacks it refuses: integer hashes, data. Scenes that import NumPy need it.
-# One imports its neighbour, which the blocker above takes for a package.
+# One imports its neighbor, which the blocker above takes for a package.
 ALONE = [
     name
     for name, path in distal.gallery().items()

@@ -2,7 +2,7 @@
 
 Input: a row's name, its domain and the kinds of its arguments. Output: ``SAMPLES``
 bit patterns for each argument; sample i of all arguments belongs together, so that edges meet the
-edges they are meant to meet. Vectors take neighbouring samples for their other components.
+edges they are meant to meet. Vectors take neighboring samples for their other components.
 """
 
 from __future__ import annotations

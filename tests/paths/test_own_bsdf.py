@@ -28,8 +28,7 @@ from distal import (
 from distal.lang import abs, cos, dot, floor, func, max, sin, slider, sqrt, vec3
 from distal.render.own_scattering import even_density
 from distal.render.sampling.warps import axes_about, in_cone, into_space
-from tests import egl, gpu
-from tests.glsl import run_glsl
+from tests.drivers import driver_picture
 
 SHEEN = slider("Sheen", 0.5, low=0.0, high=1.0)
 
@@ -443,15 +442,6 @@ def test_the_reference_has_the_same_light():
 
 @pytest.mark.parametrize("target", ["glsl-es300", "wgsl"])
 def test_shaders_have_the_same_light(target):
-    program = distal.compile(mixed_scene().view("color", paths=True, filter="box"), target)
     size = (24, 16)
-    try:
-        if target == "wgsl":
-            gpu.device()
-            found = gpu.run_wgsl(program, size, path="fragment")
-        else:
-            egl.context()
-            found = run_glsl(program, size)
-    except (egl.EglUnavailableError, gpu.GpuUnavailableError) as error:
-        pytest.skip(str(error))
+    found = driver_picture(mixed_scene().view("color", paths=True, filter="box"), target, size)
     assert off_by(found[..., :3], mixed_light(size)) < 2e-3

@@ -7,7 +7,6 @@ from functools import cache
 import numpy as np
 import pytest
 
-import distal
 from distal import Camera, PointLight, Scene, Sphere
 from distal.lang import Frame, image, ivec2, normalize, select, vec3, vec4
 from distal.lang.composed import Composed
@@ -16,8 +15,7 @@ from distal.render import scatter
 from distal.render.material import Surface
 from distal.render.sampling import points
 from distal.runtime.executor import PythonExecutor
-from tests import egl, gpu
-from tests.glsl import run_glsl
+from tests.drivers import driver_picture
 
 SIZE = (24, 16)
 UP = vec3(0.0, 0.0, 1.0)
@@ -93,36 +91,12 @@ def test_cpu(number: int) -> None:
     compare(picture.array, number)
 
 
+@pytest.mark.parametrize("target", ["glsl-es300", "wgsl"])
 @pytest.mark.parametrize("number", [0, 1])
-def test_glsl(number: int) -> None:
-    try:
-        egl.context()
-    except egl.EglUnavailableError as error:
-        pytest.skip(str(error))
-    compare(run_glsl(distal.compile((numbers, scattered)[number], "glsl-es300"), SIZE), number)
+def test_drivers(number: int, target: str) -> None:
+    compare(driver_picture((numbers, scattered)[number], target, SIZE), number)
 
 
-@pytest.mark.parametrize("number", [0, 1])
-def test_wgsl(number: int) -> None:
-    try:
-        gpu.device()
-    except gpu.GpuUnavailableError as error:
-        pytest.skip(str(error))
-    text = distal.compile((numbers, scattered)[number], "wgsl")
-    compare(gpu.run_wgsl(text, SIZE, path="fragment"), number)
-
-
-def test_film_of_glsl() -> None:
-    try:
-        egl.context()
-    except egl.EglUnavailableError as error:
-        pytest.skip(str(error))
-    compare_film(run_glsl(distal.compile(film()[0], "glsl-es300"), SIZE))
-
-
-def test_film_of_wgsl() -> None:
-    try:
-        gpu.device()
-    except gpu.GpuUnavailableError as error:
-        pytest.skip(str(error))
-    compare_film(gpu.run_wgsl(distal.compile(film()[0], "wgsl"), SIZE, path="fragment"))
+@pytest.mark.parametrize("target", ["glsl-es300", "wgsl"])
+def test_film_of_drivers(target: str) -> None:
+    compare_film(driver_picture(film()[0], target, SIZE))

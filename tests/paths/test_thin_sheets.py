@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from distal import AmbientLight, Camera, Disc, Quad, Scene, Sphere, Triangle, glass, matte
+from distal import AmbientLight, Camera, Disc, Quad, Scene, Sphere, TriangleSheet, glass, matte
 
 SHEETS = [
     Quad((-1, -1, -1.5), (1, -1, -1.5), (1, 1, -1.5), (-1, 1, -1.5)),
-    Triangle((-2, -1, -1.5), (2, -1, -1.5), (0, 2, -1.5)),
+    TriangleSheet((-2, -1, -1.5), (2, -1, -1.5), (0, 2, -1.5)),
     Disc(1.0).rotate(x=1.5708).translate(z=-1.5),
 ]
 

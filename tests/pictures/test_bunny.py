@@ -78,7 +78,7 @@ def test_ears_are_pink_inside(scene):
 
 
 def test_without_softness_it_is_made_of_pieces(scene):
-    """A hard seam: normals jump between neighbouring pixels of the body."""
+    """A hard seam: normals jump between neighboring pixels of the body."""
     jumps = []
     for softness in (0.0, 1.0):
         params = {"turn": 1.0, "softness": softness}

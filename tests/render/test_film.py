@@ -159,7 +159,7 @@ def test_an_image_has_one_sample_unless_asked():
 
 
 def wanted(picture: Any) -> tuple[Any, Any]:
-    """Which pixels differ from a neighbour by more than the contrast: surely, and perhaps."""
+    """Which pixels differ from a neighbor by more than the contrast: surely, and perhaps."""
     shown = np.clip(picture.array[..., :3].astype(float), 0.0, 1.0)
     linear = np.where(shown > 0.04045, ((shown + 0.055) / 1.055) ** 2.4, shown / 12.92)
     alpha = picture.array[..., 3].astype(float)

@@ -169,7 +169,7 @@ def test_a_repeated_shape_has_no_wider_footprints_at_the_borders():
     x = 0.501 - 0.5 * pixel
     view = OrthographicCamera((x, 5.0, 0.2), (x, 0.0, 0.2), (0.0, 0.0, -1.0), height=4.0)
     tile = (
-        Box(1.2, 1.0, 1.2).paint(glowing(pattern(shown_width))).repeat(1.0, 9.0, 1.0, neighbours=1)
+        Box(1.2, 1.0, 1.2).paint(glowing(pattern(shown_width))).repeat(1.0, 9.0, 1.0, neighbors=1)
     )
     found = light(Scene(tile, camera=view, floor=False, **DARK))
     assert found[:, SIZE[0] // 2] == pytest.approx(np.full(SIZE[1], pixel), rel=2e-2)

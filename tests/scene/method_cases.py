@@ -197,8 +197,8 @@ SOLIDS = [
     ),
     Case(
         "repeat",
-        {"spacing": (1.1, 1.3, 0.9), "neighbours": 1},
-        copies=lambda q, spacing, neighbours: at_steps(q, spacing, AROUND),
+        {"spacing": (1.1, 1.3, 0.9), "neighbors": 1},
+        copies=lambda q, spacing, neighbors: at_steps(q, spacing, AROUND),
         child=SMALL,
     ),
     Case(
@@ -210,8 +210,8 @@ SOLIDS = [
     ),
     Case(
         "repeat",
-        {"spacing": (1.1, 1.3, 0.9), "count": (2, 3, 4), "neighbours": 1},
-        copies=lambda q, spacing, count, neighbours: at_steps(q, spacing, block(count)),
+        {"spacing": (1.1, 1.3, 0.9), "count": (2, 3, 4), "neighbors": 1},
+        copies=lambda q, spacing, count, neighbors: at_steps(q, spacing, block(count)),
         changed={"count": [(3, 3, 4), (2, 2, 4), (2, 3, 5)]},
         child=SMALL,
     ),
@@ -237,17 +237,17 @@ SOLIDS = [
     ),
     Case(
         "repeat_polar",
-        {"count": 5, "neighbours": 1},
-        copies=lambda q, count, neighbours: around_y(q, count),
+        {"count": 5, "neighbors": 1},
+        copies=lambda q, count, neighbors: around_y(q, count),
         child=BESIDE,
     ),
     Case(
         "repeat_polar",
-        {"count": 5, "neighbours": "all"},
-        lambda a, b, p, count, neighbours: np.min(
+        {"count": 5, "neighbors": "all"},
+        lambda a, b, p, count, neighbors: np.min(
             [a(p @ about(Y, 2.0 * np.pi * i / count)) for i in range(count)], axis=0
         ),
-        fixed=("neighbours",),
+        fixed=("neighbors",),
     ),
     Case(
         "repeat_ring",

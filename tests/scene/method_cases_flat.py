@@ -105,8 +105,8 @@ FLATS = [
     ),
     Case(
         "repeat",
-        {"spacing": (1.1, 1.3), "neighbours": 1},
-        copies=lambda q, spacing, neighbours: at_steps(q, spacing, FLAT_AROUND),
+        {"spacing": (1.1, 1.3), "neighbors": 1},
+        copies=lambda q, spacing, neighbors: at_steps(q, spacing, FLAT_AROUND),
         child=SMALL,
     ),
     Case(
@@ -118,8 +118,8 @@ FLATS = [
     ),
     Case(
         "repeat",
-        {"spacing": (1.1, 1.3), "count": (2, 3), "neighbours": 1},
-        copies=lambda q, spacing, count, neighbours: at_steps(q, spacing, block(count)),
+        {"spacing": (1.1, 1.3), "count": (2, 3), "neighbors": 1},
+        copies=lambda q, spacing, count, neighbors: at_steps(q, spacing, block(count)),
         changed={"count": [(3, 3), (2, 2)]},
         child=SMALL,
     ),
@@ -135,17 +135,17 @@ FLATS = [
     Case("repeat_polar", {"count": 5}, copies=flat_around, child=FLAT_BESIDE),
     Case(
         "repeat_polar",
-        {"count": 5, "neighbours": 1},
-        copies=lambda q, count, neighbours: flat_around(q, count),
+        {"count": 5, "neighbors": 1},
+        copies=lambda q, count, neighbors: flat_around(q, count),
         child=FLAT_BESIDE,
     ),
     Case(
         "repeat_polar",
-        {"count": 5, "neighbours": "all"},
-        lambda a, b, p, count, neighbours: np.min(
+        {"count": 5, "neighbors": "all"},
+        lambda a, b, p, count, neighbors: np.min(
             [a(p @ about(Z, 2.0 * np.pi * i / count)[:2, :2]) for i in range(count)], axis=0
         ),
-        fixed=("neighbours",),
+        fixed=("neighbors",),
     ),
     Case(
         "split",

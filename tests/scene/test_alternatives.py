@@ -95,11 +95,11 @@ def test_a_comparison_shows_as_many_as_a_number_says():
 
 COUNTED = {
     "polar": lambda n: BALL.scale(0.3).translate(1, 0, 0).repeat_polar(n),
-    "polar neighbours": lambda n: BALL.scale(0.5).translate(1, 0, 0).repeat_polar(n, neighbours=1),
-    "polar all": lambda n: BALL.translate(0.2, 0, 0).repeat_polar(n, neighbours="all"),
+    "polar neighbors": lambda n: BALL.scale(0.5).translate(1, 0, 0).repeat_polar(n, neighbors=1),
+    "polar all": lambda n: BALL.translate(0.2, 0, 0).repeat_polar(n, neighbors="all"),
     "grid": lambda n: CUBE.repeat((1.0, 0.0, 1.5), count=(n, 1, n + 1)),
     "grid by one number": lambda n: CUBE.repeat(1.0, count=n),
-    "neighbours": lambda n: CUBE.repeat((1.0, 0, 0), count=(n, 1, 1), neighbours=1),
+    "neighbors": lambda n: CUBE.repeat((1.0, 0, 0), count=(n, 1, 1), neighbors=1),
     "line": lambda n: BALL.scale(0.1).array(start=(0, 0, 0), end=(3, 1, 0), count=n),
     "ring": lambda n: BALL.scale(0.3).repeat_ring(1.0, count=(n, 4)),
     "kaleidoscope": lambda n: CUBE.translate(1.0, 0, 0).kaleidoscope(n),

@@ -26,6 +26,7 @@ from distal import (
     choose,
     emissive,
     glass,
+    matte,
 )
 from distal.diagnostics import CompileError
 from distal.fields.repeat import polar
@@ -185,9 +186,9 @@ ERRORS = {
         "'count of repeat polar' takes a whole number; the toggle 'Switch' is a bool",
         "make it with integer(…)",
     ),
-    "neighbours of a parameter": (
-        lambda: BESIDE.repeat(9.0, neighbours=MANY),
-        "'neighbours of repeat' is fixed when the scene is compiled; the integer 'Many' is not",
+    "neighbors of a parameter": (
+        lambda: BESIDE.repeat(9.0, neighbors=MANY),
+        "'neighbors of repeat' is fixed when the scene is compiled; the integer 'Many' is not",
         "give a plain whole number",
     ),
     # Alternatives
@@ -504,6 +505,15 @@ def test_a_black_picture_is_told():
     ((message, file),) = heard(lambda: black.render(size=(8, 8)))
     assert message == "the picture is black: no light comes from what the camera sees"
     assert file == __file__
+
+
+def test_light_that_is_not_a_number_is_told():
+    broken = matte("red").bump(nowhere)
+    for mode in ("direct", "path"):
+        scene = Scene(Box(9).paint(broken), camera=Camera((3, 2, 5)), floor=False, mode=mode)
+        ((message, file),) = heard(lambda scene=scene: scene.render(size=(8, 8), samples=1))
+        assert message.startswith("in 100.0% of the pixels the light is not a number: look for a ")
+        assert file == __file__
 
 
 @pytest.mark.parametrize("background", ["#000", "#fff"])

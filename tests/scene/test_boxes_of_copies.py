@@ -25,10 +25,10 @@ def hull(count: int, corners: Any = CORNERS) -> tuple[Any, Any]:
     return places.min(axis=0), places.max(axis=0)
 
 
-@pytest.mark.parametrize("neighbours", [0, 1, "all"])
+@pytest.mark.parametrize("neighbors", [0, 1, "all"])
 @pytest.mark.parametrize("count", [2, 3, 5, 12])
-def test_the_box_of_few_copies_is_their_hull(count: int, neighbours: Any) -> None:
-    low, high = ARM.repeat_polar(count, neighbours=neighbours).bounds()
+def test_the_box_of_few_copies_is_their_hull(count: int, neighbors: Any) -> None:
+    low, high = ARM.repeat_polar(count, neighbors=neighbors).bounds()
     least, most = hull(count)
     assert low[1] == pytest.approx(-0.15) and high[1] == pytest.approx(0.35)
     assert [low[0], low[2]] == pytest.approx(list(least), abs=1e-5)
@@ -54,16 +54,16 @@ def test_flat_copies_have_the_same_rectangle() -> None:
 
 def test_the_box_follows_a_number_of_copies() -> None:
     many = integer("Many", 3, 1, 20)
-    shape = ARM.repeat_polar(many, neighbours="all")
+    shape = ARM.repeat_polar(many, neighbors="all")
     for count in (1, 3, 7, 20):
-        wanted = ARM.repeat_polar(count, neighbours="all").bounds()
+        wanted = ARM.repeat_polar(count, neighbors="all").bounds()
         assert np.array(shape.bounds(params={"many": count})) == pytest.approx(np.array(wanted))
 
 
-@pytest.mark.parametrize("neighbours", [0, 1, "all"])
+@pytest.mark.parametrize("neighbors", [0, 1, "all"])
 @pytest.mark.parametrize("count", [3, 4, 7])
-def test_values_are_at_least_the_distance_to_the_box(count: int, neighbours: Any) -> None:
-    shape = ARM.repeat_polar(count, neighbours=neighbours)
+def test_values_are_at_least_the_distance_to_the_box(count: int, neighbors: Any) -> None:
+    shape = ARM.repeat_polar(count, neighbors=neighbors)
     low, high = map(np.array, shape.bounds())
     p = np.random.default_rng(4).uniform(-5.0, 5.0, (50_000, 3))
     beyond = np.linalg.norm(np.maximum(np.maximum(low - p, p - high), 0.0), axis=1)

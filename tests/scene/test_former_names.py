@@ -10,7 +10,7 @@ import pytest
 import distal
 from distal.diagnostics import CompileError
 from distal.fields.library import PRIMITIVES
-from distal.scene.tree.former_names import FORMER_NAMES, FORMERLY_FIRST
+from distal.scene.tree.former_names import FORMER_NAMES, FORMER_OBJECTS, FORMERLY_FIRST
 
 BOX, BALL = distal.Box(1.0), distal.Sphere(0.6)
 REFUSED = (
@@ -32,6 +32,12 @@ REFUSED = (
     (lambda: BOX.pipe(BALL, 0.1).replace(k=0.2), "pipe has no 'k'", "radius=…"),
     (lambda: BOX.mirror(normal=(1, 0, 0)), "mirror has no 'normal'", "across=…"),
     (lambda: BOX.symmetry(normal=(1, 0, 0)), "symmetry has no 'normal'", "across=…"),
+    (lambda: distal.Triangle(first=(0, 0)), "Triangle has no 'first'", "a=…"),
+    (lambda: BOX.repeat(1, neighbours=1), "repeat has no 'neighbours'", "'neighbors'"),
+    # Solids whose name a flat shape has now.
+    (lambda: distal.Triangle((0, 0, 0)), "takes two numbers, not 3", "its solid is TriangleSheet"),
+    (lambda: distal.Rhombus((1, 1), 2.0), "takes nothing after", "its solid is RhombusPrism"),
+    (lambda: distal.Rhombus(height=2.0), "Rhombus has no 'height'", "its solid is RhombusPrism"),
     # An angle by position may be a half.
     (lambda: distal.Pie(1.0, 0.7), "Pie takes nothing after 'radius'", "by name: opening=2 * …"),
     (lambda: distal.Wedge(0.7), "Wedge takes nothing by position", "by name: opening=…"),
@@ -73,10 +79,18 @@ def test_a_former_name_is_none_of_now():
         assert parameters[first].kind is inspect.Parameter.KEYWORD_ONLY
 
 
-def test_an_opening_is_passed_by_name():
+def test_an_angle_is_passed_by_name():
     for name in PRIMITIVES:
-        opening = inspect.signature(getattr(distal, name)).parameters.get("opening")
-        assert opening is None or opening.kind is inspect.Parameter.KEYWORD_ONLY, name
+        parameters = inspect.signature(getattr(distal, name)).parameters
+        for angle in {"opening", "pressure_angle", "slant"} & set(parameters):
+            assert parameters[angle].kind is inspect.Parameter.KEYWORD_ONLY, name
+
+
+@pytest.mark.parametrize(("former", "now"), FORMER_OBJECTS.items())
+def test_a_former_object_is_told_the_one_of_now(former, now):
+    with pytest.raises(AttributeError, match=f"; it is '{now.name}'"):
+        getattr(distal, former)
+    assert hasattr(distal, now.name)
 
 
 @pytest.mark.parametrize(("former", "now"), [("aluminium", "aluminum"), ("metre", "meter")])

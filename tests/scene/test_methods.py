@@ -235,8 +235,8 @@ DEFAULTS = {
     "split": {"offset": 0.0},
     "shell": {"where": "inner"},
     "orient": {"target": None},
-    "repeat": {"count": None, "neighbours": 0, "mirrored": False},
-    "repeat_polar": {"neighbours": 0},
+    "repeat": {"count": None, "neighbors": 0, "mirrored": False},
+    "repeat_polar": {"neighbors": 0},
     "shear": {"xy": 0.0, "xz": 0.0, "yz": 0.0},
     "array": {
         **dict.fromkeys(("positions", "start", "end", "count")),

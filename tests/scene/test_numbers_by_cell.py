@@ -53,16 +53,16 @@ LINE = [at(-1.5 + i, 0.0, 0.0, i) for i in range(4)]
 # The repetition, its copies, and whether all copies are asked for.
 REPETITIONS = {
     "limited": (lambda: BY_CELL.repeat(1.0, count=(4, 1, 1)), LINE, False),
-    "neighbours": (lambda: BY_CELL.repeat(1.0, count=(4, 1, 1), neighbours=1), LINE, True),
+    "neighbors": (lambda: BY_CELL.repeat(1.0, count=(4, 1, 1), neighbors=1), LINE, True),
     "line": (lambda: BY_CELL.array(start=(-1.5, 0, 0), end=(1.5, 0, 0), count=4), LINE, False),
     "polar": (lambda: BY_CELL.translate(1.5, 0, 0).repeat_polar(6), POLAR, False),
-    "polar neighbours": (
-        lambda: BY_CELL.translate(1.5, 0, 0).repeat_polar(6, neighbours=2),
+    "polar neighbors": (
+        lambda: BY_CELL.translate(1.5, 0, 0).repeat_polar(6, neighbors=2),
         POLAR,
         False,
     ),
     "polar all": (
-        lambda: BY_CELL.translate(1.5, 0, 0).repeat_polar(6, neighbours="all"),
+        lambda: BY_CELL.translate(1.5, 0, 0).repeat_polar(6, neighbors="all"),
         POLAR,
         True,
     ),
@@ -155,9 +155,9 @@ def test_a_condition_of_the_cell_selects_shapes():
 def test_flat_shapes_too():
     made = Circle(0.2 + 0.05 * cell.x).repeat(1.0, count=(4, 1))
     assert made((1.5, 0.0)) == pytest.approx(-0.35, abs=1e-6)
-    near = Circle(0.2 + 0.05 * cell.x).repeat(0.6, count=(4, 1), neighbours=1)
+    near = Circle(0.2 + 0.05 * cell.x).repeat(0.6, count=(4, 1), neighbors=1)
     assert near((0.9, 0.0)) == pytest.approx(-0.35, abs=1e-6)
-    ring = Circle(0.1 + 0.02 * cell.x).translate(1.0, 0.0).repeat_polar(5, neighbours="all")
+    ring = Circle(0.1 + 0.02 * cell.x).translate(1.0, 0.0).repeat_polar(5, neighbors="all")
     x, y = np.cos(2.0 * np.pi / 5), np.sin(2.0 * np.pi / 5)
     assert ring((x, y)) == pytest.approx(-0.12, abs=1e-6)
 
@@ -232,7 +232,7 @@ def test_texts_of_all_languages(target):
     made = (
         Sphere(size + 0.1 * random_by_cell(seed=3))
         .paint(matte((0.2 + 0.1 * (cell.x % 3.0), 0.3, 0.4)))
-        .repeat(1.0, 0.0, 1.0, neighbours=1)
+        .repeat(1.0, 0.0, 1.0, neighbors=1)
     )
     text = distal.compile(Scene(made), target=target).text
     assert "cell" in text
@@ -272,10 +272,10 @@ WRONG = [
     (
         lambda: Sphere(0.2 + 0.01 * cell.x).repeat(1.0, mirrored=True),
         "mirrored copies match only if all are alike; 'radius of Sphere' depends on the cell",
-        "leave out mirrored=True; neighbours=1 for a shape that is larger than its cell",
+        "leave out mirrored=True; neighbors=1 for a shape that is larger than its cell",
     ),
     (
-        lambda: BESIDE.repeat_polar(3 + cell.x, neighbours="all").repeat(9.0, count=(3, 1, 1)),
+        lambda: BESIDE.repeat_polar(3 + cell.x, neighbors="all").repeat(9.0, count=(3, 1, 1)),
         "'count of repeat polar all' is the same in all cells",
         "choose between shapes: select(cell.x < 1.5, a, b)",
     ),

@@ -9,8 +9,7 @@ import distal
 from distal import Camera, CompileError, PointLight, Scene, Sphere, SpotLight
 from distal.lang import clamp, exp, func, slider, vec3
 from distal.lang.runtime_access import executor
-from tests import egl, gpu
-from tests.glsl import run_glsl
+from tests.drivers import driver_picture
 
 CAMERA = Camera((0.0, 0.0, 4.0))
 SPHERE = Sphere(1.0)
@@ -125,16 +124,7 @@ def test_own_functions_are_emitted_for_each_target(target: str):
 def test_drivers_draw_what_own_functions_say(target: str):
     lamp = PointLight((1.0, 2.0, 3.0), 5.0, falloff=sharp)
     scene = Scene(SPHERE, lamp, CAMERA, background="black", tone_map=film)
-    program = distal.compile(scene, target=target)
-    try:
-        if target == "wgsl":
-            gpu.device()
-            found = gpu.run_wgsl(program, SIZE, path="fragment")
-        else:
-            egl.context()
-            found = run_glsl(program, SIZE)
-    except (egl.EglUnavailableError, gpu.GpuUnavailableError) as error:
-        pytest.skip(str(error))
+    found = driver_picture(scene, target, SIZE)
     known = scene.render(SIZE, samples=1).array
     assert known[..., :3].max() > 0.3
     assert np.quantile(np.abs(found - known).max(-1), 0.99) < 2 / 255

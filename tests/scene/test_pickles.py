@@ -23,6 +23,7 @@ from distal import (
     Camera,
     Circle,
     Curve,
+    Environment,
     Gear,
     PointLight,
     Scene,
@@ -70,6 +71,7 @@ OBJECTS = [
     Camera(),
     PointLight((1, 2, 3)),
     Sky(light=True),
+    Environment(ROWS),
     glass(),
     checker(),
     matte("red").mix("blue").bump(0.1),
@@ -327,14 +329,14 @@ if __name__ == "__main__":
 
 def test_a_spawned_process_computes_the_same(tmp_path):
     (tmp_path / "script.py").write_text(SCRIPT, encoding="utf-8")
-    (tmp_path / "neighbour.py").write_text(
+    (tmp_path / "neighbor.py").write_text(
         "from distal.lang import *\nSIZE = 0.75\n\n@func\ndef far(p: vec3) -> float:\n"
         "    return length(p) - SIZE\n",
         encoding="utf-8",
     )
     (tmp_path / "model.py").write_text(
-        "import neighbour\nfrom distal import *\nfrom distal.lang import *\n\n"
-        "@func\ndef near(p: vec3) -> float:\n    return neighbour.far(p) * 0.5\n\n"
+        "import neighbor\nfrom distal import *\nfrom distal.lang import *\n\n"
+        "@func\ndef near(p: vec3) -> float:\n    return neighbor.far(p) * 0.5\n\n"
         "scene = Scene(Shape.from_function(near, bounds=((-1, -1, -1), (1, 1, 1))))\n",
         encoding="utf-8",
     )

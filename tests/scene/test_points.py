@@ -34,7 +34,7 @@ COUNT = 2000
 
 
 def nearest_distances(points):
-    """The distance of each point from its nearest neighbour, by comparing all pairs."""
+    """The distance of each point from its nearest neighbor, by comparing all pairs."""
     found = np.empty(len(points))
     for at in range(0, len(points), 256):
         part = points[at : at + 256]

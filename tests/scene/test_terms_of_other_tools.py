@@ -97,7 +97,7 @@ INSIDES = {
     ),
     "repeat": (
         ball(np.column_stack((repeated(P[:, 0], 0.7, 2), P[:, 1:]))),
-        lambda: Sphere(0.5).repeat(0.7, 0.0, 0.0, count=(5, 1, 1), neighbours=1),
+        lambda: Sphere(0.5).repeat(0.7, 0.0, 0.0, count=(5, 1, 1), neighbors=1),
     ),
 }
 

@@ -245,6 +245,15 @@ def test_unknown_names_are_refused_at_the_authors_line():
         with pytest.raises(CompileError) as caught:
             value.replace(**{name: 1.0})
         assert caught.value.diagnostics[0].span.file == __file__
+    bumped = distal.matte("red").bump(0.1)
+    with pytest.raises(CompileError) as caught:
+        bumped.replace(color="blue")
+    found = caught.value.diagnostics[0]
+    assert found.message == "bump has no 'color'"
+    assert found.hint == 'replace(**{"surface.color": …})'
+    assert bumped.replace(**{"surface.color": "blue"}) == distal.matte("blue").bump(0.1)
+    with pytest.raises(CompileError, match="bump has no 'hight'"):
+        bumped.replace(hight=1.0)
     with pytest.raises(CompileError, match="Sphere was made by no operator: it has no children"):
         Sphere().replace(children=[Box()])
     with pytest.raises(CompileError, match="'translate' takes one child, not 2"):

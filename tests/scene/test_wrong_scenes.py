@@ -38,7 +38,7 @@ def test_paint_of_cells_stands_inside_the_repetition():
     Scene(Sphere().paint(by_cell()))  # a material may be used where nothing repeats
     for repeated in (
         Sphere(0.3).repeat(1.0),
-        Sphere(0.3).repeat(1.0, neighbours=1),
+        Sphere(0.3).repeat(1.0, neighbors=1),
         Sphere(0.3).translate(1, 0, 0).repeat_polar(4).rotate(x=1.0),
     ):
         with pytest.raises(ValueError, match="paints what is repeated already") as raised:

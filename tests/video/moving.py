@@ -109,7 +109,7 @@ def rgb(frame: Any) -> NDArray[np.uint8]:
 
 def still(image: Any, size: tuple[int, int], time: float, **options: Any) -> NDArray[np.uint8]:
     """The picture of a time, in 8 bits."""
-    # In doubles: ties are told from their neighbours.
+    # In doubles: ties are told from their neighbors.
     array = image.render(size=size, time=time, **options).array[..., :3].astype(np.float64)
     return np.floor(np.clip(array, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
 

@@ -429,7 +429,7 @@ def test_watching_anew_misses_nothing_that_was_saved_meanwhile(tmp_path: Path) -
     assert [watch.has_changed(), watch.has_changed()] == [False, True]
 
 
-def test_a_broken_neighbour_is_watched_too(tmp_path: Path) -> None:
+def test_a_broken_neighbor_is_watched_too(tmp_path: Path) -> None:
     scene = tmp_path / "scene.py"
     scene.write_text("import broken\n")
     for text in ("x = (\n", "x = missing\n"):

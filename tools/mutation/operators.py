@@ -343,7 +343,7 @@ class _Finder(ast.NodeVisitor):
         self.generic_visit(node)
 
     def visit_Call(self, node: ast.Call) -> None:
-        """Another function, neighbouring arguments exchanged, or the argument alone."""
+        """Another function, neighboring arguments exchanged, or the argument alone."""
         name = _called(node)
         if name in _NO_BEHAVIOUR or name.endswith(("Error", "Warning")):
             return

@@ -100,7 +100,7 @@ def build_lessons(folder: Path, files: Sequence[Path]) -> list[Found]:
     names = [f"{file.parent.name}.html" for file in files]
     found, rows = [], []
     for i, file in enumerate(files):
-        neighbours = [
+        neighbors = [
             (names[j], heads[j].title) if 0 <= j < len(files) else ("", "") for j in (i - 1, i + 1)
         ]
         scene = heads[i].scene
@@ -111,7 +111,7 @@ def build_lessons(folder: Path, files: Sequence[Path]) -> list[Found]:
         )
         texts = SceneFiles(path)
         editor = playground_link(texts.all().files, texts.main, "../")
-        links = LessonLinks("index.html", *neighbours, editor)
+        links = LessonLinks("index.html", *neighbors, editor)
         made = lesson_page(staged(read(file)), links)
         (folder / "lessons" / names[i]).write_text(made.text, encoding="utf-8")
         picture = f"{file.parent.name}.webp"

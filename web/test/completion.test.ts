@@ -1,5 +1,6 @@
 import { CompletionContext } from "@codemirror/autocomplete";
 import { pythonLanguage } from "@codemirror/lang-python";
+import { ensureSyntaxTree } from "@codemirror/language";
 import { EditorState } from "@codemirror/state";
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -9,7 +10,10 @@ import { complete } from "../src/studio/completion";
 function list(text: string, explicit = false): string[] {
   const at = text.indexOf("|");
   const doc = text.slice(0, at) + text.slice(at + 1);
-  const state = EditorState.create({ doc, extensions: [pythonLanguage] });
+  const fresh = EditorState.create({ doc, extensions: [pythonLanguage] });
+  // The first parse has 20 ms, which a busy machine may take away; a view goes on by itself.
+  ensureSyntaxTree(fresh, doc.length, 10_000);
+  const { state } = fresh.update({});
   return complete(new CompletionContext(state, at, explicit))?.options.map(({ label }) => label) ?? [];
 }
 

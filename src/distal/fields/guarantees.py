@@ -49,7 +49,7 @@ BOUNDS_OF_CHILDREN: Final = frozenset(
 )
 
 # Choices by name that decide which code there is, so that no parameter can change them.
-FIXED_CHOICES: Final = frozenset(("neighbours",))
+FIXED_CHOICES: Final = frozenset(("neighbors",))
 
 
 @struct
@@ -201,7 +201,7 @@ class Primitive:
         limits: The limits of numbers, by name; other numbers must only be finite.
         requires: Returns why numbers contradict each other, or None.
         measured: Numbers that authors do not pass, because they follow from the shape's data: the
-            name of a vec2, and the name of the texture whose largest differences of neighbouring
+            name of a vec2, and the name of the texture whose largest differences of neighboring
             texels (first channel, along each axis) it holds. Measured once, on construction.
         approximates: What the shape replaces by simpler pieces, or None.
         normalize: For an author's function: ``(field, p, …) -> float``, whose value is used instead

@@ -246,11 +246,11 @@ def equilateral_width(size: float) -> float:
 
 
 @func
-def corners_width(first: vec2, second: vec2, third: vec2) -> float:
+def corners_width(a: vec2, b: vec2, c: vec2) -> float:
     """Return the width of a triangle."""
-    a, b = second - first, third - first
-    around = length(a) + length(b) + length(a - b)
-    return ROD * abs(a.x * b.y - a.y * b.x) / max(around, 1e-12)
+    u, v = b - a, c - a
+    around = length(u) + length(v) + length(u - v)
+    return ROD * abs(u.x * v.y - u.y * v.x) / max(around, 1e-12)
 
 
 @func
@@ -260,9 +260,9 @@ def isosceles_width(width: float, height: float) -> float:
 
 
 @func
-def rhombus_width(size: vec2) -> float:
+def rhombus_width(diagonals: vec2) -> float:
     """Return the width of a rhombus with these diagonals."""
-    return 0.5 * ROD * size.x * size.y / length(size)
+    return 0.5 * ROD * diagonals.x * diagonals.y / length(diagonals)
 
 
 @func

@@ -17,7 +17,7 @@ _RANDOM_NAMES: Final = (
     *("random", "rand", "randint", "randn", "randrange", "uniform", "gauss", "normal", "choice"),
     *("integers", "standard_normal", "hash"),
 )
-# Neighbouring pixels give other numbers on each driver, and none in branches of WGSL.
+# Neighboring pixels give other numbers on each driver, and none in branches of WGSL.
 _DERIVATIVE: Final = "gradient(f, frame.coord) is exact; differences of pixels vary with the device"
 _SAMPLE: Final = "sample(texture, p)"
 

@@ -26,7 +26,7 @@ PREFIX: Final = "distal:"
 ADAPTIVE: Final = "adaptive"
 # Limits of a text's length and of the number of modules; distal never writes more.
 _LONGEST_TEXT: Final = 2**20
-_MOST_NEIGHBOURS: Final = 10_000
+_MOST_NEIGHBORS: Final = 10_000
 
 
 class ReadError(Exception):
@@ -46,7 +46,7 @@ class Provenance:
             of the scene or function; may be empty.
         source_hash: SHA-256 of the text of that file and of the modules in its folder that it
             imports; without a file, of the files of its functions; may be empty.
-        neighbours: The paths of these modules relative to the folder of the file.
+        neighbors: The paths of these modules relative to the folder of the file.
         parameters: The value of each parameter by name, as plain JSON values.
         time: Seconds.
         index: The number of the frame.
@@ -57,7 +57,7 @@ class Provenance:
         delta: The seconds between two frames.
         date: The frame's date.
         live: Whether it reads earlier frames that a window drew, of which no file tells.
-        samples: Samples in each pixel; None for one, and more where neighbouring pixels differ.
+        samples: Samples in each pixel; None for one, and more where neighboring pixels differ.
         mode: How light was computed: "direct" or "path".
         paths: The options of mode "path" that were given, by name.
         view: The name of the view.
@@ -79,7 +79,7 @@ class Provenance:
 
     source: str = ""
     source_hash: str = ""
-    neighbours: tuple[str, ...] = ()
+    neighbors: tuple[str, ...] = ()
     parameters: Mapping[str, Any] = field(default_factory=dict)
     time: float = 0.0
     index: int = 0
@@ -127,8 +127,8 @@ def texts(origin: Provenance, size: tuple[int, int]) -> dict[str, str]:
         "distal:device": origin.device,
     }
     found |= _frame_texts(origin)
-    if origin.neighbours:
-        found["distal:neighbours"] = json.dumps(origin.neighbours)
+    if origin.neighbors:
+        found["distal:neighbors"] = json.dumps(origin.neighbors)
     if origin.mode != "direct":
         found["distal:mode"] = origin.mode
     if origin.paths:
@@ -197,7 +197,7 @@ def provenance(found: Mapping[str, str]) -> Provenance:
         return Provenance(
             source=found.get("distal:source", ""),
             source_hash=found.get("distal:source-hash", ""),
-            neighbours=_places(json_of("distal:neighbours", [])),
+            neighbors=_places(json_of("distal:neighbors", [])),
             parameters=_values(json_of("distal:parameters", {})),
             time=_number(float(found.get("distal:time", "0"))),
             index=int(found.get("distal:index", "0")),
@@ -282,6 +282,6 @@ def _values(given: Any) -> dict[str, Any]:
 def _places(given: Any) -> tuple[str, ...]:
     if not isinstance(given, list) or not all(isinstance(place, str) for place in given):
         raise TypeError("a list of files is wanted")
-    if len(given) > _MOST_NEIGHBOURS or len(set(given)) != len(given):
+    if len(given) > _MOST_NEIGHBORS or len(set(given)) != len(given):
         raise ValueError("each file is named once")
     return tuple(given)

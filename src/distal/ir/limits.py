@@ -17,7 +17,7 @@ SMALLEST: Final = 2.0**-126  # smallest normal 32-bit float; GPUs flush smaller 
 LARGEST_POWER: Final = 2.0**126  # upper limit of exponentials and powers
 SMALLEST_64: Final = 2.0**-1022
 LARGEST_POWER_64: Final = 2.0**1022
-# Above this, neighbouring floats are more than half a radian apart, so angles have no meaning.
+# Above this, neighboring floats are more than half a radian apart, so angles have no meaning.
 LARGEST_ANGLE: Final = 2.0**22
 LARGEST_ANGLE_64: Final = 2.0**51
 # Seconds from 0, about twelve days: there, 32-bit floats are an eighth of a second apart.
@@ -26,7 +26,7 @@ LARGEST_TIME: Final = 2.0**20
 SMALLEST_COSINE: Final = 2.0**-30
 # A smaller divisor of a remainder counts as 0, so that a quotient of ordinary numbers is finite.
 SMALLEST_DIVISOR: Final = 2.0**-60
-# The largest floats below 1: a normal number times this is its neighbour in the direction of 0.
+# The largest floats below 1: a normal number times this is its neighbor in the direction of 0.
 BELOW_ONE: Final = 1.0 - 2.0**-24
 BELOW_ONE_64: Final = 1.0 - 2.0**-53
 # A matrix with a smaller determinant is singular.

@@ -74,7 +74,7 @@ class RenderedImage:
                 steps of ``delta`` for such a picture, else 0.
             seed: ``frame.seed``, the seed of random numbers; wraps at 32 bits.
             samples: Samples in each pixel, which are averaged. None: one of an ``@image``; one of a
-                scene, and eight more where the pixel differs from its neighbours.
+                scene, and eight more where the pixel differs from its neighbors.
             cluster: A ``dask.distributed.Client`` whose workers render it, with the same bits; None
                 renders it in this process. Needs ``distal[cluster]``.
             keys: The codes of the keys that are down, or a ``Keys``.
@@ -168,7 +168,7 @@ class RenderedScene:
                 steps of ``delta`` for such a picture, else 0.
             seed: ``frame.seed``, the seed of random numbers; wraps at 32 bits.
             samples: Samples in each pixel, which are averaged. None: one of an ``@image``; one of a
-                scene, and eight more where the pixel differs from its neighbours.
+                scene, and eight more where the pixel differs from its neighbors.
             mode: How light is computed: "direct" or "path"; None: as the scene says.
             caustics: In mode "path": whether light that glass, mirrors and metals bundle is found
                 by photons: much faster, with a small error that goes to 0. False: by paths alone.
@@ -275,7 +275,7 @@ class RenderedShape:
             device: The device to render on: "auto" (a hardware GPU if there is one, else the CPU),
                 "cpu", "gpu", "gpu-fragment" or "reference"; "gpu:NAME" selects the adapter.
             samples: Samples in each pixel, which are averaged. None: one of an ``@image``; one of a
-                scene, and eight more where the pixel differs from its neighbours.
+                scene, and eight more where the pixel differs from its neighbors.
             mode: How light is computed: "direct" or "path"; None: directly.
             view: What to show: "color", "coordinate", "signal", "distance", "normal", "depth",
                 "steps", "material", "slope" or "slice".
@@ -471,7 +471,7 @@ class PresentableMethods:
             cancel: An event, or a function without arguments, that ends the work early; it is
                 called by the threads that render.
             samples: Samples in each pixel, which are averaged. None: one of an ``@image``; one of a
-                scene, and eight more where the pixel differs from its neighbours.
+                scene, and eight more where the pixel differs from its neighbors.
             mode: How light is computed: "direct" or "path"; None: as the scene says.
             shutter: In mode "path": seconds that the shutter is open in each frame, from its time
                 on; ``0.5 / fps`` is a shutter of 180 degrees. None: as the scene says.
@@ -565,7 +565,7 @@ def sweep(
         threads: Number of CPU threads; None uses all that the process may use.
         cancel: An event, or a function without arguments, that ends the work early.
         samples: Samples in each pixel, which are averaged. None: one of an ``@image``; one of a
-            scene, and eight more where the pixel differs from its neighbours.
+            scene, and eight more where the pixel differs from its neighbors.
         mode: How light is computed: "direct" or "path"; None: as the scene says.
         view: What to show: "color", "coordinate", "signal", "distance", "normal", "depth",
             "steps", "material", "slope" or "slice".

@@ -300,12 +300,12 @@ class RenderOptions:
     samples: int | None = option(
         None,
         "Samples in each pixel, which are averaged. None: one of an ``@image``; one of a scene, "
-        "and eight more where the pixel differs from its neighbours.",
+        "and eight more where the pixel differs from its neighbors.",
         "scene image shape video sweep",
         check=checked_samples,
         flag=Flag(
             "Samples in each pixel; if not given, one of an @image; one of a scene, and eight "
-            "more where the pixel differs from its neighbours; 64 in mode path.",
+            "more where the pixel differs from its neighbors; 64 in mode path.",
             names=("--samples", "--spp"),
             limits=(1, MOST_SAMPLES),
         ),

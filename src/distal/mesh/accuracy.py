@@ -205,7 +205,7 @@ def _from_surface(
     """Return the largest distance from a root to the mesh.
 
     A root is compared with the triangles around its edge. Where these are farther away than the
-    error that is known already, those of neighbouring edges are looked at, and of their neighbours.
+    error that is known already, those of neighboring edges are looked at, and of their neighbors.
 
     Args:
         made: The mesh.
@@ -225,7 +225,7 @@ def _from_surface(
     for _ in range(_RINGS):
         if not len(root):
             break
-        root, edge = _with_neighbours(topology, root, edge)
+        root, edge = _with_neighbors(topology, root, edge)
         of, triangle = runs(root, first[edge], count[edge])
         a, b, c = (made.points[made.triangles[triangle, i]] for i in range(3))
         distance = rows_of(triangle_arithmetic.distance_to_triangle, roots.places[of], a, b, c)
@@ -235,7 +235,7 @@ def _from_surface(
     return max(float(nearest[far].max(initial=0.0)), min(rest, float(own.max())))
 
 
-def _with_neighbours(
+def _with_neighbors(
     topology: Topology, root: Integers, edge: Integers
 ) -> tuple[Integers, Integers]:
     """Return each root with the edges that share a point with one of its edges, itself included.

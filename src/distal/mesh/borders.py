@@ -128,7 +128,7 @@ class _CutMesh:
         """Cut sides of triangles, with all triangles at these sides; return whether there are any.
 
         Args:
-            rows: The triangles that are looked at, with all neighbours at sides that are cut.
+            rows: The triangles that are looked at, with all neighbors at sides that are cut.
             asked: Returns where sides are cut; 0 for nowhere.
             appearance: Gives the appearance of places.
         """
@@ -151,7 +151,7 @@ class _CutMesh:
         divided, source = _divided(triangles[rows], new, middle, points)
         triangles = np.concatenate([np.delete(triangles, rows, axis=0), divided])
         order = np.concatenate([np.delete(order, rows), order[rows[source]]])
-        # Pieces of a triangle are beside each other, which keeps neighbours close in memory.
+        # Pieces of a triangle are beside each other, which keeps neighbors close in memory.
         sorted_rows = np.argsort(order, kind="stable")
         self.points, self.normals = points, normals
         self.triangles, self.order = triangles[sorted_rows], order[sorted_rows]

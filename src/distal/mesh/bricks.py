@@ -178,9 +178,9 @@ def surface_bricks(
         sampled = partial(_sampled, kernels, lattice, slopes, joined=joined)
         found = parallel_map(sampled, some, watch)
         parts += found
-        neighbours = np.concatenate([part.neighbours for part in found])
-        keys, first = np.unique(keys_of(neighbours), return_index=True)
-        waiting = neighbours[first[position(keys, known) < 0]]
+        neighbors = np.concatenate([part.neighbors for part in found])
+        keys, first = np.unique(keys_of(neighbors), return_index=True)
+        waiting = neighbors[first[position(keys, known) < 0]]
         if not lattice.contains(waiting).all():
             outside = waiting[~lattice.contains(waiting)][0]
             raise MeshProblem("leaves its box", tuple(lattice.places((outside + 0.5) * BRICK)))
@@ -197,7 +197,7 @@ class _SampledBricks:
     bricks: Integers
     masks: npt.NDArray[np.uint8]
     edges: tuple[Edges, Edges, Edges]
-    neighbours: Integers
+    neighbors: Integers
     lost: Floats
     separate: Blocks
 
@@ -211,7 +211,7 @@ def _sampled(
 ) -> _SampledBricks:
     values = _values(kernels, lattice, bricks)
     inside = values < 0.0
-    neighbours = _neighbours(bricks, inside)
+    neighbors = _neighbors(bricks, inside)
     masks = corner_masks(inside)
     lost = _suspicious(lattice, slopes, bricks, values, masks)
     some = ((masks != 0) & (masks != 255)).any(axis=(1, 2, 3))
@@ -220,7 +220,7 @@ def _sampled(
     separate = _NO_BLOCKS
     if joined is not None:
         separate = separate_blocks(bricks, values, masks, lattice.step, joined)
-    return _SampledBricks(bricks, masks, edges, neighbours, lost, separate)
+    return _SampledBricks(bricks, masks, edges, neighbors, lost, separate)
 
 
 def _values(kernels: FieldKernels, lattice: Lattice, bricks: Integers) -> Floats:
@@ -246,7 +246,7 @@ def _values(kernels: FieldKernels, lattice: Lattice, bricks: Integers) -> Floats
     return np.ascontiguousarray(found.reshape(sides).transpose(0, 3, 1, 2))
 
 
-def _neighbours(bricks: Integers, inside: npt.NDArray[np.bool_]) -> Integers:
+def _neighbors(bricks: Integers, inside: npt.NDArray[np.bool_]) -> Integers:
     """Return the bricks beside faces on which the sign changes."""
     found = []
     for axis in range(3):

@@ -62,7 +62,7 @@ def pinched_points(triangles: Integers, count: int) -> int:
     corner = triangles.reshape(-1)
     following = np.roll(triangles, -1, axis=1).reshape(-1)
     before = np.roll(triangles, 1, axis=1).reshape(-1)
-    # Around a point, each triangle leads from one neighbour to the next: follow all rings at once.
+    # Around a point, each triangle leads from one neighbor to the next: follow all rings at once.
     size = np.int64(count)
     keys = corner * size + following
     order = np.argsort(keys, kind="stable")

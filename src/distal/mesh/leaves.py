@@ -4,9 +4,9 @@ Input: the cells of a tree. Output: the same rows as ``topology`` makes of equal
 that must be divided too. Does not depend on where anything is but for the signs at corners.
 
 Cells that share a corner differ by at most one level. A cell that is smaller than none of its
-neighbours has the components of the table. A larger one has the edges and faces of its neighbours
+neighbors has the components of the table. A larger one has the edges and faces of its neighbors
 on its boundary; the surface must meet it in one loop of segments: a cone from a point inside a
-convex cell over such a loop does not meet itself, so neighbours of unequal size stay closed. A cell
+convex cell over such a loop does not meet itself, so neighbors of unequal size stay closed. A cell
 with several loops is divided, until none is left.
 """
 
@@ -297,7 +297,7 @@ def to_divide(values: CornerValues, leaves: Leaves, inner: Bools) -> Divided:
     Args:
         values: The values at corners.
         leaves: The leaves that are known.
-        inner: Those whose neighbours are known; only they are looked at.
+        inner: Those whose neighbors are known; only they are looked at.
 
     Raises:
         MeshProblem: A value is no number.
@@ -313,7 +313,7 @@ def part_of_topology(values: CornerValues, leaves: Leaves, inner: Bools) -> tupl
     Args:
         values: The values at corners.
         leaves: The leaves that are known.
-        inner: Those whose neighbours are known.
+        inner: Those whose neighbors are known.
 
     Raises:
         MeshProblem: A value is no number.

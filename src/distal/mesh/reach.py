@@ -2,11 +2,11 @@
 
 Input: topology, points of cells and roots. Output: for each point the direction in which its cell
 may be left. A crease can pass through a cell without a change of sign at its corners, where a
-lattice sees nothing. Such a cell is given to one neighbour at most. Both together are convex, and
+lattice sees nothing. Such a cell is given to one neighbor at most. Both together are convex, and
 the mesh has nothing else there: points and faces may reach into it without triangles that
 intersect.
 
-Which neighbour gets a cell depends on directions alone, not on the order of points: a page, whose
+Which neighbor gets a cell depends on directions alone, not on the order of points: a page, whose
 points have another order, gives the same cells.
 """
 

@@ -156,7 +156,7 @@ def face_segments(mask: int, axis: int, *, upper: bool, joined: int = 0) -> list
 
 
 def edge_between(a: int, b: int) -> int:
-    """Return the edge between two neighbouring corners."""
+    """Return the edge between two neighboring corners."""
     axis = (a ^ b).bit_length() - 1
     return EDGES.index((axis, min(a, b)))
 

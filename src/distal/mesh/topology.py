@@ -195,13 +195,13 @@ class _SurfaceCells:
         for value in np.flatnonzero(np.bincount(code)):
             if value != 13:
                 rows = code == value
-                home[rows] = self._neighbour(int(value))[brick[rows]]
+                home[rows] = self._neighbor(int(value))[brick[rows]]
         flat = (home * BRICK + inside[:, 0]) * BRICK + inside[:, 1]
         found: Integers = self._number[flat * BRICK + inside[:, 2]].astype(np.int64)
         assert (home >= 0).all() and (found >= 0).all(), "a cell beside the surface is missing"
         return found
 
-    def _neighbour(self, code: int) -> Integers:
+    def _neighbor(self, code: int) -> Integers:
         step = (code // 9 - 1, code // 3 % 3 - 1, code % 3 - 1)
         if step not in self._beside:
             keys = keys_of(self._bricks + np.array(step, np.int64))

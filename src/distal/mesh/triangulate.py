@@ -5,7 +5,7 @@ counter-clockwise seen from outside.
 
 The four points around an edge make two triangles, if a diagonal meets the triangle of the edge and
 a third point. Three points, around an edge in the middle of a larger cell's face, make one, if it
-meets the edge. Otherwise, and where the line between two neighbours leaves their face or misses the
+meets the edge. Otherwise, and where the line between two neighbors leaves their face or misses the
 surface, the triangles are a fan about the edge's root, with points on its faces.
 """
 
@@ -280,6 +280,6 @@ def _assembled(
     triangles = np.concatenate([corners for _, corners in made])
     turned = ~inside_first[edge]
     triangles[turned] = triangles[turned][:, ::-1]
-    # Triangles of one edge are beside each other, which keeps neighbours close in memory.
+    # Triangles of one edge are beside each other, which keeps neighbors close in memory.
     order = stable_order(edge)
     return triangles[order], edge[order]

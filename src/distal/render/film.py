@@ -1,7 +1,7 @@
 """Samples in a pixel: their offsets, their filtered mean, and which pixels need more of them.
 
 Input: a pixel, a camera, and the light along a ray; or a picture of display values. Output: linear
-light and straight alpha; or the contrast of each pixel with its neighbours.
+light and straight alpha; or the contrast of each pixel with its neighbors.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ GOLDEN = 0.6180339887
 CONTRAST: Final = 0.04
 MORE_SAMPLES: Final = 8
 # The CPU computes blocks of 8x8 pixels together, with AVX2 of 8x4. In strips of 8 columns, these
-# are neighbours in the list. In strips of 4, half of a block is empty: still_life takes 1.25 times
+# are neighbors in the list. In strips of 4, half of a block is empty: still_life takes 1.25 times
 # as long.
 STRIP_PX: Final = 8
 # The uniforms of programs with several samples; ``PASS_NUMBERS`` differ between two passes.
@@ -293,7 +293,7 @@ def brightness(shown: vec4) -> vec2:
 
 @image
 def contrast(frame: Frame) -> vec4:
-    """Show the largest difference of a pixel of ``SHOWN`` from its eight neighbours.
+    """Show the largest difference of a pixel of ``SHOWN`` from its eight neighbors.
 
     The difference is that of luma, in linear light, or that of alpha. ``SHOWN`` has one display
     value for each pixel, from the top row on.

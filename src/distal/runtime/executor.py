@@ -194,7 +194,7 @@ class PythonExecutor(TapeExecutor):
         return Provenance(
             source=image.name if known is None else known.source,
             source_hash=self.parts(image).parts[0].source_hash if known is None else known.digest,
-            neighbours=() if known is None else known.neighbours,
+            neighbors=() if known is None else known.neighbors,
             parameters=parameters,
             time=options.time,
             index=others["index"],

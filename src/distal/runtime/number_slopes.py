@@ -114,7 +114,7 @@ class _NumberCells:
         # A point moves no inner shape's value by more than its slope, wherever it is.
         reads = set(self._numbers.reads(0))
         cut = reads if what.inner else reads | {*self._shape.reads(0)}
-        self._cut = sorted(cut, reverse=True)  # halves along the last axis are neighbours
+        self._cut = sorted(cut, reverse=True)  # halves along the last axis are neighbors
         self._counts = list(map(len, inputs[1 : len(inputs) - len(what.unknown) - len(what.inner)]))
         self.ends: Doubles = np.empty((2, 0, size))
         self.slopes: Doubles = np.empty(0)

@@ -207,7 +207,7 @@ class Passes:
     def contrast(
         self, kernel: Kernel, resources: Mapping[str, Any], shown: NDArray[np.float32]
     ) -> NDArray[np.float32]:
-        """Return the contrast of each pixel of display values with its neighbours."""
+        """Return the contrast of each pixel of display values with its neighbors."""
         height, width, _ = shown.shape
         return over_picture(kernel, resources, (width, height), {}, shown, self.options)[..., 0]
 

@@ -1,4 +1,4 @@
-"""Several samples in a pixel: of an ``@image``, and where neighbouring pixels of a scene differ.
+"""Several samples in a pixel: of an ``@image``, and where neighboring pixels of a scene differ.
 
 Input: an ``@image``; or the programs of a scene and the size of its picture. Output: a program that
 averages samples; or linear light and display values, rendered in two passes. The formulas are scene
@@ -25,7 +25,7 @@ from distal.lang.render_options import Progress
 from distal.loading import copy_loaded_from
 from distal.render import film
 
-# A list of pixels is sorted by squares of this side, so that neighbours are computed together.
+# A list of pixels is sorted by squares of this side, so that neighbors are computed together.
 _SQUARE_PX: Final = 8
 _HIGHEST_PX: Final = 4096
 
@@ -110,7 +110,7 @@ class Programs:
 def adaptive(
     programs: Programs, size: tuple[int, int], progress: Progress | None
 ) -> tuple[NDArray[np.float32], NDArray[np.float32], float]:
-    """Render with one sample in each pixel, then with more where a pixel differs from neighbours.
+    """Render with one sample in each pixel, then with more where a pixel differs from neighbors.
 
     Args:
         programs: The programs.

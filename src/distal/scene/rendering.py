@@ -17,10 +17,10 @@ from distal.scene.checks.warnings import (
     check_slopes,
     hidden_camera,
     shows,
-    warn_of_black,
     warn_of_camera,
     warn_of_darkness,
     warn_of_functions,
+    warn_of_light,
     warn_of_lost_rays,
 )
 from distal.scene.lowering.layers import OF_SAMPLES, values
@@ -111,7 +111,7 @@ def _check_visible(scene: Scene, picture: Picture, options: RenderOptions) -> No
     if not options.transparent and not shows(picture.array[..., 3]):
         where, hint = hidden_camera(scene)
         refuse(f"the camera is {where}, and no ray finds a way out", hint, scene.place)
-    warn_of_black(scene, picture, options.params, options.time)
+    warn_of_light(scene, picture, options.params, options.time)
 
 
 def _denoised(scene: Scene, options: RenderOptions, light: Any) -> Any:

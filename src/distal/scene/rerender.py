@@ -104,13 +104,13 @@ def plan_rerender(path: Path, *, source: str | None = None, force: bool = False)
     origin = record.provenance
     file, name = split_source(source) if source else _named_source(origin, path)
     try:
-        digest = digest_of(file, origin.neighbours)
+        digest = digest_of(file, origin.neighbors)
     except LoadError as error:
         raise RerenderError(f"cannot rebuild {path}: {error}") from None
     notes = []
     if digest != origin.source_hash:
-        beside = printable(", ".join(origin.neighbours[:_MOST_SHOWN]), _LONGEST_PART)
-        also = f" or what it imports ({beside})" if origin.neighbours else ""
+        beside = printable(", ".join(origin.neighbors[:_MOST_SHOWN]), _LONGEST_PART)
+        also = f" or what it imports ({beside})" if origin.neighbors else ""
         found = file if name is None else f"{file}:{name}"
         changed = f"{found}{also} is not what {path} was rendered of"
         if not force:
@@ -333,6 +333,6 @@ def _inside(folder: Path, file: str) -> bool | None:
 
 def _digest_or_none(file: str, origin: Provenance) -> str | None:
     try:
-        return digest_of(file, origin.neighbours)
+        return digest_of(file, origin.neighbors)
     except LoadError:
         return None

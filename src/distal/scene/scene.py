@@ -354,7 +354,7 @@ class Scene(RenderedScene, SceneValue, Composed, Presentable):
             encoded: Whether pixels are display values instead of linear light.
             steered: Whether the camera is moved by the numbers of a ``Steering``.
             adaptive: Whether it is rendered in two passes: one sample in each pixel, then more
-                where pixels differ from their neighbours; with ``paths`` in as many as are needed;
+                where pixels differ from their neighbors; with ``paths`` in as many as are needed;
                 for "color" as linear light.
             paths: Whether the light is that of random paths; for "color" as linear light.
             filter: The reconstruction filter of random paths.

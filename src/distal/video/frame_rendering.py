@@ -152,7 +152,7 @@ class FrameRendering:
         if isinstance(picture, PartError):
             return MadeFrame(index, None if way.without is None else way.without(index), picture)
         if index == 0:
-            self.moving.warn_if_black(picture, self.timing.time(index))
+            self.moving.warn_of_light(picture, self.timing.time(index))
         return MadeFrame(index, way.ready(index, picture))
 
     def _note(self, index: int, *, is_new: bool) -> None:

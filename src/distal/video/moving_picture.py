@@ -23,9 +23,9 @@ from distal.runtime.fingerprints import fingerprint
 from distal.runtime.lowered import Lowered
 from distal.scene.checks.warnings import (
     check_slopes,
-    warn_of_black,
     warn_of_camera,
     warn_of_functions,
+    warn_of_light,
 )
 from distal.scene.view_options import refinement_of, steering_settings
 from distal.scene.view_ranges import with_range
@@ -154,10 +154,10 @@ class MovingPicture:
         cluster = self.options.cluster
         return int(cluster_kernels.pictures_of_task(cluster, self._image, self.options, left))
 
-    def warn_if_black(self, picture: Picture, time: float) -> None:
-        """Warn if the first picture is black, as rendering a still picture does."""
+    def warn_of_light(self, picture: Picture, time: float) -> None:
+        """Warn of the first picture's light, as rendering a still picture does."""
         if self._scene is not None and self.options.view == COLOR:
-            warn_of_black(self._scene, picture, self.parameters, time)
+            warn_of_light(self._scene, picture, self.parameters, time)
 
 
 def moving_picture(obj: Any, options: RenderOptions) -> MovingPicture:

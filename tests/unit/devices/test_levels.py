@@ -21,7 +21,7 @@ def machine(request, monkeypatch):
 
 
 @pytest.mark.parametrize("bits", BITS)
-def test_every_tie_and_its_neighbours(bits):
+def test_every_tie_and_its_neighbors(bits):
     most = 2**bits - 1
     ties = (np.arange(most, dtype=np.float64) + 0.5) / most
     near = ties.astype(np.float32)

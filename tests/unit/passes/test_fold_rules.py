@@ -1,6 +1,6 @@
 """Every rule of fold, held against the reference: a simplified expression has the same value.
 
-All operations are tried with constants on either side that rules look for, their neighbours, and
+All operations are tried with constants on either side that rules look for, their neighbors, and
 the ends of each kind's range; as scalars and as vectors whose components agree or differ.
 """
 

@@ -69,7 +69,7 @@ function squareOf(whole: number): number {
   return Math.min(SQUARE_PX, Math.max(1, Math.floor(room / whole)));
 }
 
-/** The dark squares of a row, neighbours as one rectangle. */
+/** The dark squares of a row, neighbors as one rectangle. */
 function runsOf(row: readonly boolean[], y: number): string {
   let path = "";
   for (let x = 0; x < row.length; x++) {

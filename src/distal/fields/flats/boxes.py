@@ -320,7 +320,7 @@ def stairs(p: vec2, step: vec2 = STEP, count: int = 4) -> float:
         step: Width and height of each step.
         count: Number of steps.
 
-    Source: the step nearest along the flight and its neighbours; corners of steps are evenly
+    Source: the step nearest along the flight and its neighbors; corners of steps are evenly
     spaced along the flight, so no other is nearer.
 
     Measured:

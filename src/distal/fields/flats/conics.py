@@ -157,7 +157,7 @@ def quadratic_circle(p: vec2, radius: float = 0.5) -> float:
 
 def _points_stay(radius: float, depth: float) -> str | None:
     if depth > 0.5 * HALF_ROOT * radius:
-        return "depth may be at most 0.353 radius: there neighbouring sides touch at the points"
+        return "depth may be at most 0.353 radius: there neighboring sides touch at the points"
     return None
 
 

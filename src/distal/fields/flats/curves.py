@@ -238,7 +238,7 @@ def cubic_bezier(
 
 @func
 def spline_velocity(points: Buffer[vec2], index: int, closed: bool) -> vec2:
-    """Return the Catmull-Rom velocity at a point: half of the vector between its neighbours."""
+    """Return the Catmull-Rom velocity at a point: half of the vector between its neighbors."""
     count = size(points)
     before = index - 1
     after = index + 1
@@ -247,7 +247,7 @@ def spline_velocity(points: Buffer[vec2], index: int, closed: bool) -> vec2:
         after = (index + 1) % count
     before = max(before, 0)
     after = min(after, count - 1)
-    # At the ends of an open curve, it is the whole vector to the only neighbour.
+    # At the ends of an open curve, it is the whole vector to the only neighbor.
     whole = 1.0 if after - before == 1 and not closed else 0.5
     return whole * (points[after] - points[before])
 

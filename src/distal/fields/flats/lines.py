@@ -51,7 +51,7 @@ COOL_S_HIGH: Final = 0.6
 
 def _arcs_are_apart(opening: float) -> str | None:
     if opening > STEEPEST_WAVE:
-        return "opening may be at most 5/3 pi: there neighbouring arcs touch"
+        return "opening may be at most 5/3 pi: there neighboring arcs touch"
     return None
 
 

@@ -38,11 +38,9 @@ TOP_CORNER: Final = vec2(0.1, 0.5)
 PENTAGRAM_INNER: Final = 0.3819660112501051
 
 
-def _not_in_line(
-    first: tuple[float, ...], second: tuple[float, ...], third: tuple[float, ...]
-) -> str | None:
-    along = (second[0] - first[0], second[1] - first[1])
-    if along[0] * (third[1] - first[1]) == along[1] * (third[0] - first[0]):
+def _not_in_line(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> str | None:
+    along = (b[0] - a[0], b[1] - a[1])
+    if along[0] * (c[1] - a[1]) == along[1] * (c[0] - a[0]):
         return "the corners must not lie on one line"
     return None
 
@@ -140,48 +138,48 @@ def isosceles_triangle(p: vec2, width: float = 0.8, height: float = 1.0) -> floa
 
 
 @func
-def triangle2_bounds(first: vec2, second: vec2, third: vec2) -> Bounds2:
+def triangle_bounds(a: vec2, b: vec2, c: vec2) -> Bounds2:
     """Return the rectangle around the corners."""
-    return Bounds2(min(first, second, third), max(first, second, third))
+    return Bounds2(min(a, b, c), max(a, b, c))
 
 
 @primitive(
-    "Triangle2",
+    "Triangle",
     EXACT,
-    bounds=triangle2_bounds,
+    bounds=triangle_bounds,
     requires=_not_in_line,
     width=corners_width,
 )
 @func
-def triangle2(
+def triangle(
     p: vec2,
-    first: vec2 = LEFT_CORNER,
-    second: vec2 = RIGHT_CORNER,
-    third: vec2 = TOP_CORNER,
+    a: vec2 = LEFT_CORNER,
+    b: vec2 = RIGHT_CORNER,
+    c: vec2 = TOP_CORNER,
 ) -> float:
     """Triangle with three given corners.
 
     Args:
         p: Point.
-        first: First corner.
-        second: Second corner.
-        third: Third corner.
+        a: First corner.
+        b: Second corner.
+        c: Third corner.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
 
     Measured:
-        triangle2((1.0, 1.0), (0.0, 0.0), (4.0, 0.0), (0.0, 3.0)) = -1.0
-        triangle2((-3.0, -4.0), (0.0, 0.0), (4.0, 0.0), (0.0, 3.0)) = 5.0
-        triangle2((2.0, -2.0), (0.0, 0.0), (4.0, 0.0), (0.0, 3.0)) = 2.0
+        triangle((1.0, 1.0), (0.0, 0.0), (4.0, 0.0), (0.0, 3.0)) = -1.0
+        triangle((-3.0, -4.0), (0.0, 0.0), (4.0, 0.0), (0.0, 3.0)) = 5.0
+        triangle((2.0, -2.0), (0.0, 0.0), (4.0, 0.0), (0.0, 3.0)) = 2.0
     """
-    from_edges = nearer(from_segment(p, first, second), from_segment(p, second, third))
-    from_edges = nearer(from_edges, from_segment(p, third, first))
-    turns = select(turned_from(second - first, third - first) < 0.0, -1.0, 1.0)
+    from_edges = nearer(from_segment(p, a, b), from_segment(p, b, c))
+    from_edges = nearer(from_edges, from_segment(p, c, a))
+    turns = select(turned_from(b - a, c - a) < 0.0, -1.0, 1.0)
     inside = min(
-        turns * turned_from(second - first, p - first),
-        turns * turned_from(third - second, p - second),
-        turns * turned_from(first - third, p - third),
+        turns * turned_from(b - a, p - a),
+        turns * turned_from(c - b, p - b),
+        turns * turned_from(a - c, p - c),
     )
     d = length(from_edges)
     return select(inside > 0.0, -d, d)

@@ -47,11 +47,11 @@ IMAGE_SLOPE: Final = 1.4142135623730951
 
 def _teeth_are_whole(
     radius: float,
-    pressure_angle: float,
     addendum: float,
     dedendum: float,
     backlash: float,
     count: int,
+    pressure_angle: float,
 ) -> str | None:
     if count < 4:
         return "count must be 4 or more"
@@ -95,9 +95,9 @@ def gear_bounds(radius: float, addendum: float, count: int) -> Bounds2:
     EXACT,
     bounds=gear_bounds,
     limits={
-        "pressure_angle": Limit.POSITIVE,
         "addendum": Limit.POSITIVE,
         "dedendum": Limit.POSITIVE,
+        "pressure_angle": Limit.POSITIVE,
     },
     requires=_teeth_are_whole,
     width=gear_width,
@@ -106,11 +106,12 @@ def gear_bounds(radius: float, addendum: float, count: int) -> Bounds2:
 def gear_profile(
     p: vec2,
     radius: float = 0.5,
-    pressure_angle: float = 0.3490658503988659,
-    count: int = 12,
     addendum: float = ADDENDUM,
     dedendum: float = DEDENDUM,
     backlash: float = 0.0,
+    count: int = 12,
+    *,
+    pressure_angle: float = 0.3490658503988659,
 ) -> float:
     """Gear with involute teeth, one of them at the top; gears with equal teeth mesh.
 
@@ -121,21 +122,21 @@ def gear_profile(
     Args:
         p: Point.
         radius: Radius of the pitch circle, on which gears roll on each other.
-        pressure_angle: Angle between the normal of a flank and the direction of motion on the pitch
-            circle, in radians.
-        count: Number of teeth.
         addendum: Height of the teeth above the pitch circle, in modules (diameter by ``count``).
         dedendum: Depth of the gaps below the pitch circle, in modules.
         backlash: By how much a tooth is narrower, along the pitch circle, than half of the distance
             from tooth to tooth; negative for the gaps of a ring with internal teeth.
+        count: Number of teeth.
+        pressure_angle: Angle between the normal of a flank and the direction of motion on the pitch
+            circle, in radians.
 
     Source: an involute's normals touch its base circle, so that involutes of one circle are
     parallel curves (Leonhard Euler, 1765); proportions of ISO 53.
 
     Measured:
-        gear_profile((0.0, 5.0), 1.2, 0.3490658503988659, 12) = 3.6
-        gear_profile((0.0, 0.0), 1.2, 0.3490658503988659, 12) = -0.95
-        gear_profile((0.13052619222005, 0.99144486137381), 1.0, 0.34906585039887, 12) = 0.0
+        gear_profile((0.0, 5.0), 1.2, 1.0, 1.25, 0.0, 12) = 3.6
+        gear_profile((0.0, 0.0), 1.2, 1.0, 1.25, 0.0, 12) = -0.95
+        gear_profile((0.13052619222005, 0.99144486137381), 1.0, 1.0, 1.25, 0.0, 12) = 0.0
     """
     module = 2.0 * radius / float(count)
     tip = radius + addendum * module
@@ -268,7 +269,7 @@ def image_field(
 ) -> float:
     """Shape from distances stored in the first channel of an image.
 
-    Neighbouring texels must differ by at most the distance between their centres, and the outermost
+    Neighboring texels must differ by at most the distance between their centres, and the outermost
     texels must be outside the shape, as in any image of distances.
 
     Args:

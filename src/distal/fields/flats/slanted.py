@@ -21,29 +21,35 @@ def _has_a_side(bottom: float, top: float) -> str | None:
     return "bottom or top must be above 0" if bottom == 0.0 and top == 0.0 else None
 
 
+@func
+def rhombus_bounds(diagonals: vec2) -> Bounds2:
+    """Return the rectangle around a rhombus."""
+    return rectangle_bounds(diagonals)
+
+
 @primitive(
-    "Rhombus2",
+    "Rhombus",
     EXACT,
-    bounds=rectangle_bounds,
+    bounds=rhombus_bounds,
     width=rhombus_width,
 )
 @func
-def rhombus2(p: vec2, size: vec2 = DIAGONALS) -> float:
+def rhombus(p: vec2, diagonals: vec2 = DIAGONALS) -> float:
     """Rhombus with its diagonals along the axes.
 
     Args:
         p: Point.
-        size: Full length of the diagonals along x and y.
+        diagonals: Full lengths along x and y.
 
     Source: Inigo Quilez, "2D distance functions"
     (https://iquilezles.org/articles/distfunctions2d/).
 
     Measured:
-        rhombus2((0.0, 0.0), (6.0, 8.0)) = -2.4
-        rhombus2((5.0, 0.0), (6.0, 8.0)) = 2.0
-        rhombus2((0.0, 7.0), (6.0, 8.0)) = 3.0
+        rhombus((0.0, 0.0), (6.0, 8.0)) = -2.4
+        rhombus((5.0, 0.0), (6.0, 8.0)) = 2.0
+        rhombus((0.0, 7.0), (6.0, 8.0)) = 3.0
     """
-    half = 0.5 * size
+    half = 0.5 * diagonals
     q = abs(p)
     d = length(from_segment(q, vec2(half.x, 0.0), vec2(0.0, half.y)))
     return select(q.x * half.y + q.y * half.x < half.x * half.y, -d, d)

@@ -40,7 +40,7 @@ def below_teeth(p: vec2, half_crest: float, half_root: float, pitch: float, dept
 
 
 def _rack_is_whole(
-    module: float, pressure_angle: float, base: float, backlash: float, tip_gap: float, count: int
+    module: float, base: float, backlash: float, tip_gap: float, count: int, pressure_angle: float
 ) -> str | None:
     if count < 1:
         return "count must be 1 or more"
@@ -69,10 +69,10 @@ def rack_bounds(module: float, base: float, tip_gap: float, count: int) -> Bound
     side_growth=1.0,
     limits={
         "module": Limit.POSITIVE,
-        "pressure_angle": Limit.POSITIVE,
         "base": Limit.POSITIVE,
         "backlash": Limit.NOT_NEGATIVE,
         "tip_gap": Limit.NOT_NEGATIVE,
+        "pressure_angle": Limit.POSITIVE,
     },
     requires=_rack_is_whole,
     width=rack_width,
@@ -81,11 +81,12 @@ def rack_bounds(module: float, base: float, tip_gap: float, count: int) -> Bound
 def rack_profile(
     p: vec2,
     module: float = 0.1,
-    pressure_angle: float = 0.3490658503988659,
     base: float = 0.15,
     backlash: float = 0.0,
     tip_gap: float = 0.25,
     count: int = 8,
+    *,
+    pressure_angle: float = 0.3490658503988659,
 ) -> float:
     """Toothed rack along x, teeth upwards, its pitch line at y = 0; gears of equal module mesh.
 
@@ -95,18 +96,18 @@ def rack_profile(
         p: Point.
         module: Size of the teeth: their distance divided by pi; they are this high above the pitch
             line.
-        pressure_angle: Angle of the flanks from the y axis, in radians.
         base: Thickness of the bar below the teeth.
         backlash: By how much a tooth is narrower on the pitch line than half of the tooth distance.
         tip_gap: Depth of the gaps beyond the teeth of the other part, in modules.
         count: Number of teeth.
+        pressure_angle: Angle of the flanks from the y axis, in radians.
 
     Source: the basic rack of ISO 53, with sharp corners.
 
     Measured:
-        rack_profile((0.0, 3.0), 1.0, 0.3490658503988659, 1.5, 0.0, 0.25, 5) = 2.0
-        rack_profile((0.0, -3.75), 1.0, 0.3490658503988659, 1.5, 0.0, 0.25, 4) = 1.0
-        rack_profile((0.7853981633974483, 0.0), 1.0, 0.3490658503988659, 1.5, 0.0, 0.25, 5) = 0.0
+        rack_profile((0.0, 3.0), 1.0, 1.5, 0.0, 0.25, 5) = 2.0
+        rack_profile((0.0, -3.75), 1.0, 1.5, 0.0, 0.25, 4) = 1.0
+        rack_profile((0.7853981633974483, 0.0), 1.0, 1.5, 0.0, 0.25, 5) = 0.0
     """
     distance = PI * module
     lean = tan(pressure_angle)

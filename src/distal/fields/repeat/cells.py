@@ -5,7 +5,7 @@ point in the local space of a copy, the cell's index, and a value that is safe t
 of repetition (infinite, limited, interval, half, ring) is a function from its numbers to
 ``Copies``.
 
-How a repetition stays safe: the child is evaluated in one cell (``neighbours=0``) or in a few. A
+How a repetition stays safe: the child is evaluated in one cell (``neighbors=0``) or in a few. A
 plain modulo is discontinuous at a cell's border unless the child is symmetric, and its value does
 not bound the distance to the next copy: a step may pass through that copy. Therefore the box of
 each copy stands for a copy that is not evaluated: the value never exceeds the distance to the
@@ -19,7 +19,7 @@ does not fit has no slope (``UNBOUNDED``) and is refused. Cells are centred on t
 wherever it lies. A child that is symmetric in its cell does not need any of this: ``repeat
 mirrored``.
 
-Source: the cells, and the need to ask neighbours: Inigo Quilez, "Domain repetition"
+Source: the cells, and the need to ask neighbors: Inigo Quilez, "Domain repetition"
 (https://iquilezles.org/articles/sdfrepetition/); names of the kinds: hg_sdf
 (https://mercury.sexy/hg_sdf/). The bound by boxes is derived here.
 """
@@ -155,7 +155,7 @@ def at_end(away: vec3, copies: Copies, index: vec3) -> vec3:
 
 @func
 def to_others(
-    away: vec3, half: vec3, copies: Copies, index: vec3, neighbours: int, limited: bool
+    away: vec3, half: vec3, copies: Copies, index: vec3, neighbors: int, limited: bool
 ) -> vec3:
     """Return the distance to the nearest box that is not evaluated, along each axis.
 
@@ -164,15 +164,15 @@ def to_others(
         half: Half of the box's size.
         copies: All copies.
         index: The index of the nearest copy.
-        neighbours: 0: only the nearest copy is evaluated; 1: also the next towards the point; 2: on
+        neighbors: 0: only the nearest copy is evaluated; 1: also the next towards the point; 2: on
             both sides.
         limited: Whether the set of copies is finite on any side.
     """
     distance = abs(away)
-    side = distance if neighbours == 1 else -distance
+    side = distance if neighbors == 1 else -distance
     if limited:
         side = select(at_end(away, copies, index) > 0.5, distance, side)
-    steps = 2.0 if neighbours == 2 else 1.0
+    steps = 2.0 if neighbors == 2 else 1.0
     gap = steps * copies.spacing + side - half
     alone = select(copies.first == copies.last, vec3(UNBOUNDED), gap)
     return select(copies.spacing == 0.0, vec3(UNBOUNDED), alone)
@@ -224,13 +224,13 @@ def value_in(d: float, p: vec3, copies: Copies, bounds: Bounds, limited: bool) -
 
 
 @func
-def slope_in(slope: float, bounds: Bounds, copies: Copies, neighbours: int) -> float:
+def slope_in(slope: float, bounds: Bounds, copies: Copies, neighbors: int) -> float:
     """Return the child's slope, or 1 if larger; no bound if there is no gap between the boxes."""
     half = half_of(bounds)
     room = 0.5 * copies.spacing - half
     share = ROOM
-    if neighbours > 0:
-        room = (0.5 * float(neighbours) + 0.5) * copies.spacing - half
+    if neighbors > 0:
+        room = (0.5 * float(neighbors) + 0.5) * copies.spacing - half
         share = LEAD
     alone = copies.first == copies.last
     fits = select(alone, vec3(0.0), share * copies.spacing - room)
@@ -259,7 +259,7 @@ def nearest_copy(
     p: vec3,
     copies: Copies,
     bounds: Bounds,
-    neighbours: int,
+    neighbors: int,
     limited: bool,
 ) -> Nearest:
     """Return the nearest of the copies around the point, limited by those not evaluated."""
@@ -269,11 +269,11 @@ def nearest_copy(
     away = q - middle
     half = half_of(bounds)
     toward = select(away < 0.0, vec3(-1.0), vec3(1.0))
-    gap = to_others(away, half, copies, index, neighbours, limited)
+    gap = to_others(away, half, copies, index, neighbors, limited)
     distance = distance_to_others(away, half, gap)
     nearest = UNBOUNDED
     site = Site(q, index)
-    start = 0 if neighbours == 1 else -1
+    start = 0 if neighbors == 1 else -1
     for z in range(start, 2):
         if z != 0 and copies.spacing.z == 0.0:
             continue
@@ -301,11 +301,11 @@ def nearest_copy_distance(
     p: vec3,
     copies: Copies,
     bounds: Bounds,
-    neighbours: int,
+    neighbors: int,
     limited: bool,
 ) -> float:
     """Return the distance to the nearest of the copies around the point."""
-    return nearest_copy(field, p, copies, bounds, neighbours, limited).distance
+    return nearest_copy(field, p, copies, bounds, neighbors, limited).distance
 
 
 @func
@@ -314,8 +314,8 @@ def nearest_copy_site(
     p: vec3,
     copies: Copies,
     bounds: Bounds,
-    neighbours: int,
+    neighbors: int,
     limited: bool,
 ) -> Site:
     """Return the place in the cell of the nearest copy."""
-    return nearest_copy(field, p, copies, bounds, neighbours, limited).site
+    return nearest_copy(field, p, copies, bounds, neighbors, limited).site

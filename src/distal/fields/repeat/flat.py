@@ -111,9 +111,9 @@ def value_in_flat(d: float, p: vec2, copies: Copies, bounds: Bounds2, limited: b
 
 
 @func
-def slope_in_flat(slope: float, bounds: Bounds2, copies: Copies, neighbours: int) -> float:
+def slope_in_flat(slope: float, bounds: Bounds2, copies: Copies, neighbors: int) -> float:
     """Return the child's slope, or 1 if larger; no bound if there is no gap."""
-    return slope_in(slope, slab(bounds), copies, neighbours)
+    return slope_in(slope, slab(bounds), copies, neighbors)
 
 
 @func
@@ -134,12 +134,12 @@ def nearest_copy_flat(
     p: vec2,
     copies: Copies,
     bounds: Bounds2,
-    neighbours: int,
+    neighbors: int,
     limited: bool,
 ) -> Nearest:
     """Return the nearest of the copies around the point, limited by those not evaluated."""
     return nearest_copy(
-        lambda q, cell: field(q.xy, cell), in_space(p), copies, slab(bounds), neighbours, limited
+        lambda q, cell: field(q.xy, cell), in_space(p), copies, slab(bounds), neighbors, limited
     )
 
 
@@ -149,11 +149,11 @@ def nearest_copy_distance_flat(
     p: vec2,
     copies: Copies,
     bounds: Bounds2,
-    neighbours: int,
+    neighbors: int,
     limited: bool,
 ) -> float:
     """Return the distance to the nearest of the copies around the point."""
-    return nearest_copy_flat(field, p, copies, bounds, neighbours, limited).distance
+    return nearest_copy_flat(field, p, copies, bounds, neighbors, limited).distance
 
 
 @func
@@ -162,11 +162,11 @@ def nearest_copy_site_flat(
     p: vec2,
     copies: Copies,
     bounds: Bounds2,
-    neighbours: int,
+    neighbors: int,
     limited: bool,
 ) -> Site2:
     """Return the place in the cell of the nearest copy."""
-    return flat_site(nearest_copy_flat(field, p, copies, bounds, neighbours, limited).site)
+    return flat_site(nearest_copy_flat(field, p, copies, bounds, neighbors, limited).site)
 
 
 @func
@@ -233,32 +233,32 @@ def repeated_polar_flat_slope(slope: float, bounds: Bounds2, count: int) -> floa
 
 @func
 def repeated_polar_flat_around(
-    field: Callable[[vec2, vec3], float], p: vec2, count: int, bounds: Bounds2, neighbours: int
+    field: Callable[[vec2, vec3], float], p: vec2, count: int, bounds: Bounds2, neighbors: int
 ) -> float:
     """Return the distance to the nearest of the copies around the point."""
     found = nearest_polar(
-        lambda q, cell: field(off_ground(q), cell), on_ground(p), count, column(bounds), neighbours
+        lambda q, cell: field(off_ground(q), cell), on_ground(p), count, column(bounds), neighbors
     )
     return found.distance
 
 
 @func
 def repeated_polar_flat_site(
-    field: Callable[[vec2, vec3], float], p: vec2, count: int, bounds: Bounds2, neighbours: int
+    field: Callable[[vec2, vec3], float], p: vec2, count: int, bounds: Bounds2, neighbors: int
 ) -> Site2:
     """Return the place in the nearest copy."""
     found = nearest_polar(
-        lambda q, cell: field(off_ground(q), cell), on_ground(p), count, column(bounds), neighbours
+        lambda q, cell: field(off_ground(q), cell), on_ground(p), count, column(bounds), neighbors
     )
     return Site2(off_ground(found.site.p), found.site.cell)
 
 
 @func
 def repeated_polar_flat_around_slope(
-    slope: float, bounds: Bounds2, count: int, neighbours: int
+    slope: float, bounds: Bounds2, count: int, neighbors: int
 ) -> float:
     """Return the child's slope if the evaluated copies are nearer than others."""
-    return repeated_polar_around_slope(slope, column(bounds), count, neighbours)
+    return repeated_polar_around_slope(slope, column(bounds), count, neighbors)
 
 
 @func
@@ -333,9 +333,9 @@ def count_requirement_flat(count_x: int = 1, count_y: int = 1) -> str | None:
     return count_requirement(count_x, count_y)
 
 
-def block_requirement_flat(neighbours: int, count_x: int = 1, count_y: int = 1) -> str | None:
-    """Return why a block with neighbours is invalid, or None."""
-    return block_requirement(neighbours, count_x, count_y)
+def block_requirement_flat(neighbors: int, count_x: int = 1, count_y: int = 1) -> str | None:
+    """Return why a block with neighbors is invalid, or None."""
+    return block_requirement(neighbors, count_x, count_y)
 
 
 FLAT: Final = CellFunctions(
@@ -348,12 +348,12 @@ FLAT: Final = CellFunctions(
     width_of_flat_copies,
 )
 REPEAT_FLAT = one_cell("flat repeat", FLAT, endless_flat, limited=False)
-REPEAT_NEIGHBOURS_FLAT = several_cells("flat repeat neighbours", FLAT, endless_flat, limited=False)
+REPEAT_NEIGHBORS_FLAT = several_cells("flat repeat neighbors", FLAT, endless_flat, limited=False)
 REPEAT_LIMITED_FLAT = one_cell(
     "flat repeat limited", FLAT, counted_flat, requires=count_requirement_flat
 )
-REPEAT_LIMITED_NEIGHBOURS_FLAT = several_cells(
-    "flat repeat limited neighbours", FLAT, counted_flat, requires=block_requirement_flat
+REPEAT_LIMITED_NEIGHBORS_FLAT = several_cells(
+    "flat repeat limited neighbors", FLAT, counted_flat, requires=block_requirement_flat
 )
 REPEAT_MIRRORED_FLAT = operator(
     "flat repeat mirrored",
@@ -385,8 +385,8 @@ REPEAT_POLAR_FLAT = operator(
     needs=POLAR_FITTING.replace("the y axis", "the origin"),
     growth=Growth.HELD,
 )
-REPEAT_POLAR_NEIGHBOURS_FLAT = operator(
-    "flat repeat polar neighbours",
+REPEAT_POLAR_NEIGHBORS_FLAT = operator(
+    "flat repeat polar neighbors",
     cells=cells_in_line,
     around=repeated_polar_flat_around,
     site=repeated_polar_flat_site,

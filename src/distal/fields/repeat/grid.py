@@ -40,12 +40,12 @@ from distal.lang.functions import Func
 
 SPACING: Final = {"spacing": Limit.NOT_NEGATIVE}
 FITS_CELL: Final = (
-    "a shape whose box is smaller than the spacing, with a little room: set neighbours=1 for a "
+    "a shape whose box is smaller than the spacing, with a little room: set neighbors=1 for a "
     "larger one, or mirrored=True for one that is symmetric in its cell"
 )
-FITS_NEIGHBOURS: Final = (
+FITS_NEIGHBORS: Final = (
     "a shape smaller than the cells that are evaluated: its box may reach 0.9 spacings from its "
-    "middle with neighbours=1, 1.4 with neighbours=2"
+    "middle with neighbors=1, 1.4 with neighbors=2"
 )
 
 
@@ -85,7 +85,7 @@ def one_cell(
         copies=copies,
         point=functions.site,
         finish=functions.value,
-        fixed={"neighbours": 0, "limited": limited},
+        fixed={"neighbors": 0, "limited": limited},
         width=functions.width,
         keeps=INSIDE_AND_BOUND,
         slope=functions.slope,
@@ -97,9 +97,9 @@ def one_cell(
     )
 
 
-def neighbours_requirement(neighbours: int) -> str | None:
-    """Return why the number of neighbours is invalid, or None."""
-    return None if neighbours in (1, 2) else "neighbours must be 0, 1 or 2"
+def neighbors_requirement(neighbors: int) -> str | None:
+    """Return why the number of neighbors is invalid, or None."""
+    return None if neighbors in (1, 2) else "neighbors must be 0, 1 or 2"
 
 
 def several_cells(
@@ -108,11 +108,11 @@ def several_cells(
     copies: Func,
     *,
     limited: bool = True,
-    requires: Requirement = neighbours_requirement,
+    requires: Requirement = neighbors_requirement,
 ) -> Operator:
     """Declare a repetition that also evaluates the child in cells around the nearest.
 
-    Its number ``neighbours`` is 1 or 2. Arguments as for ``one_cell``.
+    Its number ``neighbors`` is 1 or 2. Arguments as for ``one_cell``.
     """
     return operator(
         name,
@@ -127,7 +127,7 @@ def several_cells(
         bounds=functions.bounds,
         limits=SPACING,
         requires=requires,
-        needs=FITS_NEIGHBOURS,
+        needs=FITS_NEIGHBORS,
         growth=Growth.HELD,
     )
 
@@ -156,10 +156,10 @@ def count_requirement(count_x: int = 1, count_y: int = 1, count_z: int = 1) -> s
 
 
 def block_requirement(
-    neighbours: int, count_x: int = 1, count_y: int = 1, count_z: int = 1
+    neighbors: int, count_x: int = 1, count_y: int = 1, count_z: int = 1
 ) -> str | None:
-    """Return why a block with neighbours is invalid, or None."""
-    return neighbours_requirement(neighbours) or count_requirement(count_x, count_y, count_z)
+    """Return why a block with neighbors is invalid, or None."""
+    return neighbors_requirement(neighbors) or count_requirement(count_x, count_y, count_z)
 
 
 def interval_requirement(
@@ -185,7 +185,7 @@ SOLID: Final = CellFunctions(
     width_of_copies,
 )
 REPEAT = one_cell("repeat", SOLID, endless, limited=False)
-REPEAT_NEIGHBOURS = several_cells("repeat neighbours", SOLID, endless, limited=False)
+REPEAT_NEIGHBORS = several_cells("repeat neighbors", SOLID, endless, limited=False)
 REPEAT_MIRRORED = operator(
     "repeat mirrored",
     point=repeated_mirrored,
@@ -195,8 +195,8 @@ REPEAT_MIRRORED = operator(
     growth=Growth.KEPT,
 )
 REPEAT_LIMITED = one_cell("repeat limited", SOLID, counted, requires=count_requirement)
-REPEAT_LIMITED_NEIGHBOURS = several_cells(
-    "repeat limited neighbours", SOLID, counted, requires=block_requirement
+REPEAT_LIMITED_NEIGHBORS = several_cells(
+    "repeat limited neighbors", SOLID, counted, requires=block_requirement
 )
 REPEAT_INTERVAL = one_cell("repeat interval", SOLID, interval, requires=interval_requirement)
 REPEAT_HALF = one_cell("repeat half", SOLID, onward)

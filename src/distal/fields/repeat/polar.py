@@ -227,7 +227,7 @@ def repeated_polar_slope(slope: float, bounds: Bounds, count: int) -> float:
 
 @func
 def nearest_polar(
-    field: Callable[[vec3, vec3], float], p: vec3, count: int, bounds: Bounds, neighbours: int
+    field: Callable[[vec3, vec3], float], p: vec3, count: int, bounds: Bounds, neighbors: int
 ) -> Nearest:
     """Return the nearest of the copies around the point, limited by those not evaluated."""
     sector = sector_of(bounds)
@@ -238,7 +238,7 @@ def nearest_polar(
     toward = select(own.x * u.y - own.z * u.x < 0.0, -1.0, 1.0)
     nearest = UNBOUNDED
     chosen = index
-    for i in range(0 if neighbours == 1 else -1, 2):
+    for i in range(0 if neighbors == 1 else -1, 2):
         there = index + float(i) * toward
         q = turned_by(p, there, count)
         d = max(field(q, polar_cell(there, count)), to_own(in_sector(q, sector), sector))
@@ -247,34 +247,34 @@ def nearest_polar(
             chosen = there
     at = in_sector(own, sector)
     step = 2.0 * PI / float(count)
-    if neighbours == 1 and count > 2:
+    if neighbors == 1 and count > 2:
         behind = to_next(vec2(at.x, -at.y), step - sector.half, sector)
         nearest = min(nearest, behind)
-    if neighbours == 2 and count > 3:
+    if neighbors == 2 and count > 3:
         nearest = min(nearest, to_next(at, 2.0 * step - sector.half, sector))
     return Nearest(max(nearest, to_copies(p, bounds, count)), polar_site(p, chosen, count))
 
 
 @func
 def repeated_polar_around(
-    field: Callable[[vec3, vec3], float], p: vec3, count: int, bounds: Bounds, neighbours: int
+    field: Callable[[vec3, vec3], float], p: vec3, count: int, bounds: Bounds, neighbors: int
 ) -> float:
     """Return the distance to the nearest of the copies around the point."""
-    return nearest_polar(field, p, count, bounds, neighbours).distance
+    return nearest_polar(field, p, count, bounds, neighbors).distance
 
 
 @func
 def repeated_polar_around_site(
-    field: Callable[[vec3, vec3], float], p: vec3, count: int, bounds: Bounds, neighbours: int
+    field: Callable[[vec3, vec3], float], p: vec3, count: int, bounds: Bounds, neighbors: int
 ) -> Site:
     """Return the place in the nearest copy."""
-    return nearest_polar(field, p, count, bounds, neighbours).site
+    return nearest_polar(field, p, count, bounds, neighbors).site
 
 
 @func
-def repeated_polar_around_slope(slope: float, bounds: Bounds, count: int, neighbours: int) -> float:
+def repeated_polar_around_slope(slope: float, bounds: Bounds, count: int, neighbors: int) -> float:
     """Return the child's slope if the evaluated copies are nearer than others."""
-    reach = 1.0 if neighbours == 1 else 1.5
+    reach = 1.0 if neighbors == 1 else 1.5
     free = min(2.0 * PI / float(count) * reach * (1.0 - LEAD), 0.49 * PI)
     return sector_slope(slope, bounds, free)
 
@@ -312,21 +312,21 @@ def polar_requirement(count: int) -> str | None:
     return None if count >= 1 else "count must be 1 or more"
 
 
-def polar_around_requirement(count: int, neighbours: int) -> str | None:
-    """Return why the count and the neighbours are invalid, or None."""
-    if neighbours not in (1, 2):
-        return "neighbours must be 0, 1 or 2"
-    return None if count > neighbours else f"count must be {neighbours + 1} or more"
+def polar_around_requirement(count: int, neighbors: int) -> str | None:
+    """Return why the count and the neighbors are invalid, or None."""
+    if neighbors not in (1, 2):
+        return "neighbors must be 0, 1 or 2"
+    return None if count > neighbors else f"count must be {neighbors + 1} or more"
 
 
 POLAR_FITTING = (
-    "a shape beside the y axis whose box fits in its sector, with a little room: set neighbours=1 "
-    "for a wider one, neighbours='all' for one that reaches the axis, or kaleidoscope for one that "
+    "a shape beside the y axis whose box fits in its sector, with a little room: set neighbors=1 "
+    "for a wider one, neighbors='all' for one that reaches the axis, or kaleidoscope for one that "
     "is symmetric in its sector"
 )
 POLAR_SMALLER = (
     "a shape beside the y axis, narrower than the sectors that are evaluated and less than half a "
-    "turn wide; neighbours='all' takes any shape"
+    "turn wide; neighbors='all' takes any shape"
 )
 REPEAT_POLAR = operator(
     "repeat polar",
@@ -340,8 +340,8 @@ REPEAT_POLAR = operator(
     needs=POLAR_FITTING,
     growth=Growth.HELD,
 )
-REPEAT_POLAR_NEIGHBOURS = operator(
-    "repeat polar neighbours",
+REPEAT_POLAR_NEIGHBORS = operator(
+    "repeat polar neighbors",
     cells=cells_in_line,
     around=repeated_polar_around,
     site=repeated_polar_around_site,

@@ -98,7 +98,7 @@ def brick_field(
         p: Point.
         values: For each brick, x first: 1 and more for the stored ones in their order, 0 outside,
             -1 inside. Then a number for each corner of bricks. Then 9 * 9 * 9 samples for each
-            stored brick, negative inside; those on a side without a stored neighbour are ``reach``.
+            stored brick, negative inside; those on a side without a stored neighbor are ``reach``.
         samples: The number of samples along x, y and z.
         size: Size of the box, which is centred at the origin; samples are at the centres of equal
             cells.

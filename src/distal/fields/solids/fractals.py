@@ -1,7 +1,7 @@
 """Fractals: a sponge with an exact bound, and sets whose distance is estimated.
 
 Input: a point, the number of iterations of the map, its numbers. Output: a lower bound for the
-sponge; for the others an estimate from how fast the map separates neighbouring points. Outside the
+sponge; for the others an estimate from how fast the map separates neighboring points. Outside the
 ball or cube that contains a set, the distance to it and the estimate at its border are combined at
 a right angle, so that the estimate is not used far away. When values are divided by the declared
 slope, fewer than 1 in 10,000 steps of a marcher enter the set (tested).

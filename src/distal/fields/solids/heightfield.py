@@ -38,7 +38,7 @@ from distal.lang import (
 from distal.lang import size as size_of
 
 GROUND_SIZE: Final = vec2(4.0)
-# Neighbouring texels of a picture, whose values are between 0 and 1, differ by at most this.
+# Neighboring texels of a picture, whose values are between 0 and 1, differ by at most this.
 ANY_RISE: Final = vec2(1.0)
 
 
@@ -78,8 +78,8 @@ def heightfield(
     """Terrain from the first channel of an image; its border heights continue without end.
 
     The bound follows from the data. Between four texels, the derivative of the bilinear
-    interpolation along an axis is a weighted mean of the differences of two pairs of neighbours, so
-    it is at most the largest difference of neighbours along this axis, divided by their distance.
+    interpolation along an axis is a weighted mean of the differences of two pairs of neighbors, so
+    it is at most the largest difference of neighbors along this axis, divided by their distance.
     The vertical distance is divided by the steepness that follows for both axes together.
 
     Args:
@@ -87,7 +87,7 @@ def heightfield(
         image: The heights. The image lies in the xz plane, its upper side at the smallest z.
         size: Size of the image along x and z, centred at the origin.
         height: Height of a texel of value 1.
-        rise: The largest differences of neighbouring texels along x and z.
+        rise: The largest differences of neighboring texels along x and z.
 
     Source: John C. Hart, "Sphere tracing" (1996), for the bound.
 

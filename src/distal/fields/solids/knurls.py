@@ -13,7 +13,7 @@ from distal.lang import abs, atan2, cos, func, length, max, sin, sqrt, vec2, vec
 
 
 def _grooves_fit(
-    radius: float, height: float, depth: float, slant: float, bevel: float, count: int
+    radius: float, height: float, depth: float, bevel: float, count: int, slant: float
 ) -> str | None:
     if count < 3:
         return "count must be 3 or more"
@@ -93,9 +93,10 @@ def knurled_cylinder(
     radius: float = 0.5,
     height: float = 1.0,
     depth: float = 0.04,
-    slant: float = 0.5235987755982988,
     bevel: float = 0.04,
     count: int = 30,
+    *,
+    slant: float = 0.5235987755982988,
     crossed: bool = True,
 ) -> float:
     """Upright cylinder with V-shaped grooves: straight, slanted or crossed (diamonds).
@@ -105,18 +106,18 @@ def knurled_cylinder(
         radius: Radius over the ridges.
         height: Full height.
         depth: Depth of the grooves.
-        slant: Angle between the grooves and the axis in radians; 0 for straight ones.
         bevel: Size of the chamfers at 45 degrees at both ends.
         count: Number of grooves around the cylinder, in one direction.
+        slant: Angle between the grooves and the axis in radians; 0 for straight ones.
         crossed: Whether there are grooves in both directions, which leave diamonds.
 
     Source: the exact distance to a row of grooves on the unrolled cylinder, divided by the bound on
         its slope.
 
     Measured:
-        knurled_cylinder((0.0, 0.0, 2.0), 2.0, 4.0, 0.125, 0.5, 0.25, 24) = 0.0
-        knurled_cylinder((0.0, 3.5, 0.0), 2.0, 4.0, 0.125, 0.5, 0.25, 24) = 1.5
-        knurled_cylinder((0.0, 0.0, -1.875), 2.0, 4.0, 0.125, 0.0, 0.25, 25, False) = 0.0
+        knurled_cylinder((0.0, 0.0, 2.0), 2.0, 4.0, 0.125, 0.25, 24, slant=0.5) = 0.0
+        knurled_cylinder((0.0, 3.5, 0.0), 2.0, 4.0, 0.125, 0.25, 24, slant=0.5) = 1.5
+        knurled_cylinder((0.0, 0.0, -1.875), 2.0, 4.0, 0.125, 0.25, 25, slant=0.0) = 0.0
     """
     past = abs(p.y) - 0.5 * height
     edge = HALF_ROOT * (length(p.xz) - radius + past + bevel)

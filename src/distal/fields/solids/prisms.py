@@ -204,21 +204,21 @@ def prism(p: vec3, inradius: float = 0.5, height: float = 1.0, *, count: int = 5
 
 
 @func
-def rhombus_bounds(diagonals: vec2, height: float, rounding: float) -> Bounds:
+def rhombus_prism_bounds(diagonals: vec2, height: float, rounding: float) -> Bounds:
     """Return the box of a rhombus, enlarged by its rounding."""
     reach = vec3(0.5 * diagonals.x + rounding, 0.5 * height, 0.5 * diagonals.y + rounding)
     return Bounds(-reach, reach)
 
 
 @primitive(
-    "Rhombus",
+    "RhombusPrism",
     EXACT,
-    bounds=rhombus_bounds,
+    bounds=rhombus_prism_bounds,
     limits={"diagonals": Limit.POSITIVE},
     width=rhombus_prism_width,
 )
 @func
-def rhombus(
+def rhombus_prism(
     p: vec3, diagonals: vec2 = DIAGONALS, height: float = 1.0, rounding: float = 0.05
 ) -> float:
     """Upright prism over a rhombus whose vertical edges are rounded.
@@ -232,9 +232,9 @@ def rhombus(
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
     Measured:
-        rhombus((4.25, 6.0, 0.0), (2.0, 1.0), 4.0, 0.25) = 5.0
-        rhombus((0.0, 0.0, 0.0), (8.0, 6.0), 6.0, 0.25) = -2.65
-        rhombus((4.0, 0.0, 3.0), (8.0, 6.0), 6.0, 0.0) = 2.4
+        rhombus_prism((4.25, 6.0, 0.0), (2.0, 1.0), 4.0, 0.25) = 5.0
+        rhombus_prism((0.0, 0.0, 0.0), (8.0, 6.0), 6.0, 0.25) = -2.65
+        rhombus_prism((4.0, 0.0, 3.0), (8.0, 6.0), 6.0, 0.0) = 2.4
     """
     q = abs(p.xz) - vec2(0.5 * diagonals.x, 0.0)
     side = vec2(-0.5 * diagonals.x, 0.5 * diagonals.y)

@@ -187,20 +187,20 @@ def nearer(u: vec3, v: vec3) -> vec3:
 
 
 @func
-def triangle_bounds(a: vec3, b: vec3, c: vec3) -> Bounds:
+def triangle_sheet_bounds(a: vec3, b: vec3, c: vec3) -> Bounds:
     """Return the box of the corners."""
     return Bounds(min(a, b, c), max(a, b, c))
 
 
 @primitive(
-    "Triangle",
+    "TriangleSheet",
     EXACT_OUTSIDE,
-    bounds=triangle_bounds,
+    bounds=triangle_sheet_bounds,
     signed=False,
     width=0.0,
 )
 @func
-def triangle(p: vec3, a: vec3 = CORNER_A, b: vec3 = CORNER_B, c: vec3 = CORNER_C) -> float:
+def triangle_sheet(p: vec3, a: vec3 = CORNER_A, b: vec3 = CORNER_B, c: vec3 = CORNER_C) -> float:
     """Flat triangle without thickness.
 
     Args:
@@ -212,9 +212,9 @@ def triangle(p: vec3, a: vec3 = CORNER_A, b: vec3 = CORNER_B, c: vec3 = CORNER_C
     Source: Inigo Quilez, "Distance functions" (https://iquilezles.org/articles/distfunctions/).
 
     Measured:
-        triangle((0.25, 2.0, 0.25), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)) = 2.0
-        triangle((3.0, 3.0, -6.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)) = 7.0
-        triangle((0.5, 3.0, -4.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)) = 5.0
+        triangle_sheet((0.25, 2.0, 0.25), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)) = 2.0
+        triangle_sheet((3.0, 3.0, -6.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)) = 7.0
+        triangle_sheet((0.5, 3.0, -4.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)) = 5.0
     """
     normal = cross(b - a, c - a)
     outside = (
@@ -265,4 +265,4 @@ def quad(
         quad((2.5, 3.0, 6.5)) = 7.0
         quad((0.25, 3.0, -4.5)) = 5.0
     """
-    return min(triangle(p, a, b, c), triangle(p, a, c, d))
+    return min(triangle_sheet(p, a, b, c), triangle_sheet(p, a, c, d))

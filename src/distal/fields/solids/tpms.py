@@ -31,8 +31,8 @@ GYROID_STEEPEST: Final = 1.7320508075688772  # sqrt(3)
 GYROID_TYPICAL: Final = 1.53
 SCHWARZ_P_STEEPEST: Final = 1.7320508075688772  # sqrt(3)
 SCHWARZ_P_TYPICAL: Final = 1.307
-DIAMOND_STEEPEST: Final = 1.224744871391589  # sqrt(3/2)
-DIAMOND_TYPICAL: Final = 1.055
+SCHWARZ_D_STEEPEST: Final = 1.224744871391589  # sqrt(3/2)
+SCHWARZ_D_TYPICAL: Final = 1.055
 NEOVIUS_STEEPEST: Final = 7.0
 NEOVIUS_TYPICAL: Final = 2.57
 LIDINOID_STEEPEST: Final = 2.598076211353316  # 3/2 sqrt(3)
@@ -135,9 +135,9 @@ def schwarz_p(
     return layered(value, cell_size, SCHWARZ_P_TYPICAL, thickness, level, solid)
 
 
-@minimal_surface("Diamond", DIAMOND_STEEPEST / DIAMOND_TYPICAL)
+@minimal_surface("SchwarzD", SCHWARZ_D_STEEPEST / SCHWARZ_D_TYPICAL)
 @func
-def diamond(
+def schwarz_d(
     p: vec3,
     cell_size: float = 1.0,
     thickness: float = 0.1,
@@ -156,15 +156,15 @@ def diamond(
     Source: Hermann Schwarz (1865), for the surface; its nodal equation.
 
     Measured:
-        diamond((0.25, 0.0, 0.0), 1.0, 0.25) = -0.125
-        diamond((0.0, 0.0, 0.0), 1.0, 0.1, 0.0, True) = 0.1508578
-        diamond((0.5, 0.5, 0.5), 2.0, 0.1, 0.05, True) = -0.3517155
+        schwarz_d((0.25, 0.0, 0.0), 1.0, 0.25) = -0.125
+        schwarz_d((0.0, 0.0, 0.0), 1.0, 0.1, 0.0, True) = 0.1508578
+        schwarz_d((0.5, 0.5, 0.5), 2.0, 0.1, 0.05, True) = -0.3517155
     """
     q = p * (TAU / cell_size)
     c = cos(q)
     s = sin(q)
     value = c.x * c.y * c.z - s.x * s.y * s.z
-    return layered(value, cell_size, DIAMOND_TYPICAL, thickness, level, solid)
+    return layered(value, cell_size, SCHWARZ_D_TYPICAL, thickness, level, solid)
 
 
 @minimal_surface("Neovius", NEOVIUS_STEEPEST / NEOVIUS_TYPICAL)

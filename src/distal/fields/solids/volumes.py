@@ -123,7 +123,7 @@ def volume_field(
 ) -> float:
     """Shape from a grid of distance samples, in the first channel of a volume texture.
 
-    Neighbouring samples must differ by at most the distance between them, as true distances do;
+    Neighboring samples must differ by at most the distance between them, as true distances do;
     ``value_scale`` is applied first. Then the surface is at most 0.87 of the samples' spacing from
     the sampled one, and much closer where that is smooth. A shape that extends beyond the box is
     cut off there.

@@ -64,7 +64,7 @@ def sine_near_zero(r: float) -> float:
 def sine(x: float) -> float:
     """Return the sine: error below 1e-7 for ``abs(x) < 100``, 1e-6 for ``abs(x) < 10000``.
 
-    Up to 2^22 the error is below the distance between neighbouring floats, and the reduced angle is
+    Up to 2^22 the error is below the distance between neighboring floats, and the reduced angle is
     below 2.1, so that the polynomial stays within -1 and 1.
     """
     shifted = x * INVERSE_PI + ROUNDER

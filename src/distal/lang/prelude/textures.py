@@ -119,7 +119,7 @@ def cube_direction(place: CubePlace) -> vec3:
 
 @func
 def cube_texel(texture: TextureCube, face: int, index: ivec2, extent: int) -> vec4:
-    """Return a texel of a face; an index beyond the edge reads the neighbouring face."""
+    """Return a texel of a face; an index beyond the edge reads the neighboring face."""
     place = CubePlace(face, (2.0 * vec2(index) + 1.0) / float(extent) - 1.0)
     if max(abs(place.along.x), abs(place.along.y)) > 1.0:
         place = cube_place(cube_direction(place))

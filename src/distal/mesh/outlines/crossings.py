@@ -20,7 +20,7 @@ _PAIRS_AT_ONCE: Final = 1 << 20
 def crossing_lines(loops: list[Integers]) -> Integers:
     """Return the pairs of lines that have a point in common, of shape (n, 2).
 
-    Lines are counted through all loops. Neighbours share their end, which is allowed; other common
+    Lines are counted through all loops. Neighbors share their end, which is allowed; other common
     points are not.
 
     Args:
@@ -39,9 +39,9 @@ def crossing_lines(loops: list[Integers]) -> Integers:
         meets = _meet(starts[i], ends[i], starts[j], ends[j])
         # Where j follows i they share the end of i; they overlap if j turns straight back.
         for before, after in ((i, j), (j, i)):
-            neighbours = following[before] == after
+            neighbors = following[before] == after
             back = _overlap(starts[before], ends[before], ends[after])
-            meets = np.where(neighbours, back, meets)
+            meets = np.where(neighbors, back, meets)
         wrong.append(np.stack([i, j], axis=1)[meets])
     return np.concatenate(wrong)
 

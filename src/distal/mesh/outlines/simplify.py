@@ -88,7 +88,7 @@ def _farthest(points: Floats, low: Integers, high: Integers) -> tuple[Integers, 
 
 
 def _without_straight(loop: Floats, kept: Integers) -> Integers:
-    """Return the points that stay, without those on the line between their neighbours."""
+    """Return the points that stay, without those on the line between their neighbors."""
     found = loop[kept]
     if len(kept) > 3:
         before, after = np.roll(found, 1, axis=0), np.roll(found, -1, axis=0)

@@ -156,7 +156,7 @@ def edge_cells(
         for start in range(0, len(waiting), TILES_AT_ONCE):
             rows = waiting[start : start + TILES_AT_ONCE]
             values = _samples(kernels, lattice, rows)
-            wanted.append(_neighbours(rows, values < 0.0))
+            wanted.append(_neighbors(rows, values < 0.0))
             parts.append(_cells(lattice, extent, rows, values))
             watch(min(1.0, (start + TILES_AT_ONCE) / len(waiting)))
         beside = np.unique(np.concatenate(wanted), axis=0)
@@ -221,7 +221,7 @@ def _samples(kernels: FieldKernels, lattice: TileLattice, tiles: Integers) -> Fl
     return found.reshape(len(tiles), TILE + 1, TILE + 1)
 
 
-def _neighbours(tiles: Integers, inside: Bools) -> Integers:
+def _neighbors(tiles: Integers, inside: Bools) -> Integers:
     """Return the tiles beside sides on which the sign changes."""
     found = []
     for axis in range(2):

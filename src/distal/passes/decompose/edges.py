@@ -95,7 +95,7 @@ def nearer_zero(x: Expr, precision: int) -> Expr:
     """Return the next float in the direction of 0, of a normal number.
 
     The product is half a unit or more, and less than a unit, smaller than ``x``, so that it is
-    rounded to the neighbour.
+    rounded to the neighbor.
     """
     return multiply(x, number(below_one(precision), x.type))
 

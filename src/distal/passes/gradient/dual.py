@@ -263,7 +263,7 @@ class DualBody:
                         ErrorCode.LANGUAGE,
                         "the gradient of a texture is not defined",
                         span_in(self._span, e),
-                        "compare samples at neighbouring places, outside the differentiated "
+                        "compare samples at neighboring places, outside the differentiated "
                         "function",
                     )
                 return _Pair(rebuild(e, (texture, pair.value)), self._still)

@@ -183,8 +183,8 @@ def _box(node: Node, params: Mapping[str, Any], time: float) -> tuple[Points, Po
     return cut_low, cut_high
 
 
-def warn_of_black(scene: Any, picture: Any, params: Mapping[str, Any], time: float) -> None:
-    """Warn of a completely black picture, and name the likely cause.
+def warn_of_light(scene: Any, picture: Any, params: Mapping[str, Any], time: float) -> None:
+    """Warn of light that is not a number, and of a completely black picture with its likely cause.
 
     Args:
         scene: The scene.
@@ -195,7 +195,17 @@ def warn_of_black(scene: Any, picture: Any, params: Mapping[str, Any], time: flo
     Raises:
         SceneValueError: The camera is inside a solid.
     """
-    if picture.linear is None or shows(picture.linear[..., :3]):
+    if picture.linear is None:
+        return
+    light = picture.linear[..., :3]
+    if np.isnan(light.min()):
+        share = np.isnan(light).any(axis=-1).mean()
+        warn(
+            f"in {share:.1%} of the pixels the light is not a number: look for a division by 0 "
+            "or a number that overflows in the scene's own functions",
+            scene.place,
+        )
+    if shows(light):
         return
     eye = _Eye(scene)
     shut = scene.renderer != "refracted"  # from inside glass a camera can see out

@@ -73,7 +73,7 @@ def with_bounds_of_cells(
     if rule in (REPEAT_MIRRORED, REPEAT_MIRRORED_FLAT):
         refuse(
             f"mirrored copies match only if all are alike; '{varied[0].label}' depends on the cell",
-            "leave out mirrored=True; neighbours=1 for a shape that is larger than its cell",
+            "leave out mirrored=True; neighbors=1 for a shape that is larger than its cell",
             place,
         )
     try:

@@ -98,7 +98,7 @@ class Gear(Toothed):
         angle = _checked(module, teeth, pressure_angle, helix, "Gear", place)
         radius = 0.5 * module * teeth
         numbers = {"addendum": 1.0, "dedendum": 1.0 + tip_gap, "backlash": backlash}
-        profile = made_of("GearProfile", radius, angle, teeth, **numbers)
+        profile = made_of("GearProfile", radius, count=teeth, pressure_angle=angle, **numbers)
         made = _wide(profile, width, radius, helix)
         if not isinstance(bore_diameter, float | int) or bore_diameter > 0.0:
             made = made - made_of("Circle", 0.5 * bore_diameter).extrude(None)
@@ -152,7 +152,7 @@ class RingGear(Toothed):
         radius = 0.5 * module * teeth
         # The hole has the outline of a gear whose tips reach as far as the ring's gaps.
         numbers = {"addendum": 1.0 + tip_gap, "dedendum": 1.0, "backlash": -backlash}
-        hole = made_of("GearProfile", radius, angle, teeth, **numbers)
+        hole = made_of("GearProfile", radius, count=teeth, pressure_angle=angle, **numbers)
         outer = radius + (1.0 + tip_gap) * module + (2.0 * module if rim is None else rim)
         if helix == 0.0:
             made = (made_of("Circle", outer) - hole).extrude(width)
@@ -203,8 +203,8 @@ class Rack(Toothed):
     ) -> None:
         angle = _checked(module, teeth, pressure_angle, 0.0, "Rack", author_place())
         thick = 2.0 * module if base is None else base
-        numbers = (module, angle, thick, backlash, tip_gap, teeth)
-        made = made_of("RackProfile", *numbers).extrude(width)
+        numbers = (module, thick, backlash, tip_gap, teeth)
+        made = made_of("RackProfile", *numbers, pressure_angle=angle).extrude(width)
         self._set(
             made, module=module, teeth=teeth, pressure_angle=angle, helix=0.0, pitch_radius=0.0
         )

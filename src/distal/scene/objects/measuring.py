@@ -1,4 +1,4 @@
-"""Numbers that follow from a shape's data: how much neighbouring texels differ.
+"""Numbers that follow from a shape's data: how much neighboring texels differ.
 
 Input: a texture. Output: plain numbers. Only nested lists of numbers are measured without NumPy.
 Does not depend on what the numbers are used for.
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 else:
     image_files = LazyModule("distal.scene.objects.images")  # needs NumPy
 
-# Texels of a picture's file are between 0 and 1, so neighbours differ by at most this.
+# Texels of a picture's file are between 0 and 1, so neighbors differ by at most this.
 OF_ANY_PICTURE = (1.0, 1.0)
 
 
 def largest_rise(texture: Texture2D, what: str, place: Span | None) -> tuple[float, float]:
-    """Return the largest differences of neighbouring texels' first channels, along each axis.
+    """Return the largest differences of neighboring texels' first channels, along each axis.
 
     Without NumPy or Pillow, files are not read, and the result is the largest possible one.
 

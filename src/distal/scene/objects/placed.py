@@ -128,11 +128,12 @@ class Placed(Movable, BaseShape):
         """Repeat a wedge ``count`` times about the y axis, mirroring every other copy."""
         return self._with(mirrors.KALEIDOSCOPE, count)
 
+    @refuses_unknown
     def repeat(
         self: S,
         *spacing: Vector | Number,
         count: Sequence[Number] | Number | None = None,
-        neighbours: int = 0,
+        neighbors: int = 0,
         mirrored: bool = False,
     ) -> S:
         """Repeat on a grid that is centred on the shape itself.
@@ -143,7 +144,7 @@ class Placed(Movable, BaseShape):
             count: Number of copies along each axis, two or three whole numbers, or one for all
                 axes; each may be an integer parameter. The indices of cells then start with 0 at
                 the lower corner. None repeats infinitely.
-            neighbours: How many cells around the nearest are also evaluated: 0 for a shape that
+            neighbors: How many cells around the nearest are also evaluated: 0 for a shape that
                 stays within its cell, 1 or 2 for one that reaches into others.
             mirrored: Whether every other copy is mirrored, so that adjacent copies match.
 
@@ -153,10 +154,10 @@ class Placed(Movable, BaseShape):
         """
         if mirrored:
             return self._with(grid.REPEAT_MIRRORED, *spacing)
-        neighbours = _fixed("neighbours", "repeat", neighbours)
+        neighbors = _fixed("neighbors", "repeat", neighbors)
         if count is None:
-            if neighbours:
-                return self._with(grid.REPEAT_NEIGHBOURS, *spacing, neighbours=neighbours)
+            if neighbors:
+                return self._with(grid.REPEAT_NEIGHBORS, *spacing, neighbors=neighbors)
             return self._with(grid.REPEAT, *spacing)
         axes = "xy" if self.flat else "xyz"
         try:
@@ -168,28 +169,29 @@ class Placed(Movable, BaseShape):
                 "count=(3, 2)" if self.flat else "count=(3, 1, 3)",
                 author_place(),
             )
-        if neighbours:
-            counts["neighbours"] = neighbours
-            return self._with(grid.REPEAT_LIMITED_NEIGHBOURS, *spacing, **counts)
+        if neighbors:
+            counts["neighbors"] = neighbors
+            return self._with(grid.REPEAT_LIMITED_NEIGHBORS, *spacing, **counts)
         return self._with(grid.REPEAT_LIMITED, *spacing, **counts)
 
-    def repeat_polar(self: S, count: Number, *, neighbours: int | str = 0) -> S:
+    @refuses_unknown
+    def repeat_polar(self: S, count: Number, *, neighbors: int | str = 0) -> S:
         """Repeat ``count`` times about the y axis (a flat shape: about the origin).
 
         Args:
             count: A whole number, or an integer parameter.
-            neighbours: How many sectors beside the nearest are also evaluated: 0 for a shape that
+            neighbors: How many sectors beside the nearest are also evaluated: 0 for a shape that
                 fits into its sector, 1 or 2 for a wider one. "all": every copy is, for shapes that
                 reach the axis or overlap; it takes ``count`` times as long.
 
         Raises:
             SceneValueError: The shape does not fit, or ``count`` is too small.
         """
-        if neighbours == "all":
+        if neighbors == "all":
             return self._with(polar.REPEAT_POLAR_ALL, count=count)
-        whole = _fixed("neighbours", "repeat_polar", neighbours)
+        whole = _fixed("neighbors", "repeat_polar", neighbors)
         if whole:
-            return self._with(polar.REPEAT_POLAR_NEIGHBOURS, count=count, neighbours=whole)
+            return self._with(polar.REPEAT_POLAR_NEIGHBORS, count=count, neighbors=whole)
         return self._with(polar.REPEAT_POLAR, count=count)
 
     def split(self: S, normal: Vector, offset: Number = 0.0) -> tuple[S, S]:

@@ -15,7 +15,7 @@ from distal.diagnostics import Span
 from distal.packages import PackageError, imported
 from distal.scene.tree.errors import refuse
 
-# Blocks of scripts whose letters change with their neighbours: Hangul's parts, those of India and
+# Blocks of scripts whose letters change with their neighbors: Hangul's parts, those of India and
 # South-East Asia, Mongolian, and their extensions.
 _COMPLEX: Final = (
     (0x0900, 0x0DFF),

@@ -4,7 +4,7 @@ Input: a Python function of a number. Output: the points of quadratic Bézier cu
 distance that was measured between them and the function's curve. Does not depend on shapes.
 
 A piece of the curve is replaced by two parabolas that have its ends and, at the ends, its
-directions, so neighbours join smoothly. A piece that is too far from the curve at one of the
+directions, so neighbors join smoothly. A piece that is too far from the curve at one of the
 measured places is halved.
 """
 

@@ -112,7 +112,7 @@ def near_pairs(points: Floats, distance: float) -> tuple[Indices, Indices, Float
     sorted_keys = keys[order]
     ordered = points[order]
     firsts, seconds, distances = [], [], []
-    # Half of the neighbours: the others find these.
+    # Half of the neighbors: the others find these.
     around = itertools.product((-1, 0, 1), repeat=points.shape[1])
     for offset in (o for o in around if o >= (0,) * len(o)):
         wanted = sorted_keys + np.dot(offset, weights)

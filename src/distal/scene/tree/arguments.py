@@ -54,7 +54,7 @@ from distal.scene.tree.conversion import (
     unwrapped,
 )
 from distal.scene.tree.errors import refuse, refuse_kind
-from distal.scene.tree.former_names import FORMERLY_FIRST, hints_by_name, renamed
+from distal.scene.tree.former_names import FORMERLY_FIRST, hints_by_name, renamed, solid_of
 from distal.scene.tree.varying import VaryingNumber, varying_or_same
 from distal.scene.tree.whole_numbers import whole_ends
 from distal.session import SESSION
@@ -411,7 +411,8 @@ class _ArgumentBinding:
                 letters = _LETTERS[: _size(vectors[0])] if len(vectors) == 1 else ""
                 if letters:
                     takes += f"; {', '.join(letters)} are parts of '{vectors[0].name}'"
-                hint = renamed(self.what, name) or did_you_mean(name, {*names, *letters}) or takes
+                near = did_you_mean(name, {*names, *letters})
+                hint = renamed(self.what, name) or near or solid_of(self.what) or takes
                 self._wrong(f"{self.what} has no '{name}'", hint)
         if parts:
             self._take_parts(vectors[0], parts)
@@ -452,7 +453,7 @@ class _ArgumentBinding:
                 self._wrong(*self._by_name_only(slots))
             last = slots[-1]
             message = f"{self.what} takes nothing after '{last.name}'"
-            hint = f"it takes {self._listed()}"
+            hint = solid_of(self.what) or f"it takes {self._listed()}"
             if last.is_vector and last.name in SPLATTED and is_scalar(left[0]):
                 letters = ", ".join(_LETTERS[: _size(last)])
                 hint = f"'{last.name}' is one number for all, or {letters}"

@@ -34,6 +34,7 @@ from distal.lang.resources import Buffer, Texture2D, Texture3D, TextureValue
 from distal.lang.source import folder_of
 from distal.lang.values import VectorValue
 from distal.scene.tree.errors import refuse, refuse_kind
+from distal.scene.tree.former_names import solid_of
 from distal.scene.tree.whole_numbers import whole_ends
 
 Component: TypeAlias = "float | Expression"
@@ -409,7 +410,8 @@ def _vector(value: Any, asked: Asked, type: Vector) -> Number:
     if len(value) != type.size:
         refuse_kind(
             f"'{asked.label}' takes {_WORDS[type.size]} numbers, not {len(value)}",
-            place=asked.place,
+            solid_of(asked.what),
+            asked.place,
         )
     return _gathered(tuple(_component(c, asked) for c in value), type)
 

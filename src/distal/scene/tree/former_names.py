@@ -25,6 +25,11 @@ class Renamed(NamedTuple):
     note: str = ""
 
     @property
+    def now(self) -> str:
+        """The name of now, with the reason."""
+        return f"'{self.name}'{self.note}"
+
+    @property
     def hint(self) -> str:
         """What to write instead."""
         if self.factor == 1:
@@ -39,7 +44,7 @@ _LENGTH: Final = Renamed("length", 1, ", between the centers")
 _ROWS: Final = (
     ("HalfSpace HalfPlane", "offset", Renamed("distance")),
     ("Moon", "offset", Renamed("shift")),
-    ("Gyroid SchwarzP Diamond Neovius Lidinoid SplitP", "offset", Renamed("level")),
+    ("Gyroid SchwarzP SchwarzD Neovius Lidinoid SplitP", "offset", Renamed("level")),
     ("IWP FischerKochS FRD", "offset", Renamed("level")),
     ("ImageField BrickField VolumeField", "scale", Renamed("value_scale")),
     ("Mandelbox", "scale", Renamed("fold_scale")),
@@ -47,6 +52,10 @@ _ROWS: Final = (
     ("TappedHole", "chamfer", Renamed("countersink")),
     ("TappedHole Nut MetricHole", "clearance", Renamed("gap")),
     ("Gear RingGear Rack RackProfile", "clearance", Renamed("tip_gap")),
+    ("Rhombus", "size", Renamed("diagonals")),
+    ("Triangle", "first", Renamed("a")),
+    ("Triangle", "second", Renamed("b")),
+    ("Triangle", "third", Renamed("c")),
     ("Gear", "bore", Renamed("bore_diameter")),
     ("Camera OrbitCamera OrthographicCamera FisheyeCamera", "mirror", Renamed("mirrored")),
     ("PanoramaCamera TurnedCamera", "mirror", Renamed("mirrored")),
@@ -90,8 +99,18 @@ FORMER_OF_OPERATORS: Final[Mapping[str, Mapping[str, Renamed]]] = {
     "engrave": {"k": Renamed("depth")},
 }
 
-# Public names that were another's too, with those of now: ``gradient`` is the derivative alone.
-FORMER_OBJECTS: Final[Mapping[str, str]] = {"gradient": "linear_gradient"}
+# Public names, with those of now; ``gradient`` is the derivative alone.
+FORMER_OBJECTS: Final[Mapping[str, Renamed]] = {
+    "gradient": Renamed(
+        "linear_gradient", note=", a blend of two colors; the derivative is that of distal.lang"
+    ),
+    "Diamond": Renamed("SchwarzD"),
+    "Rhombus2": Renamed("Rhombus"),
+    "Triangle2": Renamed("Triangle"),
+}
+
+# Solids whose name a flat shape has now.
+_SOLIDS: Final[Mapping[str, str]] = {"Rhombus": "RhombusPrism", "Triangle": "TriangleSheet"}
 
 # Former words for a choice.
 FORMER_WORDS: Final[Mapping[str, str]] = {"centre": "center"}
@@ -118,3 +137,8 @@ def hints_by_name(what: str, names: Iterable[str]) -> list[str]:
     """
     changed = {now.name: now.hint for now in FORMER_NAMES.get(what, {}).values()}
     return [changed.get(name, f"{name}=…") for name in names]
+
+
+def solid_of(what: str) -> str | None:
+    """Return where the solid is that had the name of a flat shape; None if none had it."""
+    return f"{what} is flat, its solid is {_SOLIDS[what]}" if what in _SOLIDS else None

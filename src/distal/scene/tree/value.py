@@ -219,6 +219,8 @@ class CalledValue(AuthorObject):
     def _pickled(self) -> Any:
         kinds = [kind for kind in type(self).__mro__ if "__slots__" in vars(kind)]
         names = {name for kind in kinds for name in vars(kind)["__slots__"]} - _NOT_PICKLED
+        # What a subclass computes is no state, though its base has a slot of that name.
+        names = {name for name in names if not isinstance(getattr(type(self), name), property)}
         state = {name: getattr(self, name) for name in sorted(names) if hasattr(self, name)}
         return _called_value, (type(self), library_stamp.library_stamp(), state)
 
@@ -252,8 +254,22 @@ class CalledValue(AuthorObject):
         groups = (set(group) for group in origin.alternatives)
         displaced = {name for group in groups if group & set(changes) for name in group}
         given = {n: v for n, v in origin.given.items() if n not in displaced}
+        if inspect.isroutine(origin.factory):  # a class does so itself
+            written = getattr(origin.factory, "written_as", origin.factory.__name__)
+            self._check_changes(written.removeprefix("."), changes, origin.factory)
         made: Self = origin.factory(**{**given, **changes})
         return made
+
+    def _check_changes(self, what: str, changes: Mapping[str, Any], factory: Any) -> None:
+        """Refuse arguments that a factory does not have; one of a part has a path."""
+        names = _fixed_names(factory)
+        unknown = [] if names is None else [name for name in changes if name not in names]
+        for name in unknown:
+            for part, value in self.arguments.items():
+                if isinstance(value, AuthorObject) and name in value.arguments:
+                    hint = f'replace(**{{"{part}.{name}": …}})'
+                    refuse_kind(f"{what} has no '{name}'", hint, author_place())
+        _check_names(what, unknown, names or ())
 
     if not TYPE_CHECKING:  # a checker reports an unknown name itself
 
@@ -329,16 +345,23 @@ def argument(name: str) -> property:
     return property(read, doc=f"The argument ``{name}``.")
 
 
+def _fixed_names(function: Any) -> list[str] | None:
+    """Return the names of a function's parameters; None if it takes any."""
+    parameters = inspect.signature(function).parameters.values()
+    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters):
+        return None
+    return [parameter.name for parameter in parameters]
+
+
 def _recorded_class(made: Any) -> Any:
     initialise = made.__init__
     parameters = list(inspect.signature(initialise).parameters.values())[1:]
-    takes_any = any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters)
-    names = [parameter.name for parameter in parameters]
+    names = _fixed_names(initialise)
 
     @functools.wraps(initialise)
     def initialise_recorded(self: Any, *args: Any, **kwargs: Any) -> None:
-        if not takes_any:
-            _check_names(made.__name__, kwargs, names)
+        if names is not None:
+            _check_names(made.__name__, kwargs, names[1:])
         initialise(self, *args, **kwargs)
         kind = type(self)
         # A class with an own constructor calls this one with other arguments.

@@ -10,7 +10,7 @@ import distal
 
 SCENE = """
 from distal.lang import Frame, image, vec3
-from neighbour import level
+from neighbor import level
 from shapes_near.deep import half
 @image
 def picture(frame: Frame) -> vec3:
@@ -22,7 +22,7 @@ def _write(folder: Path, factor: float) -> None:
     (folder / "shapes_near").mkdir(parents=True, exist_ok=True)
     (folder / "scene.py").write_text(SCENE)
     (folder / "shapes_near" / "deep.py").write_text(_function("half", 0.5))
-    (folder / "neighbour.py").write_text(_function("level", factor))
+    (folder / "neighbor.py").write_text(_function("level", factor))
 
 
 def _function(name: str, factor: float) -> str:
@@ -46,12 +46,12 @@ def test_each_folder_has_its_own_and_an_edited_one_is_read_anew(tmp_path: Path) 
     assert _pixel(edited) == [0.125, 0.5, 0.0, 1.0]
     assert _pixel(two) == [0.75, 0.5, 0.0, 1.0]
     assert _pixel(one) == [0.25, 0.5, 0.0, 1.0]
-    assert "neighbour" not in sys.modules and "shapes_near.deep" not in sys.modules
+    assert "neighbor" not in sys.modules and "shapes_near.deep" not in sys.modules
     assert sys.path == path
 
 
 def test_packages_from_elsewhere_stay(tmp_path: Path) -> None:
-    (tmp_path / "scene.py").write_text(f"import colorsys{SCENE.split('from neighbour')[0]}"
+    (tmp_path / "scene.py").write_text(f"import colorsys{SCENE.split('from neighbor')[0]}"
                                        "@image\ndef picture(f: Frame) -> vec3:\n"
                                        "    return vec3(0.0)\n")  # fmt: skip
     sys.modules.pop("colorsys", None)
