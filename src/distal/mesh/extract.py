@@ -33,6 +33,7 @@ from distal.mesh.places import cell_points, margin_of, move_beyond, roots_of
 from distal.mesh.problems import MeshProblem
 from distal.mesh.reach import reached
 from distal.mesh.solid import Floats, Integers
+from distal.mesh.tips import tips_beyond
 from distal.mesh.topology import Topology, topology_of
 from distal.mesh.tree_topology import MOST_MARGIN, Tree, levels_of, of_units, topology_of_tree
 from distal.mesh.triangulate import Triangles, triangulated
@@ -306,6 +307,8 @@ def completed(
     accuracy, normals, misses = measured(kernels, made, roots, topology, lattice.step, *limits)
     suspected, surface = looked_at.suspected, looked_at.surface
     lost, nearest = split_lost(lattice, topology, places, suspected, surface)
+    tips, away = tips_beyond(kernels, lattice, topology, roots, places, at_creases, tolerance)
+    suspected, nearest = np.concatenate([suspected, tips]), np.concatenate([nearest, away])
     # Corners between samples are as far away as the mesh is, not as its points are.
     nearest = to_triangles(made.points[made.triangles], suspected, nearest, tolerance)
     lengths = np.sqrt(np.einsum("ij,ij->i", roots.slopes, roots.slopes))
@@ -326,6 +329,6 @@ def completed(
         lattice=lattice,
         topology=topology,
         misses=misses,
-        looked_at=looked_at,
+        looked_at=replace(looked_at, suspected=suspected),
         nearest=nearest,
     )
