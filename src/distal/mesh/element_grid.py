@@ -26,6 +26,8 @@ _ANY: Final = -2.0
 _MOST_LEVELS: Final = 18  # keys have 21 bits for each coordinate
 _PLACES_AT_ONCE: Final = 1 << 13
 _PAIRS_AT_ONCE: Final = 1 << 20
+# Elements are looked for within these shares of the reach, one after the other.
+_SHARES: Final = (1.0 / 64.0, 1.0 / 8.0, 1.0)
 
 
 class ElementGrid:
@@ -95,6 +97,31 @@ class ElementGrid:
         return nearest
 
 
+def to_nearest(
+    corners: Floats, places: Floats, reach: float, normals: Floats | None = None
+) -> Floats:
+    """Return the distance of each place to the nearest element, as ``ElementGrid.distances``.
+
+    Most places are close to one: all are compared with what is close first, the rest with more.
+
+    Args:
+        corners: As for ``ElementGrid``.
+        places: The places.
+        reach: How far from a place elements are found.
+        normals: The normal at each, of length 1; None if elements may face anywhere.
+    """
+    found = np.full(len(places), np.inf)
+    rows = np.arange(len(places))
+    for share in _SHARES:
+        near = share * reach
+        given = None if normals is None else normals[rows]
+        found[rows] = ElementGrid(corners, near).distances(places[rows], given)
+        rows = rows[found[rows] > near]
+        if not len(rows):
+            break
+    return found
+
+
 def to_triangles(corners: Floats, places: Floats, known: Floats, enough: float) -> Floats:
     """Return the distances of places to triangles, where larger ones than are enough are known.
 
@@ -108,8 +135,8 @@ def to_triangles(corners: Floats, places: Floats, known: Floats, enough: float) 
     if not len(rows) or not len(corners):
         return known
     found = known.copy()
-    grid = ElementGrid(corners, float(known[rows].max()))
-    found[rows] = np.minimum(known[rows], grid.distances(places[rows]))
+    nearest = to_nearest(corners, places[rows], float(known[rows].max()))
+    found[rows] = np.minimum(known[rows], nearest)
     return found
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from distal.mesh.cell_tree import HALVES, Divided
 from distal.mesh.dividing import divided
-from distal.mesh.element_grid import ElementGrid
+from distal.mesh.element_grid import to_nearest
 from distal.mesh.extract import Extent, Extracted, completed
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import keys_of
@@ -174,7 +174,7 @@ def distances(rows: LeafRows, corners: Floats, reach: float) -> Floats:
     """
     if not len(corners):
         return np.full(len(rows), np.inf)
-    return ElementGrid(corners, reach).distances(rows.place, rows.outward)
+    return to_nearest(corners, rows.place, reach, rows.outward)
 
 
 def result_of(search: LeafSearch, rows: LeafRows, away: Floats, limit: float) -> LeafCheck:
