@@ -88,8 +88,11 @@ def divided(
         # the part are all there is: they count for nothing, and may have no segments.
         if part is not None and part[1].any():
             topology, certain = part
-            seen = replace(looked_at, suspected=_places_near(looked_at.suspected, tree, changed))
+            near = _near_cells(looked_at.suspected, tree, changed)
+            seen = replace(looked_at, suspected=looked_at.suspected[near])
             made = completed(kernels, extent, lattice, topology, seen, tolerance, _unwatched, angle)
+            # Beyond the part there are no triangles, and what is there counts for nothing.
+            made = made.with_suspected(_near_cells(made.looked_at.suspected, tree, changed))
             wanted = _too_large(made, tree, tolerance, certain, turn)
             wanted = _some(wanted, tree, joined_only=joined_only)
         if not wanted or number == len(_RINGS) - 1 or _too_many(tree, wanted):
@@ -128,15 +131,15 @@ def _with_rings(wanted: Divided, tree: Tree, rings: int) -> Divided:
     return tuple(found)
 
 
-def _places_near(places: Floats, tree: Tree, changed: Divided) -> Floats:
-    """Return the places that are in cells or beside them."""
+def _near_cells(places: Floats, tree: Tree, changed: Divided) -> Bools:
+    """Return which places are in cells or beside them."""
     lattice = tree.values.lattice
     near = np.zeros(len(places), np.bool_)
     for level, keys in enumerate(changed):
         side = lattice.step * (1 << tree.levels >> level)
         cells = keys_of(np.floor((places - lattice.origin) / side).astype(np.int64))
         near |= position(cells, widened(keys)) >= 0
-    return places[near]
+    return near
 
 
 def _too_large(

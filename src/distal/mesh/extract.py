@@ -32,7 +32,7 @@ from distal.mesh.leaf_spacing import LeafSpacing, NeededCells
 from distal.mesh.places import cell_points, margin_of, move_beyond, roots_of
 from distal.mesh.problems import MeshProblem
 from distal.mesh.reach import reached
-from distal.mesh.solid import Floats, Integers
+from distal.mesh.solid import Bools, Floats, Integers
 from distal.mesh.tips import tips_beyond
 from distal.mesh.topology import Topology, topology_of
 from distal.mesh.tree_topology import MOST_MARGIN, Tree, levels_of, of_units, topology_of_tree
@@ -153,6 +153,11 @@ class Extracted:
     def error(self) -> float:
         """The largest distance, measured both ways."""
         return max(self.accuracy.largest, self.accuracy.from_surface)
+
+    def with_suspected(self, rows: Bools) -> Extracted:
+        """Return the mesh with some of the places that its samples do not see."""
+        looked_at = replace(self.looked_at, suspected=self.looked_at.suspected[rows])
+        return replace(self, looked_at=looked_at, nearest=self.nearest[rows])
 
     def excess(self, tolerance: float) -> float:
         """Return the largest distance, or turn as a distance (``Misses.excess``)."""

@@ -138,7 +138,7 @@ def isosceles_triangle(p: vec2, width: float = 0.8, height: float = 1.0) -> floa
 
 
 @func
-def triangle_bounds(a: vec2, b: vec2, c: vec2) -> Bounds2:
+def corners_bounds(a: vec2, b: vec2, c: vec2) -> Bounds2:
     """Return the rectangle around the corners."""
     return Bounds2(min(a, b, c), max(a, b, c))
 
@@ -146,7 +146,7 @@ def triangle_bounds(a: vec2, b: vec2, c: vec2) -> Bounds2:
 @primitive(
     "Triangle",
     EXACT,
-    bounds=triangle_bounds,
+    bounds=corners_bounds,
     requires=_not_in_line,
     width=corners_width,
 )
