@@ -76,6 +76,7 @@ def pytest_unconfigure() -> None:
 
 
 # A change is judged by the same random examples today and tomorrow; ``make sweep`` draws others.
-settings.register_profile("same", derandomize=True)
-settings.register_profile("others", derandomize=False)
+# None has a time limit: machines are shared.
+settings.register_profile("same", derandomize=True, deadline=None)
+settings.register_profile("others", derandomize=False, deadline=None)
 settings.load_profile("others" if os.environ.get("DISTAL_RANDOM_PROGRAMS") else "same")

@@ -148,7 +148,7 @@ def test_colors_that_change_with_time_have_columns_too():
 # Pictures
 
 
-@settings(max_examples=2, deadline=None)
+@settings(max_examples=2)
 @given(st.integers(0, 10**6), st.sampled_from(TIMES))
 def test_random_parts_that_move_have_the_same_picture(seed, when):
     a, b = both(many(seed) | Plane(y=-1.9), *when)
@@ -241,7 +241,7 @@ def at_times(tree, seconds, params):
     return leaves[order, 0, :3], leaves[order, 1, :3]
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6)
 @given(st.integers(0, 10**6))
 def test_boxes_hold_their_parts_at_all_times(seed):
     rng = np.random.default_rng(seed)

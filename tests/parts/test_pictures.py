@@ -74,7 +74,7 @@ def far_off(a, b, limit=0.05):
     return float((np.abs(a - b).max(axis=-1) > limit).mean())
 
 
-@settings(max_examples=3, deadline=None)
+@settings(max_examples=3)
 @given(st.integers(0, 10**6))
 def test_random_parts_have_the_same_picture(seed):
     a, b = both(many(seed, 20) | Plane(y=-1.6))

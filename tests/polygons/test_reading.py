@@ -407,7 +407,7 @@ def survives(suffix: str, data: bytes) -> None:
         assert mesh.triangles.max() < len(mesh.points)
 
 
-@settings(max_examples=300, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=300, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
 def test_damaged_bytes_never_end_in_another_exception(whole, data):
     suffix, content = whole[data.draw(st.integers(0, len(whole) - 1))]
@@ -424,7 +424,7 @@ VALUES = st.sampled_from(
 )
 
 
-@settings(max_examples=200, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=200, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
 def test_damaged_json_never_ends_in_another_exception(data):
     content = json.loads(json.dumps(TRIANGLE_GLB))
@@ -446,7 +446,7 @@ def test_damaged_json_never_ends_in_another_exception(data):
 WORDS = st.sampled_from(["", "1e999", "nan", "-1", "99999999999999999999", "x", "0 1", "2", "é"])
 
 
-@settings(max_examples=200, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=200, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
 def test_damaged_xml_never_ends_in_another_exception(data):
     model = MODEL.replace("</resources>", f'<object id="1">{TETRAHEDRON}</object></resources>')

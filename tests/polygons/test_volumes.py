@@ -182,7 +182,7 @@ def test_wrong_files_are_refused_with_their_reason(tmp_path, name, data, message
     assert f"{name}' is no volume that can be read: {message}" in caught.value.message
 
 
-@settings(max_examples=300, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=300, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
 def test_damaged_bytes_never_end_in_another_exception(data):
     name, content = FILES[data.draw(st.integers(0, len(FILES) - 1))]

@@ -57,7 +57,6 @@ def test_all_targets_give_the_reference_bits(part: int) -> None:
     @settings(
         max_examples=EXAMPLES,
         database=None,
-        deadline=None,
         suppress_health_check=list(HealthCheck),
     )
     @given(sources(functions=FUNCTIONS))

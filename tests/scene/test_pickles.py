@@ -396,7 +396,7 @@ def grown(shapes):
     )
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.recursive(LEAVES, grown, max_leaves=6))
 def test_random_trees_come_back_from_text_pickle_and_replace(shape):
     assert travelled(shape) == shape == shape.replace()

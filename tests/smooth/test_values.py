@@ -91,7 +91,7 @@ def test_every_local_blend(blend):
     agree(union(balls(rng), smooth=0.08, blend=blend, **more))
 
 
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=5)
 @example(0, 0.0, 1e-3, 1.0)
 @example(1, 3.0, 0.05, 0.5)
 @example(2, 1e-6, 1e-4, 1e-3)
@@ -108,7 +108,7 @@ def test_random_balls_and_sizes(seed, smooth, small, large):
     )
 
 
-@settings(max_examples=2, deadline=None)
+@settings(max_examples=2)
 @given(st.integers(0, 10**6), st.sampled_from(LOCAL[:4]))
 def test_members_of_many_kinds(seed, blend):
     rng = np.random.default_rng(seed)
@@ -182,7 +182,7 @@ def test_two_balls_among_others_have_a_closed_form():
     assert whole(points) == pytest.approx([0.2 - 0.15, 1.0 - 0.15, 0.0, 0.8], abs=1e-6)
 
 
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=4)
 @given(st.integers(0, 10**6))
 def test_bounds_outside_of_the_grid_are_bounds(seed):
     """A step by the value never passes a surface, and the value changes by the slope at most."""

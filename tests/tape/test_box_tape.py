@@ -68,7 +68,7 @@ def _contains(low, high, values):
         return ((low <= values) & (values <= high))[known].all()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(case=cases())
 def test_random_expressions_contain_a_hundred_thousand_points(case: Case):
     """64 boxes with 1,600 points each: the corners, and points between."""
@@ -200,7 +200,7 @@ def test_operands_that_do_not_matter_are_dropped_where_they_do_not():
     assert whole.values(mixed, mixed + 0.1)[2] is whole
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(case=cases())
 def test_values_differ_from_the_middle_by_at_most_the_gradient_times_the_way(case: Case):
     """Random expressions in small boxes: only where value and derivatives are known."""

@@ -82,7 +82,7 @@ def expected(
 
 @LEVELS
 def test_random_tapes_give_the_same_bits_as_all_samples(level):
-    @settings(max_examples=30, deadline=None)
+    @settings(max_examples=30)
     @given(
         tape=tapes(),
         size=st.sampled_from([(21, 7, 70), (66, 5, 17), (5, 70, 9), (3, 2, 140), (1, 1, 1)]),

@@ -16,7 +16,7 @@ _EVERYWHERE = (Trend.RISING, Trend.FALLING, Trend.WAVE, Trend.EVEN)
 _ELEMENTARY = [r.name for r in OPERATIONS if r.trend in _EVERYWHERE]
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(case=cases())
 def test_values_are_inside(case: Case):
     program = TapeProgram(case.tape)

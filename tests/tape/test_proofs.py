@@ -38,7 +38,7 @@ def smooth_tapes(draw: st.DrawFn) -> Tape:
     return builder.tape(values[-1])
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(tape=smooth_tapes(), seed=st.integers(0, 2**32 - 1))
 def test_no_two_points_differ_by_more_than_the_slope(tape, seed):
     try:
@@ -229,7 +229,7 @@ def test_a_declared_slope_that_is_refuted_between_the_points():
     assert kept.slope == pytest.approx(6.1)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(tape=smooth_tapes(), share=st.floats(0.05, 2.0), seed=st.integers(0, 2**32 - 1))
 def test_what_is_refuted_is_steeper(tape, share, seed):
     """At the place that is named, and never above the slope that is proved."""

@@ -14,7 +14,7 @@ from tests.tape.random_tapes import LANES, Case, bits, cases
 
 @pytest.mark.parametrize("level", host_levels(), ids=lambda level: level.name)
 def test_pruned_tapes_give_the_same_bits(level):
-    @settings(max_examples=60, deadline=None)
+    @settings(max_examples=60)
     @given(case=cases())
     def check(case: Case) -> None:
         program = TapeProgram(case.tape, level)

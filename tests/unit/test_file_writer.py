@@ -405,7 +405,7 @@ def test_links_in_a_circle_are_one_line(tmp_path):
         check_destination(tmp_path / "a")
 
 
-@settings(suppress_health_check=[HealthCheck.too_slow], deadline=None)
+@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(st.sampled_from(["a", "b", "up", "top", "away", "..", "."]), max_size=8))
 def test_links_are_followed_as_the_system_does(parts):
     with tempfile.TemporaryDirectory() as folder:
