@@ -187,6 +187,22 @@ def crease_points(
     return found
 
 
+def off_surface(
+    kernels: FieldKernels, lattice: Lattice, places: Floats, rows: Integers
+) -> Integers:
+    """Return which points are farther from the surface than rounding takes them.
+
+    Args:
+        kernels: The shape.
+        lattice: The lattice.
+        places: The places of all points.
+        rows: The points to look at.
+    """
+    off = kernels.call(arithmetic.distance_to_field, places[rows], types=[("p", VEC3)])
+    found: Integers = rows[off > margin_of(lattice) * lattice.step]
+    return found
+
+
 def move_beyond(
     kernels: FieldKernels,
     lattice: Lattice,

@@ -21,7 +21,7 @@ from distal.mesh import arithmetic, face_arithmetic
 from distal.mesh.cell_tree import AROUND
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.lattice import Lattice, keys_of, position
-from distal.mesh.places import Roots, crease_points, margin_of, wide_face_points
+from distal.mesh.places import Roots, crease_points, margin_of, off_surface, wide_face_points
 from distal.mesh.solid import Bools, Floats, Integers
 from distal.mesh.topology import Topology
 from distal.polygons.whole_numbers import sorted_keys
@@ -51,8 +51,8 @@ def reached(
     undivided &= points.size[creased] == unit
     undivided[undivided] = _beside_equal(topology, points.cell[creased[undivided]] // unit)
     free[creased] = ~points.shared[creased] & undivided
-    off = kernels.call(arithmetic.distance_to_field, places[creased], types=[("p", VEC3)])
-    rows = creased[(off > margin_of(lattice) * lattice.step) & free[creased]]
+    rows = off_surface(kernels, lattice, places, creased)
+    rows = rows[free[rows]]
     given = _Given(topology)
     if len(rows):
         given.add(rows[:, None], _ways_of_points(kernels, lattice, topology, roots, rows))

@@ -15,7 +15,7 @@ from distal.ir.types import VEC3
 from distal.mesh import arithmetic, triangle_arithmetic
 from distal.mesh.kernels import FieldKernels, rows_of
 from distal.mesh.lattice import Lattice
-from distal.mesh.places import Roots, crease_points, margin_of
+from distal.mesh.places import Roots, crease_points, off_surface
 from distal.mesh.solid import Floats, Integers
 from distal.mesh.topology import Topology
 
@@ -50,9 +50,7 @@ def tips_beyond(
     Returns:
         The places, of shape (n, 3), and how far they are from the points of their cells.
     """
-    types = [("p", VEC3)]
-    off = kernels.call(arithmetic.distance_to_field, places[creased], types=types)
-    rows = creased[off > margin_of(lattice) * lattice.step]
+    rows = off_surface(kernels, lattice, places, creased)
     if not len(rows):
         return np.empty((0, 3)), np.empty(0)
     cells, size = topology.points.cell[rows], topology.points.size[rows, None]
@@ -60,7 +58,7 @@ def tips_beyond(
     high = lattice.places(cells + (_CELLS + 1) * size)
     found = crease_points(kernels, topology, roots, low, high, rows)
     away = rows_of(triangle_arithmetic.between, found, places[rows])
-    off = kernels.call(arithmetic.distance_to_field, found, types=types)
+    off = kernels.call(arithmetic.distance_to_field, found, types=[("p", VEC3)])
     is_tip = (away > tolerance) & (off < _ON_SURFACE * away)
     # Inside of the tip: its end may be on the side of a cell that it is not in.
     inside = found + _INWARDS * (places[rows] - found)

@@ -71,7 +71,7 @@ class TextWriter:
                 by name.
             arguments: By name.
         """
-        name = function if isinstance(function, str) else _name_of(function)
+        name = function if isinstance(function, str) else name_of(function)
         is_method = name.startswith(".")
         by_name = hasattr(function, "by_name" if is_method else "by_position") is is_method
         values = iter(arguments.items())
@@ -113,7 +113,7 @@ def shortened(values: Sequence[Any], text: Callable[[Any], str], what: str) -> I
     yield from map(text, values[-half:])
 
 
-def _name_of(function: Any) -> str:
+def name_of(function: Any) -> str:
     """Return the name that authors call a class or function by."""
     written_as: str | None = getattr(function, "written_as", None)
     if written_as is not None:

@@ -255,14 +255,13 @@ class CalledValue(AuthorObject):
         displaced = {name for group in groups if group & set(changes) for name in group}
         given = {n: v for n, v in origin.given.items() if n not in displaced}
         if inspect.isroutine(origin.factory):  # a class does so itself
-            written = getattr(origin.factory, "written_as", origin.factory.__name__)
-            self._check_changes(written.removeprefix("."), changes, origin.factory)
+            self._check_changes(origin.factory, changes)
         made: Self = origin.factory(**{**given, **changes})
         return made
 
-    def _check_changes(self, what: str, changes: Mapping[str, Any], factory: Any) -> None:
+    def _check_changes(self, factory: Any, changes: Mapping[str, Any]) -> None:
         """Refuse arguments that a factory does not have; one of a part has a path."""
-        names = _fixed_names(factory)
+        what, names = texts.name_of(factory).removeprefix("."), _fixed_names(factory)
         unknown = [] if names is None else [name for name in changes if name not in names]
         for name in unknown:
             for part, value in self.arguments.items():
