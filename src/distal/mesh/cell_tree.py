@@ -10,6 +10,7 @@ of lower levels are joined from these, cells of higher levels are halves of thes
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final
 
@@ -19,7 +20,7 @@ from distal.ir.types import VEC3
 from distal.mesh.arithmetic import distance_value
 from distal.mesh.bricks import check_numbers
 from distal.mesh.kernels import FieldKernels
-from distal.mesh.lattice import Lattice, cells_of_keys, keys_of, position
+from distal.mesh.lattice import SHIFT, Lattice, cells_of_keys, keys_of, position
 from distal.mesh.solid import Bools, Floats, Integers
 from distal.mesh.tables import CORNERS
 from distal.polygons.whole_numbers import numbers_in, sorted_keys
@@ -58,13 +59,21 @@ def halves_of(keys: Integers) -> Integers:
 
 def ancestors(keys: Integers, levels: int) -> Integers:
     """Return the cell that contains each cell, some levels above, by keys."""
-    return keys if levels == 0 else keys_of(cells_of_keys(keys) >> levels)
+    if levels == 0:
+        return keys
+    # Each coordinate is shifted in the key, from a multiple of so many units below 0.
+    below = max(1, SHIFT >> levels)
+    before, after = (below << levels) - SHIFT, SHIFT - below
+    ones = (1 << 42) | (1 << 21) | 1
+    kept = ones * ((1 << 21 - levels) - 1)
+    found: Integers = ((keys + before * ones) >> levels & kept) + after * ones
+    return found
 
 
 Divided = tuple[Integers, ...]
 
 
-def balanced(divided: list[Integers]) -> Divided:
+def balanced(divided: Iterable[Integers]) -> Divided:
     """Return the cells to divide so that cells that share a corner differ by one level at most.
 
     Args:
@@ -82,6 +91,12 @@ def balanced(divided: list[Integers]) -> Divided:
             parents = np.stack([parents, parents + side], axis=1).reshape(-1)
         found[level - 1] = sorted_keys(np.concatenate([found[level - 1], parents]))
     return tuple(found)
+
+
+def together(divided: Divided, more: Divided) -> Divided:
+    """Return the cells of either, by level; both are sorted."""
+    both = zip(divided, more, strict=True)
+    return tuple(a if not len(b) else sorted_keys(np.concatenate([a, b])) for a, b in both)
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,23 +178,22 @@ class Leaves:
             changed: The keys of cells, by level.
             rings: How many cells away.
         """
+        around = ringed(changed, rings)
         found = np.zeros(len(self.level), np.bool_)
-        for level, keys in enumerate(changed):
-            if not len(keys) or not len(found):
-                continue
-            around = widened(keys, rings)
-            for number in range(int(self.level[0]), int(self.level[-1]) + 1):
-                some = self.of_level(number)
-                if number >= level:
-                    own, those = ancestors(self.key[some], number - level), around
-                else:
-                    own = self.key[some]
-                    those = sorted_keys(ancestors(around, level - number))
-                found[some] |= position(own, those) >= 0
+        for level in numbers_in(self.level):
+            some = self.of_level(int(level))
+            found[some] = _are_within(self.key[some], int(level), around)
         return found
 
 
-def leaves_of(cells: Integers, divided: Divided, levels: int, base: int) -> Leaves:
+def ringed(changed: Divided, rings: int) -> Divided:
+    """Return cells and those that are at most some cells of their level away, by level."""
+    return tuple(widened(keys, rings) if len(keys) else keys for keys in changed)
+
+
+def leaves_of(
+    cells: Integers, divided: Divided, levels: int, base: int, around: Divided | None = None
+) -> Leaves:
     """Return the cells that are not divided.
 
     Below the base level all halves of a cell are there; above it those that contain a cell.
@@ -189,15 +203,17 @@ def leaves_of(cells: Integers, divided: Divided, levels: int, base: int) -> Leav
         divided: The keys of the cells that are divided at each level; balanced.
         levels: How often cells may be halved.
         base: The level whose corners are sampled.
+        around: The keys of cells, by level: only what is in one, or has one in it, is returned.
     """
     unit = 1 << levels
-    if base < len(divided):
-        cells = sorted_keys(np.concatenate([cells, widened(divided[base])]))
+    cells = _of_base(cells, divided[base] if base < len(divided) else cells[:0], base, around)
     none = np.empty(0, np.int64)
     of_level = [sorted_keys(ancestors(cells, base - level)) for level in range(base)]
     candidates = [*of_level, cells][0]
     keys, numbers = [], []
     for level in range(levels + 1):
+        if around is not None:
+            candidates = candidates[_are_within(candidates, level, around)]
         those = divided[level] if level < len(divided) else none
         is_parted = position(candidates, those) >= 0
         whole, parted = candidates[~is_parted], candidates[is_parted]
@@ -213,6 +229,50 @@ def leaves_of(cells: Integers, divided: Divided, levels: int, base: int) -> Leav
     key, level_of = np.concatenate(keys), np.concatenate(numbers)
     corner = cells_of_keys(key) * (unit >> level_of)[:, None]
     return Leaves(corner, level_of, key, unit, base, divided)
+
+
+def _of_base(
+    cells: Integers, divided: Integers, base: int, around: Divided | None = None
+) -> Integers:
+    """Return the cells of the base level, with those beside divided ones, sorted.
+
+    Args:
+        cells: The keys of those that the surface may pass through, sorted.
+        divided: The keys of those that are divided.
+        base: The level.
+        around: Only those in a cell of level 0 with one of these are needed, or around one.
+    """
+    if around is None:
+        return sorted_keys(np.concatenate([cells, widened(divided)])) if len(divided) else cells
+    largest = [*_lowest(around), cells[:0]]
+    region = sorted_keys(np.concatenate(largest))
+    own = cells[position(ancestors(cells, base), region) >= 0]
+    beside = divided[position(ancestors(divided, base), widened(region)) >= 0]
+    return sorted_keys(np.concatenate([own, widened(beside)]))
+
+
+def _lowest(around: Divided) -> list[Integers]:
+    """Return the keys of the cells of level 0 that contain cells of each level."""
+    return [ancestors(keys, level) for level, keys in enumerate(around)]
+
+
+def _are_within(keys: Integers, level: int, around: Divided) -> Bools:
+    """Return which cells of a level are in cells, or have one in them.
+
+    Args:
+        keys: The keys of the cells.
+        level: Their level.
+        around: The keys of the others, by level, sorted.
+    """
+    found = np.zeros(len(keys), np.bool_)
+    for number, those in enumerate(around):
+        if not len(those):
+            continue
+        if number <= level:
+            found |= position(ancestors(keys, level - number), those) >= 0
+        else:
+            found |= position(keys, sorted_keys(ancestors(those, number - level))) >= 0
+    return found
 
 
 class CornerValues:

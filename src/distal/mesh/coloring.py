@@ -13,7 +13,7 @@ import numpy as np
 
 from distal.frontend import Assembly
 from distal.ir.nodes import Expr, Param, Read, Return
-from distal.ir.types import VEC3, VEC4, Type
+from distal.ir.types import VEC3
 from distal.lang.composed import Composed
 from distal.lang.functions import Func
 from distal.lang.runtime_access import executor
@@ -63,10 +63,9 @@ class SurfaceAt(Composed):
 
     signature = (("p", VEC3),)
 
-    def __init__(self, node: Node, function: Func, result: Type) -> None:
+    def __init__(self, node: Node, function: Func) -> None:
         self._node = node
         self._function = function
-        self.result = result
         self.name = f"{function.name} of {node.name}"
 
     def compose(self, assembly: Assembly) -> str:
@@ -76,7 +75,7 @@ class SurfaceAt(Composed):
         found = assembly.call(self._function, {"surface": surface})
         body.statements.append(Return(found))
         params, name = (Param("p", VEC3),), self._function.name
-        return assembly.define(f"{name}_at", params, self.result, body.statements, node.place)
+        return assembly.define(f"{name}_at", params, found.type, body.statements, node.place)
 
     def functions(self) -> Iterable[Func]:
         """Yield the scene functions that the shape calls."""
@@ -112,13 +111,15 @@ class Painted:
 
     def colors(self, places: Floats) -> Floats:
         """Return the color at each place, of the palette if there is one."""
-        found: Floats = self._values(surface_arithmetic.shown_color, VEC3, places)
-        return found if self.palette is None else nearest(self.palette, found)
+        found: Floats = self._values(surface_arithmetic.shown_color, places)
+        return self._of_palette(found)
 
     def appearance(self, places: Floats) -> Floats:
         """Return the numbers that differ where materials do: of the color and of the finish."""
-        colors = self.colors(places)
-        return np.concatenate([colors, self._finishes(places)], axis=1) if self._shines else colors
+        if not self._shines:
+            return self.colors(places)
+        colors, *finishes = self._values(surface_arithmetic.appearance, places)
+        return np.concatenate([self._of_palette(colors), *finishes], axis=1)
 
     def labels(self, points: Floats, triangles: Integers) -> Integers:
         """Return a number for each triangle: the same for the same appearance, -1 where it varies.
@@ -147,22 +148,22 @@ class Painted:
         """Return how the mesh reflects light: as a whole, or each triangle."""
         if not self._shines:
             return _MATTE
-        rows = np.rint(self._finishes(middles_of(points, triangles)) / _STEP) * _STEP
+        middles = middles_of(points, triangles)
+        _, *finishes = self._values(surface_arithmetic.appearance, middles)
+        rows = np.rint(np.concatenate(finishes, axis=1) / _STEP) * _STEP
         found, which = np.unique(rows, axis=0, return_inverse=True)
         if len(found) > _MOST_FINISHES:
             return _finish(rows.mean(axis=0))
         kinds = tuple(_finish(row) for row in found)
         return kinds[0] if len(kinds) == 1 else Finishes(kinds, which.reshape(-1).astype(np.int64))
 
-    def _finishes(self, places: Floats) -> Floats:
-        numbers = self._values(surface_arithmetic.gltf_numbers, VEC4, places)
-        lights = self._values(surface_arithmetic.emitted_light, VEC3, places)
-        return np.concatenate([numbers, lights], axis=1)
+    def _of_palette(self, colors: Floats) -> Floats:
+        return colors if self.palette is None else nearest(self.palette, colors)
 
-    def _values(self, function: Func, result: Type, places: Floats) -> Any:
+    def _values(self, function: Func, places: Floats) -> Any:
         made = self._functions.get(function)
         if made is None:
-            made = self._functions[function] = SurfaceAt(self._node, function, result)
+            made = self._functions[function] = SurfaceAt(self._node, function)
         return executor().call(made, (places,), {}, params=self._params, time=self._time)
 
 

@@ -13,7 +13,7 @@ from typing import Final, Literal, TypeAlias
 
 import numpy as np
 
-from distal.mesh.cell_tree import Divided, leaves_of, widened
+from distal.mesh.cell_tree import Divided, leaves_of, together, widened
 from distal.mesh.extract import Extent, Extracted, completed
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import keys_of, position
@@ -55,6 +55,7 @@ def divided(
     angle: float = math.inf,
     *,
     joined_only: bool = False,
+    also: Divided = (),
 ) -> Extracted:
     """Return a mesh with smaller cells where one is not within the tolerance.
 
@@ -66,15 +67,15 @@ def divided(
         watch: Called with the share of the work that is done.
         angle: How much the surface may turn within a triangle, in radians.
         joined_only: Whether no cells are divided but those that were joined.
+        also: Other cells to divide, by level.
 
     Raises:
         MeshProblem: A value is no number.
     """
-    tree = found.tree
-    if tree is None:
-        tree = Tree.of_equal_cells(kernels, found.lattice, keys_of(found.looked_at.surface))
+    tree = tree_of(kernels, found)
     lattice, looked_at = tree.values.lattice, found.looked_at
-    wanted = _some(_too_large(found, tree, tolerance), tree, joined_only=joined_only)
+    wanted = _too_large(found, tree, tolerance)
+    wanted = _some(together(wanted, also) if also else wanted, tree, joined_only=joined_only)
     for number, rings in enumerate(_RINGS):
         turn = _TURNS[min(number, len(_TURNS) - 1)]
         if not wanted or _too_many(tree, wanted):
@@ -104,6 +105,13 @@ def divided(
             wanted = _some(wanted, tree, joined_only=joined_only)
         watch((number + 1) / len(_RINGS))
     return found
+
+
+def tree_of(kernels: FieldKernels, found: Extracted) -> Tree:
+    """Return the cells of a mesh."""
+    if found.tree is not None:
+        return found.tree
+    return Tree.of_equal_cells(kernels, found.lattice, keys_of(found.looked_at.surface))
 
 
 def _too_many(tree: Tree, wanted: Divided) -> bool:

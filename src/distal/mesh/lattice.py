@@ -18,7 +18,7 @@ DIGIT_OF_FILES: Final = 2.0**-23
 DIGIT: Final = 2.0**-52
 BRICK: Final = 8  # cells along each side of a brick
 # A key has 21 bits for each coordinate, which may be negative for cells beside the lattice.
-_SHIFT: Final = 8
+SHIFT: Final = 8
 _ONES: Final = (1 << 21) - 1
 # The lattice begins and ends this many cells beyond the box. Faces of shapes are often at round
 # numbers; these shares keep them away from planes of the lattice.
@@ -68,14 +68,14 @@ class Lattice:
 
 def keys_of(bricks: Integers) -> Integers:
     """Return a number for each brick, in the order of x, then y, then z."""
-    shifted = bricks + _SHIFT
+    shifted = bricks + SHIFT
     keys: Integers = (shifted[:, 0] << 42) | (shifted[:, 1] << 21) | shifted[:, 2]
     return keys
 
 
 def cells_of_keys(keys: Integers) -> Integers:
     """Return the places of bricks or cells, of shape (n, 3), from their keys."""
-    return np.stack([keys >> 42, keys >> 21 & _ONES, keys & _ONES], axis=1) - _SHIFT
+    return np.stack([keys >> 42, keys >> 21 & _ONES, keys & _ONES], axis=1) - SHIFT
 
 
 def position(keys: Integers, sorted_keys: Integers) -> Integers:

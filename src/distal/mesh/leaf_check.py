@@ -15,14 +15,14 @@ from typing import Any, Final, NoReturn
 import numpy as np
 
 from distal.mesh.cell_tree import HALVES, Divided
-from distal.mesh.dividing import divided
+from distal.mesh.dividing import divided, tree_of
 from distal.mesh.element_grid import to_nearest
-from distal.mesh.extract import Extent, Extracted, completed
+from distal.mesh.extract import Extent, Extracted
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import keys_of
 from distal.mesh.leaf_places import LeafRows, LeafSearch, joined
 from distal.mesh.solid import Floats
-from distal.mesh.tree_topology import Tree, topology_of_tree
+from distal.mesh.tree_topology import Tree
 from distal.polygons.whole_numbers import sorted_keys
 from distal.scene.lowering.placed_leaves import PlacedLeaf
 from distal.scene.tree.errors import refuse
@@ -146,10 +146,19 @@ def with_all_leaves(
         some = rows.some(far)
         # What is still far has its cells halved once more in each round.
         some = replace(some, side=some.side * 0.5**number)
-        finer = _divided_at(kernels, extent, found, some, tolerance, most)
-        if finer is None:
+        tree = tree_of(kernels, found)
+        cells = _cells_at(tree, some)
+        halved = _halved(tree.with_divided(cells))
+        if halved == _halved(tree) or halved > most:
             break
-        found = divided(kernels, extent, finer, tolerance, lambda share: watch(1.0))
+        found = divided(
+            kernels,
+            extent,
+            replace(found, tree=tree),
+            tolerance,
+            lambda share: watch(1.0),
+            also=cells,
+        )
         rows = joined([rows, search.finer(rows.some(far))], rows.place.shape[1])
         away = distances(rows, found.made.points[found.made.triangles], MISSING * tolerance)
     limit = _limit(found, tolerance)
@@ -205,38 +214,6 @@ def result_of(search: LeafSearch, rows: LeafRows, away: Floats, limit: float) ->
         unchecked=search.unchecked,
         coarse=[search.leaves[number] for number in sorted(search.coarse)],
     )
-
-
-def _divided_at(
-    kernels: FieldKernels,
-    extent: Extent,
-    found: Extracted,
-    rows: LeafRows,
-    tolerance: float,
-    most: int,
-) -> Extracted | None:
-    """Return a mesh with cells as small as boxes at their places; None if none can be smaller.
-
-    Args:
-        kernels: The shape.
-        extent: Its box and its slope.
-        found: The mesh.
-        rows: The places.
-        tolerance: How far lines between points may be from the surface, in scene units.
-        most: How many cells may be divided, those that are divided already included.
-    """
-    tree = found.tree
-    if tree is None:
-        tree = Tree.of_equal_cells(kernels, found.lattice, keys_of(found.looked_at.surface))
-    more = _cells_at(tree, rows)
-    finer = tree.with_divided(more)
-    halved = _halved(finer)
-    if halved == _halved(tree) or halved > most:
-        return None
-    topology, finer = topology_of_tree(finer)
-    lattice, seen = finer.values.lattice, found.looked_at
-    made = completed(kernels, extent, lattice, topology, seen, tolerance, lambda share: None)
-    return replace(made, tree=finer)
 
 
 def _halved(tree: Tree | None) -> int:

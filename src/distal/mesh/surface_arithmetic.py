@@ -34,6 +34,6 @@ def gltf_numbers(surface: Surface) -> vec4:
 
 
 @func
-def emitted_light(surface: Surface) -> vec3:
-    """Return the light that a surface emits, each part from 0 to 1."""
-    return clamp(surface.emission, 0.0, 1.0)
+def appearance(surface: Surface) -> tuple[vec3, vec4, vec3]:
+    """Return the color, ``gltf_numbers``, and the emitted light, each part from 0 to 1."""
+    return shown_color(surface), gltf_numbers(surface), clamp(surface.emission, 0.0, 1.0)

@@ -21,6 +21,8 @@ from distal.mesh.cell_tree import (
     balanced,
     differences,
     leaves_of,
+    ringed,
+    together,
 )
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import BRICK, Lattice, position
@@ -105,8 +107,7 @@ class Tree:
         Args:
             more: The keys of the cells, by level.
         """
-        both = zip(self.divided, more, strict=True)
-        return replace(self, divided=balanced([np.concatenate(pair) for pair in both]))
+        return replace(self, divided=together(self.divided, balanced(more)))
 
     def with_halves(self, needed: Divided) -> Tree:
         """Return the tree in which some cells are divided that are not joined, and what they need.
@@ -191,7 +192,7 @@ def _with_rows(wrong: Divided, tree: Tree, reach: int) -> Divided:
 def changes(tree: Tree, before: Divided) -> Divided:
     """Return the keys of cells that are divided and were not before, by level."""
     both = zip(tree.divided, before, strict=True)
-    return tuple(keys[position(keys, old) < 0] for keys, old in both)
+    return tuple(keys[:0] if keys is old else keys[position(keys, old) < 0] for keys, old in both)
 
 
 def topology_of_changes(tree: Tree, changed: Divided, most: float) -> tuple[Topology, Bools] | None:
@@ -213,6 +214,6 @@ def topology_of_changes(tree: Tree, changed: Divided, most: float) -> tuple[Topo
 
 def _near(tree: Tree, changed: Divided, rings: int) -> tuple[Leaves, Bools]:
     """Return the leaves near cells, and which are as near as rings of cells."""
-    leaves = leaves_of(tree.surface, tree.divided, tree.levels, tree.base)
-    leaves = leaves.some(leaves.near(changed, rings + _NEEDED))
+    around = ringed(changed, rings + _NEEDED)
+    leaves = leaves_of(tree.surface, tree.divided, tree.levels, tree.base, around)
     return leaves, leaves.near(changed, rings)
