@@ -67,18 +67,21 @@ def divided(
         watch: Called with the share of the work that is done.
         angle: How much the surface may turn within a triangle, in radians.
         joined_only: Whether no cells are divided but those that were joined.
-        also: Other cells to divide, by level.
+        also: Other cells to divide, by level, however many there are.
 
     Raises:
         MeshProblem: A value is no number.
     """
     tree = tree_of(kernels, found)
     lattice, looked_at = tree.values.lattice, found.looked_at
-    wanted = _too_large(found, tree, tolerance)
-    wanted = _some(together(wanted, also) if also else wanted, tree, joined_only=joined_only)
+    wanted = _some(_too_large(found, tree, tolerance), tree, joined_only=joined_only)
+    if _too_many(tree, wanted):
+        wanted = ()
+    if also:
+        wanted = together(wanted, also) if wanted else also
     for number, rings in enumerate(_RINGS):
         turn = _TURNS[min(number, len(_TURNS) - 1)]
-        if not wanted or _too_many(tree, wanted):
+        if not wanted:
             break
         before = tree.divided
         tree = settled(tree.with_divided(_with_rings(wanted, tree, rings)), before)
@@ -103,6 +106,8 @@ def divided(
             found = replace(made, tree=tree)
             wanted = _too_large(found, tree, tolerance, turn=turn)
             wanted = _some(wanted, tree, joined_only=joined_only)
+            if _too_many(tree, wanted):
+                break
         watch((number + 1) / len(_RINGS))
     return found
 
