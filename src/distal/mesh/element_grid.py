@@ -31,7 +31,7 @@ _PAIRS_AT_ONCE: Final = 1 << 20
 _SHARES: Final = (1.0 / 32.0, 0.25, 1.0)
 
 
-class Elements(NamedTuple):
+class BoxedElements(NamedTuple):
     """Triangles or lines with their boxes.
 
     Attributes:
@@ -45,10 +45,10 @@ class Elements(NamedTuple):
     high: Floats
 
     @staticmethod
-    def of(corners: Floats) -> Elements:
+    def of(corners: Floats) -> BoxedElements:
         """Return elements; their corners are as above."""
         columns = [corners[:, i] for i in range(corners.shape[1])]
-        return Elements(corners, reduce(np.minimum, columns), reduce(np.maximum, columns))
+        return BoxedElements(corners, reduce(np.minimum, columns), reduce(np.maximum, columns))
 
 
 class ElementGrid:
@@ -58,7 +58,7 @@ class ElementGrid:
     closer to than the reach. Those in whose cells there are no places are left out.
     """
 
-    def __init__(self, elements: Elements, places: Floats, reach: float) -> None:
+    def __init__(self, elements: BoxedElements, places: Floats, reach: float) -> None:
         """Sort elements into cells.
 
         Args:
@@ -131,7 +131,7 @@ def to_nearest(
     rows = np.arange(len(places))
     if not len(places) or not len(corners):
         return found
-    elements = Elements.of(corners)
+    elements = BoxedElements.of(corners)
     for share in _SHARES:
         near = share * reach
         given = None if normals is None else normals[rows]
