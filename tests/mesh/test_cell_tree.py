@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from distal.mesh.cell_tree import ancestors, balanced, leaves_of, ringed, together
-from distal.mesh.lattice import cells_of_keys, keys_of
+from distal.mesh.cell_tree import balanced, leaves_of, ringed, together
+from distal.mesh.lattice import ancestors, cells_of_keys, keys_of
 from distal.polygons.whole_numbers import sorted_keys
 
 

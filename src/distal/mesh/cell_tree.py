@@ -20,7 +20,7 @@ from distal.ir.types import VEC3
 from distal.mesh.arithmetic import distance_value
 from distal.mesh.bricks import check_numbers
 from distal.mesh.kernels import FieldKernels
-from distal.mesh.lattice import SHIFT, Lattice, cells_of_keys, keys_of, position
+from distal.mesh.lattice import Lattice, ancestors, cells_of_keys, keys_of, position
 from distal.mesh.solid import Bools, Floats, Integers
 from distal.mesh.tables import CORNERS
 from distal.polygons.whole_numbers import numbers_in, sorted_keys
@@ -55,19 +55,6 @@ def widened(keys: Integers, rings: int = 1) -> Integers:
 def halves_of(keys: Integers) -> Integers:
     """Return the eight halves of cells, by their keys, not sorted."""
     return keys_of((cells_of_keys(keys)[:, None] * 2 + HALVES[None]).reshape(-1, 3))
-
-
-def ancestors(keys: Integers, levels: int) -> Integers:
-    """Return the cell that contains each cell, some levels above, by keys."""
-    if levels == 0:
-        return keys
-    # Each coordinate is shifted in the key, from a multiple of so many units below 0.
-    below = max(1, SHIFT >> levels)
-    before, after = (below << levels) - SHIFT, SHIFT - below
-    ones = (1 << 42) | (1 << 21) | 1
-    kept = ones * ((1 << 21 - levels) - 1)
-    found: Integers = ((keys + before * ones) >> levels & kept) + after * ones
-    return found
 
 
 Divided = tuple[Integers, ...]
@@ -244,16 +231,11 @@ def _of_base(
     """
     if around is None:
         return sorted_keys(np.concatenate([cells, widened(divided)])) if len(divided) else cells
-    largest = [*_lowest(around), cells[:0]]
-    region = sorted_keys(np.concatenate(largest))
+    largest = [ancestors(keys, level) for level, keys in enumerate(around)]
+    region = sorted_keys(np.concatenate([*largest, cells[:0]]))
     own = cells[position(ancestors(cells, base), region) >= 0]
     beside = divided[position(ancestors(divided, base), widened(region)) >= 0]
     return sorted_keys(np.concatenate([own, widened(beside)]))
-
-
-def _lowest(around: Divided) -> list[Integers]:
-    """Return the keys of the cells of level 0 that contain cells of each level."""
-    return [ancestors(keys, level) for level, keys in enumerate(around)]
 
 
 def _are_within(keys: Integers, level: int, around: Divided) -> Bools:

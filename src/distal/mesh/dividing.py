@@ -74,20 +74,20 @@ def divided(
     """
     tree = tree_of(kernels, found)
     lattice, looked_at = tree.values.lattice, found.looked_at
-    wanted = _some(_too_large(found, tree, tolerance), tree, joined_only=joined_only)
-    if _too_many(tree, wanted):
-        wanted = ()
+    coarse = _some(_too_large(found, tree, tolerance), tree, joined_only=joined_only)
+    if _too_many(tree, coarse):
+        coarse = ()
     if also:
-        wanted = together(wanted, also) if wanted else also
+        coarse = together(coarse, also) if coarse else also
     for number, rings in enumerate(_RINGS):
         turn = _TURNS[min(number, len(_TURNS) - 1)]
-        if not wanted:
+        if not coarse:
             break
         before = tree.divided
-        tree = settled(tree.with_divided(_with_rings(wanted, tree, rings)), before)
+        tree = settled(tree.with_divided(_with_rings(coarse, tree, rings)), before)
         changed = changes(tree, before)
         part = topology_of_changes(tree, changed, _MOST_OF_WHOLE)
-        wanted = ()
+        coarse = ()
         # Cells that only a suspicion divides may have no surface in them. Then edges at the rim of
         # the part are all there is: they count for nothing, and may have no segments.
         if part is not None and part[1].any():
@@ -97,16 +97,16 @@ def divided(
             made = completed(kernels, extent, lattice, topology, seen, tolerance, _unwatched, angle)
             # Beyond the part there are no triangles, and what is there counts for nothing.
             made = made.with_suspected(_near_cells(made.looked_at.suspected, tree, changed))
-            wanted = _too_large(made, tree, tolerance, certain, turn)
-            wanted = _some(wanted, tree, joined_only=joined_only)
-        if not wanted or number == len(_RINGS) - 1 or _too_many(tree, wanted):
+            coarse = _too_large(made, tree, tolerance, certain, turn)
+            coarse = _some(coarse, tree, joined_only=joined_only)
+        if not coarse or number == len(_RINGS) - 1 or _too_many(tree, coarse):
             topology, tree = topology_of_tree(tree)
             given = lattice, topology, looked_at, tolerance
             made = completed(kernels, extent, *given, _unwatched, angle)
             found = replace(made, tree=tree)
-            wanted = _too_large(found, tree, tolerance, turn=turn)
-            wanted = _some(wanted, tree, joined_only=joined_only)
-            if _too_many(tree, wanted):
+            coarse = _too_large(found, tree, tolerance, turn=turn)
+            coarse = _some(coarse, tree, joined_only=joined_only)
+            if _too_many(tree, coarse):
                 break
         watch((number + 1) / len(_RINGS))
     return found
@@ -119,26 +119,26 @@ def tree_of(kernels: FieldKernels, found: Extracted) -> Tree:
     return Tree.of_equal_cells(kernels, found.lattice, keys_of(found.looked_at.surface))
 
 
-def _too_many(tree: Tree, wanted: Divided) -> bool:
+def _too_many(tree: Tree, coarse: Divided) -> bool:
     """Return whether there would be too many halves if more cells were divided."""
-    halved = sum(len(keys) for keys in (*tree.divided[tree.base :], *wanted))
+    halved = sum(len(keys) for keys in (*tree.divided[tree.base :], *coarse))
     return 8 * halved > max(_MOST_HALVES, len(tree.surface))
 
 
-def _some(wanted: Divided, tree: Tree, *, joined_only: bool) -> Divided:
+def _some(coarse: Divided, tree: Tree, *, joined_only: bool) -> Divided:
     """Return the cells to divide, without those that are not joined if so asked; () for none."""
     if joined_only:
-        wanted = tuple(keys if level < tree.base else keys[:0] for level, keys in enumerate(wanted))
-    return wanted if any(len(keys) for keys in wanted) else ()
+        coarse = tuple(keys if level < tree.base else keys[:0] for level, keys in enumerate(coarse))
+    return coarse if any(len(keys) for keys in coarse) else ()
 
 
-def _with_rings(wanted: Divided, tree: Tree, rings: int) -> Divided:
+def _with_rings(coarse: Divided, tree: Tree, rings: int) -> Divided:
     """Return cells and those beside them that the surface may pass through."""
     if not rings:
-        return wanted
+        return coarse
     leaves = leaves_of(tree.surface, tree.divided, tree.levels, tree.base)
     found = []
-    for level, keys in enumerate(wanted):
+    for level, keys in enumerate(coarse):
         own = leaves.key[leaves.of_level(level)]
         found.append(own[position(own, widened(keys, rings)) >= 0])
     return tuple(found)

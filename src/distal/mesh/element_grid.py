@@ -89,10 +89,10 @@ class ElementGrid:
             normals: The normal at each place, of length 1; None if elements may face anywhere.
         """
         least = _ALIKE if normals is not None else _ANY
-        given = np.zeros_like(self._places) if normals is None else normals
+        facing = np.zeros_like(self._places) if normals is None else normals
 
         def of_some(rows: slice) -> Floats:
-            return self._distances(rows, given[rows], least)
+            return self._distances(rows, facing[rows], least)
 
         found = parallel_map(of_some, slices_of(len(self._places), _PLACES_AT_ONCE))
         return np.concatenate([np.empty(0), *found])
@@ -134,29 +134,29 @@ def to_nearest(
     elements = BoxedElements.of(corners)
     for share in _SHARES:
         near = share * reach
-        given = None if normals is None else normals[rows]
-        found[rows] = ElementGrid(elements, places[rows], near).distances(given)
+        facing = None if normals is None else normals[rows]
+        found[rows] = ElementGrid(elements, places[rows], near).distances(facing)
         rows = rows[found[rows] > near]
         if not len(rows):
             break
     return found
 
 
-def to_triangles(corners: Floats, places: Floats, known: Floats, enough: float) -> Floats:
-    """Return the distances of places to triangles, where larger ones than are enough are known.
+def to_triangles(corners: Floats, places: Floats, least: Floats, enough: float) -> Floats:
+    """Return the distances of places to triangles, where those so far are too large.
 
     Args:
         corners: Of shape (n, 3, 3).
         places: Of shape (m, 3).
-        known: A distance of each place that is not too small; infinite ones stay.
+        least: The least distance of each place so far; infinite ones stay.
         enough: Smaller ones stay, too.
     """
-    rows = np.flatnonzero((known > enough) & np.isfinite(known))
+    rows = np.flatnonzero((least > enough) & np.isfinite(least))
     if not len(rows) or not len(corners):
-        return known
-    found = known.copy()
-    nearest = to_nearest(corners, places[rows], float(known[rows].max()))
-    found[rows] = np.minimum(known[rows], nearest)
+        return least
+    found = least.copy()
+    nearest = to_nearest(corners, places[rows], float(least[rows].max()))
+    found[rows] = np.minimum(least[rows], nearest)
     return found
 
 
@@ -189,8 +189,8 @@ def _are_close(first: Integers, at: Integers) -> Bools:
         at: The other cells.
     """
     ways = product((0, 1), repeat=at.shape[1])
-    known = sorted_keys(np.concatenate([_keys(at - np.array(bits)) for bits in ways]))
-    found: Bools = position(_keys(first), known) >= 0
+    keys = sorted_keys(np.concatenate([_keys(at - np.array(bits)) for bits in ways]))
+    found: Bools = position(_keys(first), keys) >= 0
     return found
 
 

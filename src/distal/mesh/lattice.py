@@ -18,7 +18,7 @@ DIGIT_OF_FILES: Final = 2.0**-23
 DIGIT: Final = 2.0**-52
 BRICK: Final = 8  # cells along each side of a brick
 # A key has 21 bits for each coordinate, which may be negative for cells beside the lattice.
-SHIFT: Final = 8
+_SHIFT: Final = 8
 _ONES: Final = (1 << 21) - 1
 # The lattice begins and ends this many cells beyond the box. Faces of shapes are often at round
 # numbers; these shares keep them away from planes of the lattice.
@@ -68,14 +68,27 @@ class Lattice:
 
 def keys_of(bricks: Integers) -> Integers:
     """Return a number for each brick, in the order of x, then y, then z."""
-    shifted = bricks + SHIFT
+    shifted = bricks + _SHIFT
     keys: Integers = (shifted[:, 0] << 42) | (shifted[:, 1] << 21) | shifted[:, 2]
     return keys
 
 
 def cells_of_keys(keys: Integers) -> Integers:
     """Return the places of bricks or cells, of shape (n, 3), from their keys."""
-    return np.stack([keys >> 42, keys >> 21 & _ONES, keys & _ONES], axis=1) - SHIFT
+    return np.stack([keys >> 42, keys >> 21 & _ONES, keys & _ONES], axis=1) - _SHIFT
+
+
+def ancestors(keys: Integers, levels: int) -> Integers:
+    """Return the cell that contains each cell, some levels above, by keys."""
+    if levels == 0:
+        return keys
+    # Each coordinate is shifted in the key, from a multiple of so many units below 0.
+    below = max(1, _SHIFT >> levels)
+    before, after = (below << levels) - _SHIFT, _SHIFT - below
+    ones = (1 << 42) | (1 << 21) | 1
+    mask = ones * ((1 << 21 - levels) - 1)
+    found: Integers = ((keys + before * ones) >> levels & mask) + after * ones
+    return found
 
 
 def position(keys: Integers, sorted_keys: Integers) -> Integers:
