@@ -14,6 +14,7 @@ from typing import Any, Final, NoReturn
 
 import numpy as np
 
+from distal.mesh.bridges import bridges_of
 from distal.mesh.cell_tree import HALVES, Divided
 from distal.mesh.dividing import divided, tree_of
 from distal.mesh.element_grid import to_nearest
@@ -21,6 +22,8 @@ from distal.mesh.extract import Extent, Extracted
 from distal.mesh.kernels import FieldKernels
 from distal.mesh.lattice import keys_of
 from distal.mesh.leaf_places import LeafRows, LeafSearch, joined
+from distal.mesh.leaf_spacing import LEAST_WALL
+from distal.mesh.refusals import shown_place
 from distal.mesh.solid import Floats
 from distal.mesh.tree_topology import Tree
 from distal.polygons.whole_numbers import sorted_keys
@@ -67,6 +70,8 @@ class LeafCheck:
         error_at: Where it is; None if no place was compared.
         unchecked: Leaves that were not looked for (``LeafSearch.unchecked``).
         coarse: Leaves that are thinner than the distance of the places.
+        bridges: Where two surfaces may be joined, of shape (n, 3): not to would take too
+            many cells.
     """
 
     leaves: int
@@ -76,6 +81,7 @@ class LeafCheck:
     error_at: tuple[float, ...] | None
     unchecked: Sequence[PlacedLeaf]
     coarse: Sequence[PlacedLeaf]
+    bridges: Floats | None = None
 
     def report(self) -> dict[str, Any]:
         """Return what a report says about it."""
@@ -84,10 +90,14 @@ class LeafCheck:
 
     def warnings(self) -> list[str]:
         """Return what is not certain, in words."""
-        return [
+        found = [
             f"{leaf.text} is thin in too many places: not all of them were looked up"
             for leaf in self.coarse
         ]
+        if self.bridges is not None and len(self.bridges):
+            where = shown_place(self.bridges[0])
+            found.append(f"two surfaces may be joined across a narrow gap or wall at {where}")
+        return found
 
 
 def refuse_missing(missing: Sequence[MissingLeaf], result: str, hint: str) -> NoReturn:
@@ -138,18 +148,18 @@ def with_all_leaves(
     watch(1.0)
     away = distances(rows, found.made.points[found.made.triangles], MISSING * tolerance)
     most = _MOST_CELLS + _halved(found.tree)
-    for number in range(_MOST_ROUNDS):
-        far = away > tolerance
-        if not far.any():
-            break
+    for number in range(_MOST_ROUNDS + 1):
         watch(1.0)
+        far = away > tolerance
         some = rows.some(far)
         # What is still far has its cells halved once more in each round.
         some = replace(some, side=some.side * 0.5**number)
         tree = tree_of(kernels, found)
-        cells = _cells_at(tree, some)
+        bridges = bridges_of(kernels, found, LEAST_WALL * tolerance)
+        place = np.concatenate([some.place, bridges.place])
+        cells = _cells_at(tree, place, np.concatenate([some.side, bridges.gap]))
         halved = _halved(tree.with_divided(cells))
-        if halved == _halved(tree) or halved > most:
+        if halved == _halved(tree) or halved > most or number == _MOST_ROUNDS:
             break
         found = divided(
             kernels,
@@ -165,7 +175,8 @@ def with_all_leaves(
     far = away > limit
     if far.any() and limit > MISSING * tolerance:
         away[far] = distances(rows.some(far), found.made.points[found.made.triangles], limit)
-    return found, result_of(search, rows, away, limit)
+    made = result_of(search, rows, away, limit)
+    return found, replace(made, bridges=bridges.place) if halved > most else made
 
 
 def _limit(found: Extracted, tolerance: float) -> float:
@@ -221,17 +232,23 @@ def _halved(tree: Tree | None) -> int:
     return 0 if tree is None else sum(len(keys) for keys in tree.divided[tree.base :])
 
 
-def _cells_at(tree: Tree, rows: LeafRows) -> Divided:
-    """Return the keys of the cells to divide at boxes around places, by level."""
+def _cells_at(tree: Tree, place: Floats, width: Floats) -> Divided:
+    """Return the keys of the cells to divide at boxes around places, by level.
+
+    Args:
+        tree: The cells.
+        place: The places, of shape (n, 3).
+        width: The sides of the boxes.
+    """
     lattice = tree.values.lattice
     found = []
     for level in range(tree.levels):
         side = lattice.step * (1 << tree.levels >> level)
-        large = rows.some(rows.side * _SHARE < side)
-        if level < tree.base or not len(large):
+        large = width * _SHARE < side
+        if level < tree.base or not large.any():
             found.append(np.empty(0, np.int64))
             continue
-        near = large.place[:, None] + _AROUND * large.side[:, None, None]
+        near = place[large, None] + _AROUND * width[large, None, None]
         cells = np.floor((near.reshape(-1, 3) - lattice.origin) / side).astype(np.int64)
         found.append(sorted_keys(keys_of(cells)))
     return tuple(found)
