@@ -19,7 +19,12 @@ def boxes(count, seed):
     return middles - halves, middles + halves
 
 
-def walk(tree, box, inside):
+def count_of(tree, box):
+    """Return the number of parts below a box."""
+    return (int(tree[2 * box, 3]) - box + 1) // 2
+
+
+def walk(tree, box, inside, around=0):
     """Return the parts below a box, in the order of the tree."""
     (low, after), (high, part) = [(row[:3], int(row[3])) for row in tree[2 * box : 2 * box + 2]]
     assert (low >= inside[0]).all() and (high <= inside[1]).all()
@@ -27,7 +32,13 @@ def walk(tree, box, inside):
         assert after == box + 1
         return [part]
     second = int(tree[2 * (box + 1), 3])
-    found = walk(tree, box + 1, (low, high)) + walk(tree, second, (low, high))
+    above, axis = divmod(-1 - part, 4)
+    assert above == around
+    low_middle, high_middle = (tree[2 * b : 2 * b + 2, :3].mean(axis=0) for b in (box + 1, second))
+    if count_of(tree, box) == 2:  # boxes around many may reach back over others
+        rounding = 1e-6 * np.abs(tree[2 * box : 2 * box + 2, :3]).max()
+        assert low_middle[axis] <= high_middle[axis] + rounding
+    found = walk(tree, box + 1, (low, high), box) + walk(tree, second, (low, high), box)
     assert int(tree[2 * second, 3]) == after
     return found
 

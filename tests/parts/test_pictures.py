@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -24,8 +26,10 @@ from distal import (
     glass,
     matte,
     mirror,
+    union,
 )
 from distal.lang import slider
+from distal.render.shadows import SHARPEST
 from distal.scene.checks.probe import probe
 from distal.scene.lowering.parts.table import rolled
 
@@ -122,6 +126,48 @@ def test_thin_parts_side_by_side_leave_no_light_between_them():
         boards[0].union(boards[1:]) | Plane(y=-1.0), lights=DistantLight((0.0, 1.0, 0.0), angle=0.1)
     )
     assert far_off(a, b, 0.02) < 0.01
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.3, 1.9, -2.4])
+@pytest.mark.parametrize("inner", [Box(0.8, 0.4, 0.8), Torus(0.3, 0.1), Cylinder(0.4, 0.4)])
+def test_of_surfaces_at_one_place_the_first_is_shown(inner, turn):
+    # Rays of all octants, which meet boxes in eight orders: no seam, and no speckles.
+    places = [(float(i), 0.0, float(j)) for i in range(-2, 3) for j in range(-2, 3)]
+    twice = [inner.translate(at).paint(c) for at in places for c in ("red", "blue")]
+    whole = union(twice).rotate(y=turn)
+    eye = Camera((0.2, 4.0, 4.0), target=(0.2, 0.0, 0.0))
+    picture = Scene(whole, lights=AmbientLight(1.0), camera=eye, background="black").render(
+        (96, 72)
+    )
+    red, _, blue = np.moveaxis(picture.array.astype(float)[..., :3], -1, 0)
+    assert (red > 0.1).mean() > 0.2 and (blue > 0.1).mean() < 5e-4
+
+
+@pytest.mark.parametrize("thickness", [1e-5, 1e-4, 1e-3, 0.02])
+@pytest.mark.parametrize("lean", [0.0, 0.5, 1.2])
+def test_no_light_of_a_sharp_sun_passes_thin_parts(thickness, lean):
+    # Most are thinner than the cone around a ray, and lie between two points of its march.
+    strips = [Box(0.5, thickness, 4.0).translate(0.4 * i - 8.0, 2.0, 0.0) for i in range(40)]
+    sun = DistantLight((math.sin(lean), math.cos(lean), 0.0), angle=0.001)
+    eye = Camera((0.0, 1.9, 0.01), target=(0.0, 0.0, 0.0))
+    scene = Scene(union(strips) | Plane(), lights=sun, camera=eye, ambient_occlusion=0.0)
+    middle = scene.render((40, 30)).array.astype(float)[12:18, 16:24, :3]
+    assert middle.max() <= 1e-6
+
+
+def test_the_edge_of_a_sharp_shadow_is_where_it_is():
+    # Closed form: a ball of radius 1, 4 above a plane under the sun, has a round shadow.
+    balls = [Sphere(0.02).translate(9.0 + 0.1 * i, 0.02, 9.0) for i in range(20)]
+    sun = DistantLight((0.0, 1.0, 0.0), angle=0.001)
+    eye = Camera((0.0, 2.0, 0.01), target=(0.0, 0.0, 0.0), fov_deg=60.0)
+    whole = union([Sphere(1.0).translate(0.0, 4.0, 0.0), *balls]) | Plane()
+    scene = Scene(whole, lights=sun, camera=eye, ambient_occlusion=0.0)
+    lit = scene.render((200, 200)).array.astype(float)[..., 0]
+    share = 1.0 - lit / lit.max()
+    pixel = 2.0 * 2.0 * math.tan(math.radians(30.0)) / 200.0
+    radius = math.sqrt(share.sum() * pixel**2 / math.pi)
+    # Half of a radius of the narrowest cone farther out.
+    assert radius == pytest.approx(1.0 + 0.5 * SHARPEST * 4.0, abs=0.002)
 
 
 def test_tiny_and_huge_parts_in_one_table():

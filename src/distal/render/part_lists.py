@@ -15,10 +15,10 @@ from distal.lang import (
     abs,
     array,
     func,
-    length,
     max,
     min,
     select,
+    sqrt,
     struct,
     vec2,
     vec3,
@@ -81,12 +81,15 @@ class NearParts:
         own: Which parts are near this ray.
         bounds: The box around them.
         hidden: Whether one part alone hides all of a cone.
+        share: How close the parts come to a ray, in radii of a cone around it; -1 if it may go
+            through one.
     """
 
     listed: PartList
     own: OwnParts
     bounds: Bounds
     hidden: bool = False
+    share: float = OPEN
 
 
 @func
@@ -96,13 +99,10 @@ def share_beside(
     ray: Ray,
     width: float,
     span: vec2,
+    hides: float,
     steps: int,
-) -> float:
+) -> vec2:
     """Return how close a part comes to a ray, in radii of a cone around it.
-
-    If it is 2 or more, no point of the part is in the cone: the value is at least half as large
-    between two points of the march as at the first. If it is -1 or less, the part hides the whole
-    cone.
 
     Args:
         distance: The signed distance of a point to a part.
@@ -110,17 +110,41 @@ def share_beside(
         ray: The axis of the cone.
         width: Radius of the cone at distance 1.
         span: Where the box around the part begins and ends, along the ray.
+        hides: The share at which the part hides the cone: the march ends there.
         steps: Maximum number of steps.
+
+    Returns:
+        The least share at the points of the march. If it is 2 or more, no point of the part is in
+        the cone: the value is at least half as large between two points as at the first of them.
+        And the least share between them (as ``passing``); -1 if the ray may go through the part.
     """
     t = span.x
     share = OPEN
+    height = OPEN  # squared
+    is_torn = False  # a thin wall may be between two points
+    free = 0.0
+    step = 0.0
+    falls = False  # whether the values fall so fast that the next may be behind a surface
     for _ in range(min(steps, MOST_STEPS)):
-        if t > span.y or share <= -1.0:
+        if t > span.y or share <= hides:
             break
         d = distance(ray.origin + t * ray.direction, part)
-        share = min(share, d / (width * max(t, 1e-6)))
-        t += max(abs(d), max(width, NEARLY) * t)
-    return share
+        radius = width * max(t, 1e-6)
+        share = min(share, d / radius)
+        long = 2.0 * step * step
+        along = step * step + free * free - d * d
+        rest = 2.0 * long * free * free - along * along
+        is_between = along > 0.0 and along < long
+        at_touch = rest / max(2.0 * long * radius * radius, 1e-30)
+        height = select(is_between and rest >= 0.0, min(height, at_touch), height)
+        is_torn = is_torn or (is_between and rest < 0.0 and falls)
+        onward = max(abs(d), max(width, NEARLY) * t)
+        falls = d * step < (free - d) * onward
+        free = d
+        step = onward
+        t += step
+    goes_through = is_torn or share < 0.0
+    return vec2(share, select(goes_through, -1.0, min(share, sqrt(height))))
 
 
 @func
@@ -131,6 +155,7 @@ def parts_along(
     width: float,
     start: float,
     end: float,
+    is_sharp: bool,
     steps: int,
 ) -> NearParts:
     """Return the parts that may hide a part of a cone.
@@ -142,14 +167,17 @@ def parts_along(
         width: Radius of the cone at distance 1.
         start: Distance along the ray where it begins.
         end: Distance along the ray where it ends.
+        is_sharp: Whether a part hides the cone as soon as the ray goes through it.
         steps: Maximum number of steps in one part.
     """
+    hides = select(is_sharp, 0.0, -1.0)
     inverse = inverse_of(ray.direction)
     listed = [0] * MOST_LISTED
     count = 0
     own = 0
     others = 0
     hidden = False
+    least = OPEN
     around_low = vec3(UNBOUNDED)
     around_high = vec3(-UNBOUNDED)
     box = 0
@@ -160,7 +188,8 @@ def parts_along(
         high = boxes[2 * box + 1]
         following = int(low.w)
         farthest = max(abs(low.xyz - ray.origin), abs(high.xyz - ray.origin))
-        margin = 2.0 * width * min(length(farthest), end)
+        # The sum is never less than the length, and takes no root.
+        margin = 2.0 * width * min(farthest.x + farthest.y + farthest.z, end)
         span = span_in_box(ray.origin, inverse, low.xyz - margin, high.xyz + margin)
         span = vec2(max(span.x, start), min(span.y, end))
         meets = span.x <= span.y and not hidden
@@ -171,8 +200,10 @@ def parts_along(
             else:
                 share = OPEN
                 if meets:
-                    share = share_beside(distance, part, ray, width, span, steps)
-                    hidden = share <= -1.0
+                    shares = share_beside(distance, part, ray, width, span, hides, steps)
+                    share = shares.x
+                    least = min(least, shares.y)
+                    hidden = select(is_sharp, least, share) <= hides
                 beside = share < 2.0 and not hidden
                 if anywhere(beside):
                     around_low = select(beside, min(around_low, low.xyz), around_low)
@@ -184,7 +215,7 @@ def parts_along(
                     count += 1
         box = following
     around = Bounds(around_low, around_high)
-    return NearParts(PartList(count, listed), OwnParts(own, others), around, hidden)
+    return NearParts(PartList(count, listed), OwnParts(own, others), around, hidden, least)
 
 
 @func

@@ -18,7 +18,7 @@ from distal.render.part_lists import nearest_listed, parts_along, parts_around
 from distal.render.part_tree import NearestPart
 from distal.render.shade import Shading, occlusion_in
 from distal.render.shadow_ray import OPEN, Edge, find_edge
-from distal.render.shadows import Opening, above_planes, opening
+from distal.render.shadows import SHARPEST, Opening, above_planes, opening
 
 
 @func
@@ -38,8 +38,9 @@ def edge_of_parts(
 ) -> Edge:
     """Return where the edge of a shadow is, as one ray among parts finds it.
 
-    A part that alone hides the disc decides. Otherwise the ray is marched through the parts that
-    may hide some of it, if there are any.
+    A part that alone hides the disc decides. For the sharpest lights, whose edges are as narrow as
+    pixels, the part that comes closest to the ray does: the edge is beside the parts, half a radius
+    away. Otherwise the ray is marched through the parts that may hide some of it, if there are any.
 
     Args:
         others: Signed distance of what is beside the parts.
@@ -55,9 +56,12 @@ def edge_of_parts(
         steep: Whether values may be less than distances; a constant.
         needs_offset: Whether the offset must be known where it is not sure what is visible.
     """
-    near = parts_along(boxes, distance, ray, width, numbers.threshold, end, steps)
+    is_sharp = width <= SHARPEST and not has_others and not steep
+    near = parts_along(boxes, distance, ray, width, numbers.threshold, end, is_sharp, steps)
     if near.hidden:
         return Edge(-OPEN, True, False)
+    if is_sharp:
+        return Edge(2.0 * near.share - 1.0, near.share >= 1.0, False)
     listed = near.listed
     own = near.own
     if own.others == 0 and not has_others:

@@ -4,9 +4,10 @@ Input: the tree, and the distance to each part. Output: distances, hits, lists o
 ray or a point. A part is the number of its row in a table (``scene.lowering.parts``).
 
 The tree is a buffer with two vec4 for each box, parents first: (low corner, number of the box that
-follows if this one is skipped), (high corner, part), where the part is -1 for a box around others.
-So a walk needs no stack. ``anywhere`` makes it one walk for all pixels that the CPU computes
-together: numbers of boxes and rows are scalars then.
+follows if this one is skipped), (high corner, part). For a box around others the last number is
+negative: -1 - (axis + 4 * number of the box around it). Its first child is the lower one along the
+axis. So a walk needs no stack, and a ray can meet near boxes first. ``anywhere`` makes it one walk
+for all pixels that the CPU computes together: numbers of boxes and rows are scalars then.
 """
 
 from __future__ import annotations
@@ -37,6 +38,8 @@ from distal.render.segment import segment, segment_between
 
 # Rounding errors of a place, for each unit of its coordinates.
 ROUNDING = 2e-6
+# No tree has more boxes in one another.
+MOST_DEPTH = 64
 # The margin around the boxes of parts, for each unit of the distance: rounding errors.
 MARGIN = 1e-5
 
@@ -52,6 +55,34 @@ class NearestPart:
 
     distance: float
     part: int
+
+
+@struct
+class TreePlace:
+    """A place of a walk through a tree.
+
+    Attributes:
+        box: The number of a box.
+        around: That of the box around it; 0 for the first.
+    """
+
+    box: int
+    around: int
+
+
+@struct
+class Children:
+    """The two boxes in a box.
+
+    Attributes:
+        near: The number of the one that rays meet first.
+        far: That of the other.
+        around: That of the box around their box; 0 for the first.
+    """
+
+    near: int
+    far: int
+    around: int
 
 
 @func
@@ -267,6 +298,58 @@ def meet_part(
 
 
 @func
+def octant_of(direction: vec3) -> int:
+    """Return a bit for each axis along which any of the rays runs downwards."""
+    octant = 0
+    if anywhere(direction.x < 0.0):
+        octant += 1
+    if anywhere(direction.y < 0.0):
+        octant += 2
+    if anywhere(direction.z < 0.0):
+        octant += 4
+    return octant
+
+
+@func
+def children_of(boxes: Buffer[vec4], box: int, octant: int) -> Children:
+    """Return the two boxes in a box, in the order in which rays meet them.
+
+    Args:
+        boxes: The tree.
+        box: The number of the box around them.
+        octant: As ``octant_of``.
+    """
+    code = ~int(boxes[2 * box + 1].w)
+    lower = box + 1
+    upper = int(boxes[2 * lower].w)
+    is_downwards = (octant >> (code & 3)) & 1 == 1
+    near = select(is_downwards, upper, lower)
+    return Children(near, lower + upper - near, code >> 2)
+
+
+@func
+def next_box(boxes: Buffer[vec4], here: TreePlace, octant: int) -> TreePlace:
+    """Return the box that rays meet after one and all that is in it.
+
+    Args:
+        boxes: The tree.
+        here: The box.
+        octant: As ``octant_of``.
+    """
+    box = here.box
+    around = here.around
+    for _ in range(MOST_DEPTH):
+        if box == 0:
+            break
+        children = children_of(boxes, around, octant)
+        if box == children.near:
+            return TreePlace(children.far, around)
+        box = around
+        around = children.around
+    return TreePlace(box_count(boxes), 0)
+
+
+@func
 def first_met(
     boxes: Buffer[vec4],
     meet: Callable[[int, vec2, vec3, float], Hit],
@@ -286,31 +369,37 @@ def first_met(
     """
     margin = MARGIN * farthest_box(boxes, ray, numbers)
     inverse = inverse_of(ray.direction)
+    octant = octant_of(ray.direction)
     found = -1
     t = numbers.far
     taken = 0
     lost = PASSED
-    box = 0
+    here = TreePlace(0, 0)
     for _ in range(box_count(boxes)):
+        box = here.box
         if box >= box_count(boxes):
             break
         low = boxes[2 * box]
         high = boxes[2 * box + 1]
-        following = int(low.w)
+        of = int(high.w)
+        goes_on = True
         span = span_in_box(ray.origin, inverse, low.xyz - margin, high.xyz + margin)
         meets = span.x <= span.y and span.x < t and span.y >= numbers.near
         if anywhere(meets):
-            of = int(high.w)
             if of < 0:
-                following = box + 1
+                here = TreePlace(children_of(boxes, box, octant).near, box)
+                goes_on = False
             elif meets:
-                hit = meet(of, span, high.xyz - low.xyz, t)
+                hit = meet(of, span, high.xyz - low.xyz, t * (1.0 + MARGIN + numbers.threshold))
                 taken += hit.steps
                 lost = max(lost, select(hit.lost == OUT_OF_STEPS, OUT_OF_STEPS, PASSED))
-                if hit.found and hit.t < t:
+                # Of surfaces at one place the first part's is met, in whatever order they come.
+                least = select(of < found, t * (1.0 + MARGIN), t * (1.0 - MARGIN))
+                if hit.found and hit.t < select(found < 0, t, least):
                     found = of
                     t = hit.t
-        box = following
+        if goes_on:
+            here = next_box(boxes, here, octant)
     return Hit(t, found >= 0, taken, 1.0, select(found >= 0, PASSED, lost), found)
 
 

@@ -2,7 +2,7 @@
 
 Input: boxes. Output: an order of the tree, and an array with two rows of four numbers for each box
 of it, parents first. The boxes of a parent's two children are the halves of its parts, divided
-where its box is longest. Boxes of parts that move fill the same order again.
+where its box is longest, the lower half first. Boxes of parts that move fill the same order again.
 """
 
 from __future__ import annotations
@@ -35,7 +35,8 @@ class BoxTree:
             and the number of the first of these others.
         order: The number of the box at each place of the tree.
         links: Of the box at each place, the place of the one that follows if it is skipped, and
-            its part or -1.
+            its part; of a box around others -1 - (axis + 4 * place of the box around it), where
+            the axis is the one along which it is divided.
     """
 
     leaves: Whole
@@ -51,7 +52,8 @@ class BoxTree:
             high: The high corners (n, 3).
 
         Returns:
-            An array (2 * (2n - 1), 4): (low corner, box that follows), (high corner, part or -1).
+            An array (2 * (2n - 1), 4): (low corner, box that follows), (high corner, part or as
+            ``links``).
         """
         margin = OF_SIZE * (high - low) + OF_PLACE * np.maximum(np.abs(low), np.abs(high))
         own = np.zeros((len(low), 8), np.float32)
@@ -80,11 +82,11 @@ def box_tree(low: Floats, high: Floats, parts: Whole) -> BoxTree:
     """
     count = len(low)
     middles = 0.5 * (low + high)
-    links = np.full((2, 2 * count - 1), -1.0)
+    links = np.empty((2, 2 * count - 1))
     parents: list[tuple[Whole | slice, int]] = []
     at = np.empty(2 * count - 1, np.int64)
     order = np.arange(count)
-    first, size, place = np.array([0]), np.array([count]), np.array([0])
+    first, size, place, around = (np.array([n]) for n in (0, count, 0, 0))
     at[0], made = 0, 1
     while True:
         links[0, place] = place + 2 * size - 1
@@ -95,9 +97,11 @@ def box_tree(low: Floats, high: Floats, parts: Whole) -> BoxTree:
         whole = slice(int(above[0]), int(above[-1]) + 1)
         is_whole = whole.stop - whole.start == len(above)
         parents.append((whole if is_whole else above, made))
-        order = _sorted_within(middles, order, first, size)
-        first, size, inner = _halves(first, size, place)
+        order, axis = _sorted_within(middles, order, first, size)
+        links[1, place[apart]] = -1 - (axis + 4 * around)[apart]
         is_new = np.repeat(apart, 1 + apart)
+        around = np.where(is_new, np.repeat(place, 1 + apart), np.repeat(around, 1 + apart))
+        first, size, inner = _halves(first, size, place)
         fresh = inner[is_new]
         at[fresh] = made + np.arange(len(fresh))
         made += len(fresh)
@@ -108,14 +112,14 @@ def box_tree(low: Floats, high: Floats, parts: Whole) -> BoxTree:
     return BoxTree(leaves, parents[::-1], at, links.astype(np.float32))
 
 
-def _sorted_within(middles: Floats, order: Whole, first: Whole, size: Whole) -> Whole:
-    """Return the order of the parts, sorted within each box along its longest side."""
+def _sorted_within(middles: Floats, order: Whole, first: Whole, size: Whole) -> tuple[Whole, Whole]:
+    """Return the order of the parts, sorted within each box along its longest side; that axis."""
     here = middles[order]
     extent = np.maximum.reduceat(here, first) - np.minimum.reduceat(here, first)
-    axis = np.repeat(np.argmax(extent, axis=1), size)
+    axis = np.argmax(extent, axis=1)
     group = np.repeat(np.arange(len(first)), size)
-    along = here[np.arange(len(order)), axis]
-    return order[np.lexsort((along, group))]
+    along = here[np.arange(len(order)), np.repeat(axis, size)]
+    return order[np.lexsort((along, group))], axis
 
 
 def _halves(first: Whole, size: Whole, place: Whole) -> tuple[Whole, Whole, Whole]:
