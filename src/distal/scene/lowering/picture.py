@@ -418,7 +418,9 @@ class SceneLowering:
     def _occlusion(self, body: StatementList, given: Mapping[str, Expr]) -> FunctionRef:
         """The share of ambient light that reaches a point; 1 where the scene has none."""
         if any(light.ambient is not None for light in self._scene.lights):
-            return self._rays.occlusion(body, given, hybrid=self._hybrid)
+            reach = self._scene.numbers["ambient_occlusion"].plain
+            reach = reach if isinstance(reach, float) else None
+            return self._rays.occlusion(body, given, reach=reach, hybrid=self._hybrid)
         place = (("p", VEC3), ("n", VEC3), ("slope", FLOAT))
         return self._function("unoccluded", place, lambda body, given: number(1.0))
 
