@@ -381,7 +381,6 @@ class SceneLowering:
         exact["numbers"] = composer.call(settings.march_numbers, exact)
         first = exact if paths else given
         given["first_hit"] = rays.first_hit(body, first, hybrid=self._hybrid)
-        given["occlusion"] = self._occlusion(body, given)
         given["shadow"] = self._shadow(body, given)
         if scene.renderer == "refracted" or paths:
             on_surface = {**exact, "near": number(0.0)}
@@ -483,6 +482,8 @@ class SceneLowering:
             if follows:
                 photons = PhotonFunctions(self.composer, self._function)
                 asked |= photons.given(has_photons=self._has_photons)
+            if shines and not follows:  # nothing else computes what occlusion reads
+                asked["occlusion"] = self._occlusion(body, asked)
             if shines:
                 asked |= self.given_at_hits()
             if shines and self._bodies.are_many:
