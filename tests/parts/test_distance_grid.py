@@ -1,9 +1,10 @@
 """Occlusion by a grid of distances is near that of the whole tree, and darkens no lone part.
 
-A value between the points of a grid is a mean of the values at the corners of a cell of side h,
-weighted by w. Distances differ by no more than the way between two places, so the error is at most
-the mean way to the corners: sum(w * way) <= sqrt(sum(w * way^2)) = h * sqrt(sum(t * (1 - t))) over
-three axes, at most sqrt(3) / 2 * h. Levels add h divided by their number in a cell.
+A value between the points of a grid of cells of side h is a mean of distances: at the corners of
+a cell, weighted by w, and there of the distances at four places, h / 4 away along each axis.
+Distances differ by no more than the way between two places, so the error is at most the mean way:
+sum(w * way) <= sqrt(sum(w * way^2)) = h * sqrt(sum(t * (1 - t) + 1 / 16)) over three axes, at most
+sqrt(15) / 4 * h. Levels add h divided by their number in a cell.
 
 A direction of occlusion loses ``OCCLUSION_GAIN * (1 - d / (way * rise))`` of its light at a point,
 less far away, so that an error of d counts at most that much more.
@@ -74,11 +75,24 @@ def lone():
     return [*boxes, Sphere(0.02).translate(30.0, 4.0, 20.0)]
 
 
+def panes():
+    """Panes a little more than a cell apart, which make bands if points have single distances."""
+    flat = [Box(2.0, 0.004, 2.0).translate(0.0, 0.12 * i - 0.9, 0.0) for i in range(18)]
+    return [*flat, *(Box(0.004, 2.0, 2.0).translate(0.12 * i - 0.9, 0.0, 0.0) for i in range(16))]
+
+
 def row():
     return [Capsule(0.1, 0.4).rotate(z=0.3 * i).translate(float(i), 0.0, 0.0) for i in range(60)]
 
 
-SCENES = {"pebbles": pebbles, "walls": walls, "bricks": bricks, "lone": lone, "row": row}
+SCENES = {
+    "pebbles": pebbles,
+    "walls": walls,
+    "bricks": bricks,
+    "lone": lone,
+    "panes": panes,
+    "row": row,
+}
 
 
 def node_of(shape):
@@ -116,7 +130,7 @@ class Interpolated(Composed):
 
 def error_bound(grid):
     """How far an interpolated distance may be from the distance."""
-    return grid.cell * (0.5 * np.sqrt(3.0) + 1.0 / grid.data[0]) + 1e-5
+    return grid.cell * (0.25 * np.sqrt(15.0) + 1.0 / grid.data[0]) + 1e-5
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -171,9 +185,9 @@ def darkening_of(error, reach):
     return float(most.max(axis=1).mean())
 
 
-# The most mean square of errors, as a share of the light; measured: .0065, .012, .007, .023. The
-# floor below the boxes of "lone" is far outside of the grid.
-MOST_ERROR = {"pebbles": 0.009, "walls": 0.016, "bricks": 0.010, "lone": 0.028}
+# The most root mean square of errors, as a share of the light; measured: .0074, .013, .0077, .028,
+# .027. The floor below the boxes of "lone" is far outside of the grid.
+MOST_ERROR = {"pebbles": 0.010, "walls": 0.017, "bricks": 0.010, "lone": 0.034, "panes": 0.032}
 
 
 @pytest.mark.parametrize("name", MOST_ERROR)
@@ -184,9 +198,9 @@ def test_occlusion_is_that_of_the_whole_tree(name):
     error = (light - whole) / whole.max()
     assert (error == 0.0).mean() < 0.95
     assert np.sqrt((error**2).mean()) < MOST_ERROR[name]
-    # One pixel in a hundred may be at an outline and show another surface.
+    # One pixel in a hundred may be at an outline and show another surface. Measured: .096 at most.
     bound = darkening_of(error_bound(grid), scene.numbers["ambient_occlusion"].plain)
-    assert np.percentile(np.abs(error), 99.0) < min(bound, 0.08)
+    assert np.percentile(np.abs(error), 99.0) < min(bound, 0.11)
 
 
 def test_the_shortest_reach():
