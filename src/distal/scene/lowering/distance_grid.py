@@ -106,8 +106,8 @@ class DistanceGrid(Buffer):
         places = self.low + self.cell * (index[:, None] + AROUND)
         points = np.asarray(places.reshape(-1, 3), np.float32)
         found = executor().evaluate(PartDistance(self._node), [points], {}, 0.0)
-        distances: NDArray[np.float32] = np.asarray(found).reshape(*counts, len(AROUND))
-        return distances.mean(axis=-1)
+        means: NDArray[np.float32] = np.asarray(found).reshape(*counts, len(AROUND)).mean(axis=-1)
+        return means
 
 
 def grid_for(node: TableNode, reach: Any) -> DistanceGrid | None:
