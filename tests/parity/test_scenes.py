@@ -195,6 +195,16 @@ def sea():
     )
 
 
+def lattice():
+    """Parts enough for a grid of distances, by which ambient light is occluded."""
+    places = [(x, y, z) for x in range(4) for y in range(3) for z in range(4)]
+    parts = [
+        (Box(0.5), Sphere(0.3))[i % 2].translate(*(0.7 * c - 1.0 for c in place))
+        for i, place in enumerate(places)
+    ]
+    return Scene([*parts, Plane(-1.4)], lights=AmbientLight(1.0), ambient_occlusion=1.2)
+
+
 CAMERAS = {
     "orthographic": OrthographicCamera((3, 2, 5), height=5.0),
     "fisheye": FisheyeCamera((0, 0.5, 2.5)),
@@ -207,6 +217,7 @@ SCENES = {
     "mirrored": mirrored,
     "refracted": refracted,
     "heightfield": sea,
+    "lattice": lattice,
     "six taps": lambda: small(normals="six_taps", tone_map="reinhard"),
     "tetrahedron": lambda: small(normals="tetrahedron", shadows=False),
     "forward": lambda: small(normals="forward", ambient_occlusion=0.0, exposure=1.5),

@@ -6,7 +6,18 @@ import numpy as np
 import pytest
 
 import distal
-from distal import Box, Camera, CompileError, DistantLight, Plane, Scene, Sphere, time, union
+from distal import (
+    AmbientLight,
+    Box,
+    Camera,
+    CompileError,
+    DistantLight,
+    Plane,
+    Scene,
+    Sphere,
+    time,
+    union,
+)
 from distal.lang import slider
 from distal.scene.lowering.parts.moving_boxes import MovingBoxes
 from distal.scene.viewing.viewable import viewable
@@ -38,6 +49,18 @@ def test_a_page_of_many_parts(tmp_path):
     assert file.stat().st_size < 210_000  # 160 bytes a part, and 110 kB for everything else
     with looked_at(file, viewport=SMALL) as looked:
         assert looked.beside(viewable(scene)).is_agreement
+
+
+def test_a_page_with_a_grid_of_distances(tmp_path):
+    options = {"camera": scene_of(3).camera, "lights": AmbientLight(0.8)}
+    pages = {}
+    for name, reach in (("grid", 0.9), ("search", 0.01)):
+        pages[name] = Scene(pebbles(300), ambient_occlusion=reach, **options)
+        pages[name].export(tmp_path / f"{name}.html", panel=False)
+    sizes = {name: (tmp_path / f"{name}.html").stat().st_size for name in pages}
+    assert 0 < sizes["grid"] - sizes["search"] < 60_000
+    with looked_at(tmp_path / "grid.html", viewport=SMALL) as looked:
+        assert looked.beside(viewable(pages["grid"])).is_agreement
 
 
 def test_targets_without_buffers_draw_a_few_parts_without_a_table():

@@ -178,6 +178,8 @@ def occlusion_of_parts(
 ) -> float:
     """Return the fraction of ambient light that reaches a point: only parts within reach count.
 
+    Parts that stand still have a grid in most scenes (``part_grid``), which is faster.
+
     Args:
         others: Signed distance of what is beside the parts.
         boxes: The tree.

@@ -381,7 +381,6 @@ class SceneLowering:
         exact["numbers"] = composer.call(settings.march_numbers, exact)
         first = exact if paths else given
         given["first_hit"] = rays.first_hit(body, first, hybrid=self._hybrid)
-        given["occlusion"] = self._occlusion(body, given)
         given["shadow"] = self._shadow(body, given)
         if scene.renderer == "refracted" or paths:
             on_surface = {**exact, "near": number(0.0)}
@@ -418,7 +417,9 @@ class SceneLowering:
     def _occlusion(self, body: StatementList, given: Mapping[str, Expr]) -> FunctionRef:
         """The share of ambient light that reaches a point; 1 where the scene has none."""
         if any(light.ambient is not None for light in self._scene.lights):
-            return self._rays.occlusion(body, given, hybrid=self._hybrid)
+            reach = self._scene.numbers["ambient_occlusion"].plain
+            reach = reach if isinstance(reach, float) else None
+            return self._rays.occlusion(body, given, reach=reach, hybrid=self._hybrid)
         place = (("p", VEC3), ("n", VEC3), ("slope", FLOAT))
         return self._function("unoccluded", place, lambda body, given: number(1.0))
 
@@ -481,6 +482,8 @@ class SceneLowering:
             if follows:
                 photons = PhotonFunctions(self.composer, self._function)
                 asked |= photons.given(has_photons=self._has_photons)
+            if shines and not follows:  # nothing else computes what occlusion reads
+                asked["occlusion"] = self._occlusion(body, asked)
             if shines:
                 asked |= self.given_at_hits()
             if shines and self._bodies.are_many:

@@ -10,7 +10,7 @@ the other shapes are marched together.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Final, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from distal.fields.guarantees import UNBOUNDED, Primitive
 from distal.frontend import Assembly
@@ -31,10 +31,12 @@ from distal.ir.nodes import (
 )
 from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3, FunctionType, Kind, Type
 from distal.lang.functions import Func
+from distal.lang.lazy_module import LazyModule
 from distal.passes.fold.fold import fold_expression
 from distal.render import (
     closed_hits,
     heightfield_march,
+    part_grid,
     part_segments,
     part_shading,
     part_tree,
@@ -54,6 +56,11 @@ from distal.scene.lowering.union_parts import parts_of, united
 from distal.scene.tree.conversion import NO_VALUES
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
+
+if TYPE_CHECKING:
+    from distal.scene.lowering import distance_grid
+else:
+    distance_grid = LazyModule("distal.scene.lowering.distance_grid")  # needs NumPy
 
 # The number of steps of a ray through an exact field; a field that grows faster needs more.
 STEPS: Final = 160
@@ -85,6 +92,7 @@ _TAKEN: Final = (
     "farthest_plane",
     "steep",
     "look",
+    "place",
     "count",
     "has_planes",
 )
@@ -179,6 +187,7 @@ class RayFunctions:
         self._solids = self._others if is_closed else []
         self._beside = [*self._planes, *self._others]
         tables = [node for node in others if isinstance(node, TableNode)]
+        self._table_node = tables[0] if tables else None
         self._table = composer.table(tables[0]) if tables else None
         # All shapes, if paths meet them in closed form; a hit has the number of its shape.
         self._closed: list[Node] = []
@@ -398,23 +407,44 @@ class RayFunctions:
         return self._bound(part_shading.shadow_of_parts_and_planes, params, values, functions)
 
     def occlusion(
-        self, body: StatementList, given: Mapping[str, Expr], *, hybrid: bool
+        self,
+        body: StatementList,
+        given: Mapping[str, Expr],
+        *,
+        reach: float | None,
+        hybrid: bool,
     ) -> FunctionRef:
         """Return the function ``(p, n, slope) -> float``.
 
         Args:
             body: The statements of the function that calls it.
             given: The values of the march, by name.
+            reach: How far to search for surfaces; None if that may change.
             hybrid: Whether the march for terrain and water is used.
         """
         params: Params = [("p", VEC3), ("n", VEC3), ("slope", FLOAT)]
-        if self._table is None:
+        if self._table_node is None:
             field = self._field(self._root) if hybrid else self._safe_field(self._root)
             return self._bound(shade.occlusion_in, params, given, {"field": field})
-        values = {**given, **self._beside_table(body)}
-        values["has_others"] = boolean(bool(self._beside))
+        values = {**given, "has_others": boolean(bool(self._beside))}
         functions = {"others": self._beside_field()}
-        return self._bound(part_shading.occlusion_of_parts, params, values, functions)
+        grid = distance_grid.grid_for(self._table_node, reach)
+        if grid is None:
+            return self._bound(part_shading.occlusion_of_parts, params, values, functions)
+        values["place"] = body.let("place", self._place_of(grid))
+        levels = {"levels": self._composer.assembly.resource(grid, "part_distances")}
+        return self._bound(part_grid.occlusion_by_grid, params, values, functions, levels)
+
+    def _place_of(self, grid: distance_grid.DistanceGrid) -> Expr:
+        """Return where a grid is, as numbers: programs of other grids are the same."""
+        fixed = self._composer.values.fixed
+        points = tuple(map(float, grid.points))
+        numbers = (
+            fixed("grid_low", VEC3, grid.low),
+            fixed("grid_cell", FLOAT, grid.cell),
+            fixed("grid_points", VEC3, points),
+        )
+        return Construct(numbers, self._composer.assembly.struct(part_grid.GridPlace))
 
     def field_of(self, *, hybrid: bool) -> FunctionRef:
         """Return the function ``(p, part) -> float``: the field near a surface of a part.
