@@ -101,6 +101,7 @@ def share_beside(
     span: vec2,
     hides: float,
     steps: int,
+    may_be_sharp: bool,
 ) -> vec2:
     """Return how close a part comes to a ray, in radii of a cone around it.
 
@@ -112,6 +113,7 @@ def share_beside(
         span: Where the box around the part begins and ends, along the ray.
         hides: The share at which the part hides the cone: the march ends there.
         steps: Maximum number of steps.
+        may_be_sharp: Whether the second number is needed; a constant.
 
     Returns:
         The least share at the points of the march. If it is 2 or more, no point of the part is in
@@ -131,20 +133,23 @@ def share_beside(
         d = distance(ray.origin + t * ray.direction, part)
         radius = width * max(t, 1e-6)
         share = min(share, d / radius)
-        long = 2.0 * step * step
-        along = step * step + free * free - d * d
-        rest = 2.0 * long * free * free - along * along
-        is_between = along > 0.0 and along < long
-        at_touch = rest / max(2.0 * long * radius * radius, 1e-30)
-        height = select(is_between and rest >= 0.0, min(height, at_touch), height)
-        is_torn = is_torn or (is_between and rest < 0.0 and falls)
         onward = max(abs(d), max(width, NEARLY) * t)
-        falls = d * step < (free - d) * onward
-        free = d
-        step = onward
-        t += step
-    goes_through = is_torn or share < 0.0
-    return vec2(share, select(goes_through, -1.0, min(share, sqrt(height))))
+        t += onward
+        if may_be_sharp:
+            long = 2.0 * step * step
+            along = step * step + free * free - d * d
+            rest = 2.0 * long * free * free - along * along
+            is_between = along > 0.0 and along < long
+            at_touch = rest / max(2.0 * long * radius * radius, 1e-30)
+            height = select(is_between and rest >= 0.0, min(height, at_touch), height)
+            is_torn = is_torn or (is_between and rest < 0.0 and falls)
+            falls = d * step < (free - d) * onward
+            free = d
+            step = onward
+    closest = share
+    if may_be_sharp:
+        closest = select(is_torn or share < 0.0, -1.0, min(share, sqrt(height)))
+    return vec2(share, closest)
 
 
 @func
@@ -155,8 +160,9 @@ def parts_along(
     width: float,
     start: float,
     end: float,
-    is_sharp: bool,
+    hides: float,
     steps: int,
+    may_be_sharp: bool,
 ) -> NearParts:
     """Return the parts that may hide a part of a cone.
 
@@ -167,10 +173,11 @@ def parts_along(
         width: Radius of the cone at distance 1.
         start: Distance along the ray where it begins.
         end: Distance along the ray where it ends.
-        is_sharp: Whether a part hides the cone as soon as the ray goes through it.
+        hides: The share at which a part hides the cone: -1; 0 if it does as soon as the ray goes
+            through it.
         steps: Maximum number of steps in one part.
+        may_be_sharp: Whether ``hides`` may be 0; a constant.
     """
-    hides = select(is_sharp, 0.0, -1.0)
     inverse = inverse_of(ray.direction)
     listed = [0] * MOST_LISTED
     count = 0
@@ -188,8 +195,9 @@ def parts_along(
         high = boxes[2 * box + 1]
         following = int(low.w)
         farthest = max(abs(low.xyz - ray.origin), abs(high.xyz - ray.origin))
-        # The sum is never less than the length, and takes no root.
-        margin = 2.0 * width * min(farthest.x + farthest.y + farthest.z, end)
+        # Never less than the length, and more by a seventh at most, without a root.
+        longest = max(farthest.x, max(farthest.y, farthest.z))
+        margin = width * min(longest + farthest.x + farthest.y + farthest.z, 2.0 * end)
         span = span_in_box(ray.origin, inverse, low.xyz - margin, high.xyz + margin)
         span = vec2(max(span.x, start), min(span.y, end))
         meets = span.x <= span.y and not hidden
@@ -200,10 +208,14 @@ def parts_along(
             else:
                 share = OPEN
                 if meets:
-                    shares = share_beside(distance, part, ray, width, span, hides, steps)
+                    shares = share_beside(
+                        distance, part, ray, width, span, hides, steps, may_be_sharp
+                    )
                     share = shares.x
                     least = min(least, shares.y)
-                    hidden = select(is_sharp, least, share) <= hides
+                    hidden = share <= hides
+                    if may_be_sharp:
+                        hidden = select(hides < 0.0, share, least) <= hides
                 beside = share < 2.0 and not hidden
                 if anywhere(beside):
                     around_low = select(beside, min(around_low, low.xyz), around_low)

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from distal.fields.boxes import hull
 from distal.fields.guarantees import UNBOUNDED, Bounds
-from distal.lang import Buffer, func, gradient, length, max, min, vec3, vec4
+from distal.lang import Buffer, func, gradient, length, max, min, select, vec3, vec4
 from distal.render.camera import Ray
 from distal.render.lights import LightSample
 from distal.render.march import March
@@ -34,6 +34,7 @@ def edge_of_parts(
     steps: int,
     has_others: bool,
     steep: bool,
+    some_sharp: bool,
     needs_offset: bool,
 ) -> Edge:
     """Return where the edge of a shadow is, as one ray among parts finds it.
@@ -54,10 +55,14 @@ def edge_of_parts(
         steps: Maximum number of steps.
         has_others: Whether anything is beside the parts; a constant.
         steep: Whether values may be less than distances; a constant.
+        some_sharp: Whether a light may be as sharp as ``SHARPEST``; a constant.
         needs_offset: Whether the offset must be known where it is not sure what is visible.
     """
-    is_sharp = width <= SHARPEST and not has_others and not steep
-    near = parts_along(boxes, distance, ray, width, numbers.threshold, end, is_sharp, steps)
+    may_be_sharp = some_sharp and not has_others and not steep
+    is_sharp = may_be_sharp and width <= SHARPEST
+    hides = select(is_sharp, 0.0, -1.0)
+    start = numbers.threshold
+    near = parts_along(boxes, distance, ray, width, start, end, hides, steps, may_be_sharp)
     if near.hidden:
         return Edge(-OPEN, True, False)
     if is_sharp:
@@ -107,6 +112,7 @@ def shadow_of_parts(
     steps: int,
     has_others: bool,
     steep: bool,
+    some_sharp: bool,
     sample: int,
     samples: int,
 ) -> Opening:
@@ -123,6 +129,7 @@ def shadow_of_parts(
         steps: Maximum number of steps of one ray.
         has_others: Whether anything is beside the parts; a constant.
         steep: Whether values may be less than distances; a constant.
+        some_sharp: Whether a light may be as sharp as ``SHARPEST``; a constant.
         sample: The number of the pixel's sample, from 0.
         samples: How many samples the pixel has.
     """
@@ -130,7 +137,7 @@ def shadow_of_parts(
     def edge(ray: Ray, width: float, end: float, needs_offset: bool) -> Edge:
         return edge_of_parts(
             others, others_bounds, boxes, distance, ray, width, end, numbers, steps, has_others,
-            steep, needs_offset,
+            steep, some_sharp, needs_offset,
         )  # fmt: skip
 
     return opening(edge, origin, light, numbers.far, sample, samples)
@@ -149,6 +156,7 @@ def shadow_of_parts_and_planes(
     steps: int,
     has_others: bool,
     steep: bool,
+    some_sharp: bool,
     sample: int,
     samples: int,
 ) -> Opening:
@@ -158,7 +166,7 @@ def shadow_of_parts_and_planes(
         return Opening(0.0)
     found = shadow_of_parts(
         others, others_bounds, boxes, distance, origin, light, numbers, steps, has_others, steep,
-        sample, samples,
+        some_sharp, sample, samples,
     )  # fmt: skip
     return Opening(min(found.share, over), found.lost)
 

@@ -64,10 +64,12 @@ class TreePlace:
     Attributes:
         box: The number of a box.
         around: That of the box around it; 0 for the first.
+        beside: That of the other box in that one, if rays meet it later; else 0.
     """
 
     box: int
     around: int
+    beside: int
 
 
 @struct
@@ -77,12 +79,10 @@ class Children:
     Attributes:
         near: The number of the one that rays meet first.
         far: That of the other.
-        around: That of the box around their box; 0 for the first.
     """
 
     near: int
     far: int
-    around: int
 
 
 @func
@@ -324,7 +324,7 @@ def children_of(boxes: Buffer[vec4], box: int, octant: int) -> Children:
     upper = int(boxes[2 * lower].w)
     is_downwards = (octant >> (code & 3)) & 1 == 1
     near = select(is_downwards, upper, lower)
-    return Children(near, lower + upper - near, code >> 2)
+    return Children(near, lower + upper - near)
 
 
 @func
@@ -336,17 +336,18 @@ def next_box(boxes: Buffer[vec4], here: TreePlace, octant: int) -> TreePlace:
         here: The box.
         octant: As ``octant_of``.
     """
-    box = here.box
-    around = here.around
+    if here.beside > 0:
+        return TreePlace(here.beside, here.around, 0)
+    box = here.around
     for _ in range(MOST_DEPTH):
         if box == 0:
             break
+        around = (~int(boxes[2 * box + 1].w)) >> 2
         children = children_of(boxes, around, octant)
         if box == children.near:
-            return TreePlace(children.far, around)
+            return TreePlace(children.far, around, 0)
         box = around
-        around = children.around
-    return TreePlace(box_count(boxes), 0)
+    return TreePlace(box_count(boxes), 0, 0)
 
 
 @func
@@ -374,7 +375,7 @@ def first_met(
     t = numbers.far
     taken = 0
     lost = PASSED
-    here = TreePlace(0, 0)
+    here = TreePlace(0, 0, 0)
     for _ in range(box_count(boxes)):
         box = here.box
         if box >= box_count(boxes):
@@ -387,7 +388,8 @@ def first_met(
         meets = span.x <= span.y and span.x < t and span.y >= numbers.near
         if anywhere(meets):
             if of < 0:
-                here = TreePlace(children_of(boxes, box, octant).near, box)
+                children = children_of(boxes, box, octant)
+                here = TreePlace(children.near, box, children.far)
                 goes_on = False
             elif meets:
                 hit = meet(of, span, high.xyz - low.xyz, t * (1.0 + MARGIN + numbers.threshold))

@@ -15,6 +15,7 @@ from distal.ir.nodes import CompareOp, Expr, FunctionRef, If, Return
 from distal.ir.types import INT, VEC3
 from distal.render import lamps, shade, surroundings
 from distal.render.lights import no_light
+from distal.render.shadows import SHARPEST
 from distal.scene.lowering.lamps import is_ball, lamps_of
 from distal.scene.lowering.ray_functions import Define
 from distal.scene.lowering.shapes import ShapeComposer
@@ -47,6 +48,11 @@ class LightFunctions:
     def count(self) -> int:
         """How many lights have a position or a direction."""
         return len(self._samples())
+
+    @property
+    def some_sharp(self) -> bool:
+        """Whether a light may be so sharp that its shadows need no second march."""
+        return any(_may_be_sharp(sample) for sample in self._samples())
 
     def _samples(self) -> list[Any]:
         return [light.sample for light in self._scene.lights if light.sample is not None]
@@ -146,3 +152,10 @@ class LightFunctions:
             return scene.background.emit(self._composer, {"direction": body.let("level", level)})
 
         return self._define("fog", [("direction", VEC3)], make, [])
+
+
+def _may_be_sharp(sample: Any) -> bool:
+    """Return whether a light may be as sharp as ``SHARPEST``."""
+    values = getattr(sample.values.get("light"), "values", sample.values)  # below a falloff
+    sizes = [values[name].plain for name in ("angle", "radius") if name in values]
+    return not any(isinstance(size, float) and size > 2.0 * SHARPEST for size in sizes)

@@ -426,6 +426,7 @@ class SceneLowering:
     def _shadow(self, body: StatementList, given: Mapping[str, Expr]) -> FunctionRef:
         """Return the function ``(origin, light, sample, samples) -> Opening``."""
         scene, composer = self._scene, self.composer
+        given = {**given, "some_sharp": boolean(self._lights.some_sharp)}
         clear: list[Node] = []
         if scene.renderer == "refracted" and scene.shadows:
             clear, others = split_glass(self.node, scene.material)

@@ -91,6 +91,7 @@ _TAKEN: Final = (
     "stride",
     "farthest_plane",
     "steep",
+    "some_sharp",
     "look",
     "place",
     "count",
