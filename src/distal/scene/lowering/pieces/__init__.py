@@ -1,0 +1,1 @@
+"""Any tree of shapes as pieces: boxes, each with a short program of the shapes within it."""

@@ -1,0 +1,364 @@
+"""Pieces: boxes with short programs, whose union is the solid of a program.
+
+Input: a program, the boxes and slopes of its leaves, a function that returns distances to leaves.
+Output: a tree of boxes, parents first, each of the last with the program of what matters in it. The
+solid is the union of the solids of these programs, each within its own box; boxes that lie within
+the solid are left out.
+
+A box is divided until its program has few leaves or it is small. The members of a hard union are
+divided as in ``parts.box_tree``; other programs keep only what matters in each half of their box
+(``cell_pruning``). At last boxes are put together again where that makes rays cheaper: the cost of
+a box is its area times the boxes, visits and leaves within.
+
+All boxes of a level are divided together, as arrays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Final, TypeAlias
+
+import numpy as np
+
+from distal.fields.guarantees import ENDLESS
+from distal.scene.lowering.parts.box_tree import OF_PLACE, OF_SIZE
+from distal.scene.lowering.pieces.box_order import BoxNodes, PieceTree, surface
+from distal.scene.lowering.pieces.cell_programs import CellPrograms, joined_cells, ranges
+from distal.scene.lowering.pieces.cell_pruning import CellPruning, blended
+from distal.scene.lowering.pieces.emission import emitted
+from distal.scene.lowering.pieces.lone_leaves import lone_leaves, unites_leaves
+from distal.scene.lowering.pieces.operands import (
+    CHAIN,
+    LEAF,
+    Flags,
+    Floats,
+    OperandTree,
+    Whole,
+    operand_tree,
+)
+from distal.scene.lowering.pieces.programs import PieceProgram
+
+# Distances of points (n, 3) to leaves (n,): floats (n,).
+Distances: TypeAlias = Callable[[Floats, Whole], Floats]
+
+ENDLESS_SOLID: Final = "the solid has no finite box"
+# What the middle of a cell is away from its corners, more than computed, for rounding.
+OF_REACH: Final = 5e-4
+# Members of a union that overlap are divided nevertheless from this number on.
+MANY_MEMBERS: Final = 64
+MOST_OVERLAP: Final = 1.6
+MOST_LEVELS: Final = 64
+# Blends of more operands than this add as much as a whole width.
+MOST_BULGES: Final = 32
+
+
+@dataclass(frozen=True, slots=True)
+class PieceLimits:
+    """When boxes are not divided any more, and what they cost.
+
+    Attributes:
+        leaves: Programs of so many leaves are short enough.
+        smallest: The longest side of boxes that are small enough, as a fraction of the whole's.
+        margin: How far from the surface values are those of the tree, as a fraction of the whole's
+            longest side.
+        box: The cost of a box, for each unit of area.
+        visit: The cost of the visit of a piece.
+        leaf: The cost of a leaf of its program.
+        values: After so many distances to leaves no more boxes are halved, so that dense blends do
+            not take minutes.
+        interior: Whether boxes within the solid are pieces, too.
+    """
+
+    leaves: int = 4
+    smallest: float = 1.0 / 64.0
+    margin: float = 5e-4
+    box: float = 1.0
+    visit: float = 24.0
+    leaf: float = 9.0
+    values: int = 10_000_000
+    interior: bool = False
+
+
+def build(
+    program: PieceProgram,
+    low: Floats,
+    high: Floats,
+    slopes: Floats,
+    distances: Distances,
+    limits: PieceLimits = PieceLimits(),
+    growths: Floats | None = None,
+) -> PieceTree:
+    """Return the pieces of a program.
+
+    Args:
+        program: The program.
+        low: The low corners of the boxes of its leaves (n, 3); infinite sides are
+            ``UNBOUNDED``.
+        high: The high corners.
+        slopes: Lipschitz bounds (slopes) of the leaves (n,).
+        distances: Returns the distances of points to leaves, each to its own.
+        limits: When to stop.
+        growths: How fast the sides of the boxes grow with the level (``fields.guarantees``) (n,);
+            None: by 1.
+
+    Raises:
+        ValueError: The solid has no finite box.
+    """
+    growths = np.ones(len(low)) if growths is None else growths
+    if unites_leaves(program):
+        if not (np.maximum(np.abs(low), np.abs(high)) < ENDLESS).all():
+            raise ValueError(ENDLESS_SOLID)
+        return lone_leaves(program, low, high)
+    tree = operand_tree(program, slopes, growths)
+    margin = OF_SIZE * (high - low) + OF_PLACE * np.maximum(np.abs(low), np.abs(high))
+    return _Division(tree, low - margin, high + margin, distances, limits).pieces()
+
+
+class _Division:
+    """The division of a box into pieces."""
+
+    def __init__(
+        self,
+        tree: OperandTree,
+        low: Floats,
+        high: Floats,
+        distances: Distances,
+        limits: PieceLimits,
+    ) -> None:
+        self._tree = tree
+        self._low, self._high = low, high
+        self._distances = distances
+        self._limits = limits
+        self._bulges = _bulges_of(tree)
+        whole = CellPrograms.whole(tree, np.full(3, -np.inf), np.full(3, np.inf))
+        (box,) = whole.boxes(tree, low, high, self._bulges)[0]
+        if not (np.abs(box) < ENDLESS).all():
+            raise ValueError(ENDLESS_SOLID)
+        self._first = whole.taken(np.array([0]), box[None, :3], -box[None, 3:], np.array([0]))
+        self._size = float((-box[3:] - box[:3]).max())
+        self._pruning = CellPruning(tree, self._bulges, limits.margin * self._size)
+        self._asked = 0
+        self._farthest = float(np.abs(box).max())
+        self._is_union = tree.kind[0] == CHAIN and tree.is_open[0] and tree.width[0] == 0.0
+        self._nodes = BoxNodes()
+        self._batches: list[CellPrograms] = []
+
+    def pieces(self) -> PieceTree:
+        """Return the pieces."""
+        nodes = self._nodes
+        batch, is_inside = self._first, np.array([False])
+        nodes.added(1)
+        while len(batch):
+            batch, is_inside, members = self._clipped(batch, is_inside)
+            count = batch.leaf_counts(self._tree)
+            nodes.fill(batch.place, batch.low, batch.high, self._costs(batch, count), batch.is_cut)
+            self._batches.append(batch)
+            if len(self._batches) == MOST_LEVELS:
+                break
+            size = (batch.high - batch.low).max(axis=1, initial=0.0)
+            smallest = self._limits.smallest * self._size
+            is_divided = (count > self._limits.leaves) & (size >= smallest) & (size > 0.0)
+            is_divided &= self._asked < self._limits.values
+            parted, by_member = self._parted(batch, members)
+            halves, is_inside = self._halved(batch, is_divided & ~by_member & ~is_inside)
+            is_inside = np.concatenate([np.zeros(len(parted), bool), is_inside])
+            batch = joined_cells([parted, halves])
+        return self._tree_of_pieces()
+
+    def _costs(self, batch: CellPrograms, count: Whole) -> Floats:
+        limits = self._limits
+        of_piece = limits.box + limits.visit + limits.leaf * count
+        return surface(batch.low, batch.high) * of_piece
+
+    def _clipped(
+        self, batch: CellPrograms, is_inside: Flags
+    ) -> tuple[CellPrograms, Flags, tuple[Floats, Floats]]:
+        """Return the cells within the boxes of their programs, and the boxes of union members.
+
+        Members of a hard union without a box in the cell are dropped.
+        """
+        boxes = batch.boxes(self._tree, self._low, self._high, self._bulges)
+        low = np.maximum(batch.low, boxes[0][:, :3])
+        high = np.minimum(batch.high, -boxes[0][:, 3:])
+        keep: list[Flags] = [np.ones(len(e.node), bool) for e in batch.levels]
+        keep[0] = np.all(low <= high, axis=1)
+        members = np.zeros((0, 3)), np.zeros((0, 3))
+        if self._is_union:
+            cell = batch.levels[1].parent
+            members = (
+                np.maximum(batch.low[cell], boxes[1][:, :3]),
+                np.minimum(batch.high[cell], -boxes[1][:, 3:]),
+            )
+            keep[1] = np.all(members[0] <= members[1], axis=1)
+            keep[0] &= np.bincount(cell[keep[1]], minlength=len(batch)) > 0
+            chosen = keep[1] & keep[0][cell]
+            members = members[0][chosen], members[1][chosen]
+        chosen = keep[0]
+        batch = replace(batch, low=low, high=high).kept(keep)
+        return batch, is_inside[chosen], members
+
+    def _parted(
+        self, batch: CellPrograms, members: tuple[Floats, Floats]
+    ) -> tuple[CellPrograms, Flags]:
+        """Return the halves of the members of unions, and which cells are divided by members.
+
+        Args:
+            batch: The cells.
+            members: The corners of the boxes of all members, within their cells.
+        """
+        none = np.zeros(0, np.int64)
+        nothing = batch.taken(none, batch.low[:0], batch.high[:0], none)
+        count = batch.levels[0].count
+        several = np.flatnonzero(count > 1)
+        if not self._is_union or not len(several):
+            return nothing, np.zeros(len(batch), bool)
+        number = count[several]
+        entry = ranges(batch.levels[0].start[several], number)
+        halves = _MemberHalves.of(members[0][entry], members[1][entry], number)
+        area = surface(halves.low, halves.high).reshape(-1, 2).sum(axis=1)
+        own = surface(batch.low[several], batch.high[several])
+        parts = (area < MOST_OVERLAP * own) | (number > MANY_MEMBERS)
+        cells, pairs = several[parts], np.repeat(parts, 2)
+        place = self._nodes.divided(batch.place[cells], halves.axis[parts])
+        twice = batch.taken(np.repeat(cells, 2), halves.low[pairs], halves.high[pairs], place)
+        # Each half keeps its own members.
+        in_upper = np.zeros(len(batch.levels[1].node), bool)
+        in_upper[entry] = halves.is_upper
+        starts = np.repeat(batch.levels[0].start[cells], 2)
+        source = ranges(starts, np.repeat(count[cells], 2))
+        side = np.tile([False, True], len(cells))
+        keep: list[Flags] = [np.ones(len(e.node), bool) for e in twice.levels]
+        keep[1] = in_upper[source] == side[twice.levels[1].parent]
+        by_member = np.zeros(len(batch), bool)
+        by_member[cells] = True
+        return twice.kept(keep), by_member
+
+    def _halved(self, batch: CellPrograms, is_divided: Flags) -> tuple[CellPrograms, Flags]:
+        """Return the halves of cells that have a part of the surface, with what matters there."""
+        cells = np.flatnonzero(is_divided)
+        low, high = batch.low[cells], batch.high[cells]
+        axis = np.argmax(high - low, axis=1)
+        number = np.arange(len(cells))
+        middle = 0.5 * (low[number, axis] + high[number, axis])
+        place = self._nodes.divided(batch.place[cells], axis)
+        lows, highs = np.repeat(low, 2, axis=0), np.repeat(high, 2, axis=0)
+        highs[2 * number, axis] = middle
+        lows[2 * number + 1, axis] = middle
+        halves = batch.taken(np.repeat(cells, 2), lows, highs, place)
+        halves = replace(halves, is_cut=np.ones(len(halves), bool))
+        if not len(halves):
+            return halves, np.zeros(0, bool)
+        reach = 0.5 * np.sqrt(((highs - lows) ** 2).sum(axis=1)) * (1.0 + OF_REACH)
+        reach += OF_PLACE * self._farthest
+        own = self._leaf_distances(halves)
+        return self._pruning.pruned(halves, own, reach, interior=self._limits.interior)
+
+    def _leaf_distances(self, cells: CellPrograms) -> list[Floats]:
+        """Return the distances of the cells' middles to their leaves, level by level."""
+        middle = 0.5 * (cells.low + cells.high)
+        points, leaves, counts = [], [], []
+        for entries, cell in zip(cells.levels, cells.cells(), strict=True):
+            chosen = self._tree.kind[entries.node] == LEAF
+            points.append(middle[cell[chosen]])
+            leaves.append(self._tree.leaf[entries.node[chosen]])
+            counts.append(len(leaves[-1]))
+        self._asked += sum(counts)
+        found = self._distances(np.concatenate(points), np.concatenate(leaves))
+        return np.split(np.asarray(found, np.float64), np.cumsum(counts)[:-1])
+
+    def _tree_of_pieces(self) -> PieceTree:
+        """Return the tree of boxes that is cheapest, and the programs of its pieces."""
+        order = self._nodes.order(self._limits.box)
+        first = np.cumsum([0, *map(len, self._batches)])
+        at = np.concatenate([batch.place for batch in self._batches])
+        where = np.empty(self._nodes.count, np.int64)
+        where[at] = np.arange(len(at))
+        entry = where[order.pieces]
+        number = np.searchsorted(first, entry, side="right") - 1
+        none = np.zeros(0, np.int64)
+        first_batch = self._batches[0]
+        parts = [first_batch.taken(none, first_batch.low[:0], first_batch.high[:0], none)]
+        places = [none]
+        for i, batch in enumerate(self._batches):
+            chosen = np.flatnonzero(number == i)
+            if len(chosen):
+                cells = entry[chosen] - first[i]
+                parts.append(batch.taken(cells, batch.low[cells], batch.high[cells], chosen))
+                places.append(chosen)
+        programs = emitted(joined_cells(parts), self._tree)
+        program = np.empty(len(order.pieces), np.int64)
+        program[np.concatenate(places)] = programs.program
+        return order.tree(programs, program, self._tree.joins)
+
+
+@dataclass(frozen=True, slots=True)
+class _MemberHalves:
+    """The halves of the members of several unions.
+
+    Attributes:
+        low: The low corners of the boxes around both halves of each union, the lower half first.
+        high: The high corners.
+        axis: The axis of each union along which its members are divided.
+        is_upper: Whether each member is in the upper half.
+    """
+
+    low: Floats
+    high: Floats
+    axis: Whole
+    is_upper: Flags
+
+    @staticmethod
+    def of(low: Floats, high: Floats, count: Whole) -> _MemberHalves:
+        """Return the halves.
+
+        Args:
+            low: The low corners of the members, union by union.
+            high: The high corners.
+            count: How many members each union has; at least two.
+        """
+        first = np.cumsum(count) - count
+        half = count - count // 2
+        order, axis = sorted_within(0.5 * (low + high), first, count)
+        begins = np.stack([first, first + half], axis=1).ravel()
+        is_upper = np.empty(len(low), bool)
+        is_upper[order] = np.arange(len(low)) >= np.repeat(first + half, count)
+        return _MemberHalves(
+            np.minimum.reduceat(low[order], begins),
+            np.maximum.reduceat(high[order], begins),
+            axis,
+            is_upper,
+        )
+
+
+def _bulges_of(tree: OperandTree) -> Floats:
+    """Return how far the blend of each node is below n equal values, for n from 0.
+
+    Of values that are all 0 or more the blend is at least that, because it never falls where a
+    value grows.
+    """
+    count = min(int(np.bincount(tree.parent[1:]).max(initial=0)), MOST_BULGES)
+    found = np.zeros((len(tree.kind), count + 2))
+    chains = np.flatnonzero((tree.kind == CHAIN) & (tree.width > 0.0))
+    for join in np.unique(tree.own_join[chains]).tolist():
+        chosen = chains[tree.own_join[chains] == join]
+        value = np.zeros(1)
+        for n in range(2, count + 1):
+            value = blended(tree.joins[join], value, np.zeros(1))
+            found[chosen, n] = -value[0]
+        found[chosen, count + 1] = tree.width[chosen]
+    return found
+
+
+def sorted_within(middles: Floats, first: Whole, size: Whole) -> tuple[Whole, Whole]:
+    """Return the order of points, sorted within each group along its longest side, and that axis.
+
+    Args:
+        middles: The points (n, 3), group by group.
+        first: Where each group begins.
+        size: How many points it has.
+    """
+    extent = np.maximum.reduceat(middles, first) - np.minimum.reduceat(middles, first)
+    axis = np.argmax(extent, axis=1)
+    along = middles[np.arange(len(middles)), np.repeat(axis, size)]
+    return np.lexsort((along, np.repeat(np.arange(len(first)), size))), axis
