@@ -163,14 +163,16 @@ class GpuProgram:
     def _group(self, sort: str, group: int, extra: Mapping[int, tuple[Any, int]]) -> Any:
         """Return a bind group; the previous one if it binds the same objects."""
         interface, things = self.interface, dict(self._bound)
+        sizes: dict[int, int] = {}
         if group == _SHARED:
             things = {interface["uniform_buffer"]["binding"]: self._uniforms}
             if frame := interface.get("frame"):
                 for place in ("storage", "uniform"):
                     things[frame[place]["binding"]] = self._frame_buffer
             things |= {b: buffer for b, (buffer, _) in extra.items()}
+            sizes = {b: size for b, (_, size) in extra.items()}
         kinds = self._kinds(sort, group)
-        used = tuple((b, things[b], extra[b][1] if b in extra else 0) for b in kinds)
+        used = tuple((b, things[b], sizes.get(b, 0)) for b in kinds)
         known = self._groups.get((sort, group))
         if known is not None and known[0] == used:
             return known[1]

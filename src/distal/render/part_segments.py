@@ -19,28 +19,33 @@ from distal.render.segment import segment
 @func
 def next_of_parts(
     boxes: Buffer[vec4],
-    distance: Callable[[vec3, int], float],
+    within: Callable[[vec3, int], float],
     ray: Ray,
     slope: float,
     part: int,
     numbers: March,
     steps: int,
+    many_boxes: bool,
 ) -> Hit:
     """Return the first part along a ray that runs outside of all parts.
 
     Args:
         boxes: The tree.
-        distance: The signed distance of a point to a part.
+        within: The signed distance of a point to a part, within its box.
         ray: Ray.
         slope: As for ``segment``.
         part: The part on which the ray starts; -1 if it starts on none.
         numbers: The parameters of the march.
         steps: Maximum number of evaluations in one part.
+        many_boxes: Whether a surface may go on in the boxes of other parts; a constant.
     """
 
     def meet(of: int, span: vec2, sides: vec3, far: float) -> Hit:
-        leaving = select(of == part, slope, 0.0)
-        return segment_of_part(distance, of, ray, leaving, span, sides, far, numbers, steps)
+        starts = of == part
+        if many_boxes:
+            starts = starts or (part >= 0 and span.x <= 0.0)
+        leaving = select(starts, slope, 0.0)
+        return segment_of_part(within, of, ray, leaving, span, sides, far, numbers, steps)
 
     return first_met(boxes, meet, ray, numbers)
 
@@ -51,12 +56,15 @@ def segment_of_parts(
     others_field: Callable[[vec3], float],
     boxes: Buffer[vec4],
     distance: Callable[[vec3, int], float],
+    within: Callable[[vec3, int], float],
+    all_parts: Callable[[vec3], float],
     ray: Ray,
     side: float,
     slope: float,
     part: int,
     numbers: March,
     steps: int,
+    many_boxes: bool,
 ) -> Hit:
     """Return the next surface of the parts and of what is beside them, from a surface.
 
@@ -68,17 +76,20 @@ def segment_of_parts(
         others_field: Signed distance of what is beside the parts.
         boxes: The tree.
         distance: The signed distance of a point to a part.
+        within: The same within its box; other places do not count.
+        all_parts: The signed distance of a point to all parts, also within them.
         ray: Ray.
         side: 1 if the ray runs outside, -1 inside.
         slope: As for ``segment``.
         part: The part on which the ray starts; -1 if it starts on another surface.
         numbers: The parameters of the march.
         steps: Maximum number of evaluations in one part.
+        many_boxes: Whether a surface may go on in the boxes of other parts; a constant.
     """
     if side < 0.0:
 
         def field(p: vec3) -> float:
-            return min(nearest_of_all(boxes, distance, p).distance, others_field(p))
+            return min(all_parts(p), others_field(p))
 
         way = segment(field, ray, side, slope, everywhere(), numbers, steps)
         end = ray.origin + way.t * ray.direction
@@ -88,7 +99,7 @@ def segment_of_parts(
     other = others(ray, side, select(part < 0, slope, 0.0), part)
     far = select(other.found, other.t, numbers.far)
     limited = March(numbers.divisor, numbers.near, far, numbers.threshold, numbers.steepest)
-    hit = next_of_parts(boxes, distance, ray, slope, part, limited, steps)
+    hit = next_of_parts(boxes, within, ray, slope, part, limited, steps, many_boxes)
     taken = other.steps + hit.steps
     lost = select(hit.found, PASSED, max(hit.lost, other.lost))
     if hit.found or not other.found:

@@ -93,6 +93,13 @@ def beyond_box(p: vec3, low: vec4, high: vec4) -> float:
 
 
 @func
+def beyond_sides(p: vec3, low: vec4, high: vec4) -> float:
+    """Return how far a point is beyond the farthest side of a box; less than 0 inside."""
+    beyond = max(low.xyz - p, p - high.xyz)
+    return max(beyond.x, max(beyond.y, beyond.z))
+
+
+@func
 def squared(distance: float) -> float:
     """Return the square of the distance that a search is limited to; 0 for a negative one."""
     limit = max(distance, 0.0)
@@ -208,6 +215,18 @@ def nearest_of_all(
         p: The point.
     """
     return nearest_part(boxes, distance, p, UNBOUNDED, True)
+
+
+@func
+def distance_to_all(boxes: Buffer[vec4], distance: Callable[[vec3, int], float], p: vec3) -> float:
+    """Return the signed distance of a point to all parts.
+
+    Args:
+        boxes: The tree.
+        distance: The signed distance of a point to a part.
+        p: The point.
+    """
+    return nearest_of_all(boxes, distance, p).distance
 
 
 @func
@@ -415,7 +434,7 @@ def farthest_box(boxes: Buffer[vec4], ray: Ray, numbers: March) -> float:
 @func
 def trace_parts(
     boxes: Buffer[vec4],
-    distance: Callable[[vec3, int], float],
+    within: Callable[[vec3, int], float],
     chord: Callable[[vec3, vec3, int], vec2],
     has_chord: Callable[[int], bool],
     ray: Ray,
@@ -429,7 +448,7 @@ def trace_parts(
 
     Args:
         boxes: The tree.
-        distance: The signed distance of a point to a part.
+        within: The signed distance of a point to a part, within its box.
         chord: Where a line enters and leaves a part.
         has_chord: Whether that is known of a part.
         ray: Ray.
@@ -441,7 +460,7 @@ def trace_parts(
     def meet(of: int, span: vec2, sides: vec3, far: float) -> Hit:
         if some_chords and has_chord(of):
             return meet_part(chord, of, ray, far, numbers)
-        return segment_of_part(distance, of, ray, 0.0, span, sides, far, numbers, steps)
+        return segment_of_part(within, of, ray, 0.0, span, sides, far, numbers, steps)
 
     return first_met(boxes, meet, ray, numbers)
 
@@ -452,6 +471,8 @@ def first_of_parts(
     others_field: Callable[[vec3], float],
     boxes: Buffer[vec4],
     distance: Callable[[vec3, int], float],
+    within: Callable[[vec3, int], float],
+    all_parts: Callable[[vec3], float],
     chord: Callable[[vec3, vec3, int], vec2],
     has_chord: Callable[[int], bool],
     ray: Ray,
@@ -469,6 +490,8 @@ def first_of_parts(
         others_field: Signed distance of what is beside the parts.
         boxes: The tree.
         distance: The signed distance of a point to a part.
+        within: The same within its box; other places do not count.
+        all_parts: The signed distance of a point to all parts, also within them.
         chord: Where a line enters and leaves a part.
         has_chord: Whether that is known of a part.
         ray: Ray.
@@ -493,13 +516,13 @@ def first_of_parts(
             break
 
         def field(q: vec3) -> float:
-            return min(nearest_of_all(boxes, distance, q).distance, others_field(q))
+            return min(all_parts(q), others_field(q))
 
         way = segment(field, ray, 0.0, 0.0, everywhere(), numbers, steps)
         p = ray.origin + way.t * ray.direction
     far = select(other.found, other.t, numbers.far)
     limited = March(numbers.divisor, numbers.near, far, numbers.threshold, numbers.steepest)
-    hit = trace_parts(boxes, distance, chord, has_chord, ray, limited, steps, some_chords)
+    hit = trace_parts(boxes, within, chord, has_chord, ray, limited, steps, some_chords)
     taken = other.steps + hit.steps
     lost = select(hit.found, PASSED, max(hit.lost, other.lost))
     if hit.found or not other.found:

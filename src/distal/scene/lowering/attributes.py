@@ -14,7 +14,7 @@ from distal.fields.combine.alternatives import SELECT
 from distal.fields.deform.offsets import SECTION
 from distal.fields.guarantees import Operator, Primitive
 from distal.ir.build import add, builtin, cast, compare, field, index, multiply, number, select
-from distal.ir.nodes import Call, CompareOp, Expr, Gradient, Read
+from distal.ir.nodes import CompareOp, Expr, Gradient, Read
 from distal.ir.types import FLOAT, VEC3, Kind, Type
 from distal.lang.functions import Func
 from distal.lang.resources import Buffer
@@ -267,7 +267,7 @@ def of_part(kind: Attribute, node: TableNode, site: AttributePoint, part: Expr) 
 
     params = [(name, value.type) for name, value in given.items()]
     made = functions.of_part(kind.name, params, kind.result, make)
-    return Call(made.name, tuple(given.values()), kind.result)
+    return functions.attribute(kind.result, given, made)
 
 
 def _around(

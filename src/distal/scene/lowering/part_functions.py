@@ -7,14 +7,15 @@ and calls the function of its kind; the walks through the tree of boxes are scen
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Final, TypeAlias
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from distal.fields.chords import missed
 from distal.ir.build import add, boolean, cast, compare, index, integer, multiply, swizzle
 from distal.ir.build import number as constant_number
 from distal.ir.nodes import Call, CompareOp, Expr, FunctionRef, If, Param, Read, Return
 from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3, FunctionType, Kind, Type
+from distal.lang.functions import Func
 from distal.render import part_tree
 from distal.scene.lowering.chords import chord_of, has_chord
 from distal.scene.lowering.parts.kinds import Column, PartKind
@@ -56,8 +57,37 @@ class PartFunctions:
         self._field_of = self.distance_of
         if table.needs_factors:
             self._field_of = self.of_part("part_field", params, FLOAT, self._field)
+        self.value_of = self.distance_of
         if table.boxes is not None:
             self._add_chords()
+            self.given |= {"within": self.distance_of, "many_boxes": boolean(False)}
+            self.given["all_parts"] = self.made(
+                "distance_to_all", part_tree.distance_to_all, self.given, (("p", VEC3),)
+            )
+
+    def made(
+        self,
+        name: str,
+        function: Func,
+        given: Mapping[str, Any],
+        params: Sequence[tuple[str, Type]],
+        result: Type = FLOAT,
+    ) -> FunctionRef:
+        """Return a function of its own that calls scene code.
+
+        Args:
+            name: The preferred name.
+            function: The scene code.
+            given: What it takes besides the parameters, by name.
+            params: Name and type of each parameter.
+            result: The type of the result.
+        """
+        body = StatementList(taken={n for n, _ in params})
+        values = {**given, **{n: Read(n, t) for n, t in params}}
+        body.statements.append(Return(self._composer.call(function, values)))
+        declared = tuple(Param(n, t) for n, t in params)
+        defined = self._composer.assembly.define(name, declared, result, body.statements)
+        return FunctionRef(defined, (), FunctionType(tuple(t for _, t in params), result))
 
     def _add_chords(self) -> None:
         """Add the chords of the kinds that have some, for the scene code of ``render``."""
@@ -140,3 +170,13 @@ class PartFunctions:
                 body.statements.append(If(is_kind, (call,), ()))
         defined = assembly.define(name, declared, result, body.statements)
         return FunctionRef(defined, (), FunctionType(tuple(t for _, t in params), result))
+
+    def attribute(self, result: Type, given: Mapping[str, Expr], of_leaf: FunctionRef) -> Expr:
+        """Return an attribute of a part at a point.
+
+        Args:
+            result: Its type: a ``Surface`` or a number.
+            given: The point ``p``, the ``part`` and what else ``of_leaf`` takes, in its order.
+            of_leaf: The attribute of a leaf, by its row.
+        """
+        return Call(of_leaf.name, tuple(given.values()), result)

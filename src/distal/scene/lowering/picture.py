@@ -59,7 +59,7 @@ from distal.scene.lowering.bumps import has_bump, tilted
 from distal.scene.lowering.camera_functions import CameraFunctions
 from distal.scene.lowering.glass_shadows import colored_shadow, split_glass
 from distal.scene.lowering.light_functions import LightFunctions
-from distal.scene.lowering.parts.table import has_table, rolled_for, split_table
+from distal.scene.lowering.parts.table import has_table, pieced_for, rolled_for, split_table
 from distal.scene.lowering.photon_functions import PhotonFunctions
 from distal.scene.lowering.ray_functions import RayFunctions, function_in, step_limit
 from distal.scene.lowering.scattering import number_bsdfs, scattering_functions
@@ -120,6 +120,9 @@ class SceneLowering:
             apart = paths and not (rolls and has_table(assembly, node))
             bodies = bodies_of(node, scene.material, apart=apart)
             common = largest_of(bodies)
+        if rolls and not paths and len(bodies) == 1 and scene.renderer != "refracted":
+            varies = bool(scene.material.uses)
+            bodies[common] = pieced_for(assembly, bodies[common], default_varies=varies)
         if rolls:
             bodies[common] = rolled_for(assembly, bodies[common])
         # A table is the first member of the union.

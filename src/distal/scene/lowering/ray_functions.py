@@ -92,6 +92,7 @@ _TAKEN: Final = (
     "farthest_plane",
     "steep",
     "some_sharp",
+    "many_boxes",
     "look",
     "place",
     "count",
@@ -459,7 +460,7 @@ class RayFunctions:
             of_others = Call(field.name, (given["p"], *field.captures), FLOAT)
             if self._table is None:
                 return of_others
-            distance = Call(self._table.distance_of.name, (given["p"], given["part"]), FLOAT)
+            distance = Call(self._table.value_of.name, (given["p"], given["part"]), FLOAT)
             is_part = compare(CompareOp.GE, given["part"], integer(0))
             body.statements.append(If(is_part, (Return(distance),), ()))
             return of_others

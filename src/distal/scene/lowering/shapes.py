@@ -32,6 +32,7 @@ from distal.lang.resources import Buffer, TextureValue
 from distal.scene.lowering.bounds import BoundsComposer
 from distal.scene.lowering.part_functions import PartFunctions
 from distal.scene.lowering.parts.table import TableNode
+from distal.scene.lowering.pieces.functions import PieceFunctions
 from distal.scene.lowering.safe_parts import SafeParts
 from distal.scene.lowering.selection import selected
 from distal.scene.lowering.sheets import Sheets
@@ -110,7 +111,8 @@ class ShapeComposer:
         """Return the functions of a table's parts."""
         found = self._tables.get(id(node))
         if found is None:
-            found = self._tables[id(node)] = PartFunctions(self, node.table)
+            kind = PartFunctions if node.table.pieces is None else PieceFunctions
+            found = self._tables[id(node)] = kind(self, node.table)
         return found
 
     def members(self, grid: MemberGrid) -> MemberFunctions:

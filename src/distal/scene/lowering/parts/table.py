@@ -27,7 +27,10 @@ from distal.scene.tree.node import Node
 
 if TYPE_CHECKING:
     from distal.scene.lowering.parts import rows
+    from distal.scene.lowering.pieces import table as pieces
+    from distal.scene.lowering.pieces.joins import ValueJoin
 else:
+    pieces = LazyModule("distal.scene.lowering.pieces.table")
     rows = LazyModule("distal.scene.lowering.parts.rows")  # needs NumPy
 
 # Fewer parts are not worth a table; more kinds would be too much code.
@@ -50,6 +53,23 @@ PARTS: Final = Operator("parts", keeps=EXACT_OUTSIDE)
 
 
 @dataclass(frozen=True, slots=True)
+class PieceData:
+    """The programs of a table of pieces, in the form that ``render.pieces`` reads.
+
+    Attributes:
+        numbers: The pieces and their steps, a buffer of whole numbers.
+        joins: How steps join values.
+        first_piece: The number of the first piece as a part; lower ones are rows of leaves.
+        whole: That of the program of the whole tree.
+    """
+
+    numbers: Buffer
+    joins: Sequence[ValueJoin]
+    first_piece: int
+    whole: int
+
+
+@dataclass(frozen=True, slots=True)
 class PartTable:
     """The parts of a union.
 
@@ -62,6 +82,7 @@ class PartTable:
         high: The high corner.
         slope: Lipschitz bound (slope) of all parts.
         divisor: The largest number that a part's values are divided by to make distances.
+        pieces: The programs, if parts are pieces of a tree; None if they are leaves.
     """
 
     kinds: Sequence[PartKind]
@@ -71,10 +92,13 @@ class PartTable:
     high: tuple[float, ...]
     slope: float
     divisor: float
+    pieces: PieceData | None = None
 
     @property
     def needs_factors(self) -> bool:
         """Whether values of some parts are not distances before they get their factors."""
+        if self.pieces is not None:
+            return self.divisor > 1.0
         return any(kind.factor is not None for kind in self.kinds)
 
     @property
@@ -176,6 +200,22 @@ def rolled_for(assembly: Assembly, root: Node, *, exact: bool = False) -> Node:
             f"take a target with buffers; {MOST_WITHOUT:,} parts are possible without",
         )
     return root
+
+
+def pieced_for(assembly: Assembly, root: Node, *, default_varies: bool) -> Node:
+    """Return the tree with a table of pieces, if a program can have one and the tree needs it.
+
+    Args:
+        assembly: The program.
+        root: The tree.
+        default_varies: Whether the material of shapes without one depends on the place.
+    """
+    if assembly.table_from is None:
+        return root
+    try:
+        return pieces.pieced(root, default_varies=default_varies)
+    except (ImportError, RecursionError):
+        return root  # without NumPy; lowering reports a tree that is too deep
 
 
 def has_table(assembly: Assembly, root: Node) -> bool:

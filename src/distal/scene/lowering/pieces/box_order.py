@@ -35,6 +35,7 @@ class PieceTree:
         program: The program of each piece (m,).
         programs: The programs.
         joins: How steps join values.
+        whole: The program of the whole tree; -1 for a hard union of leaves.
     """
 
     low: Floats
@@ -47,6 +48,7 @@ class PieceTree:
     program: Whole
     programs: EmittedPrograms
     joins: Sequence[ValueJoin]
+    whole: int = -1
 
     def steps_of(self, piece: int) -> NDArray[np.int32]:
         """Return the steps of a piece: (mode, leaf, join) each."""
@@ -175,14 +177,15 @@ class BoxOrder:
 
         Args:
             programs: The programs.
-            program: The program of each piece.
+            program: The program of each piece, and that of the whole tree.
             joins: How they join values.
         """
         box = np.flatnonzero(self.axis < 0)
         piece = np.full(len(self.axis), -1)
         piece[box] = np.arange(len(box))
         corners = (self.low, self.high, self.skip, self.axis)
-        return PieceTree(*corners, piece, box, self.is_cut[box], program, programs, joins)
+        own, whole = program[:-1], int(program[-1])
+        return PieceTree(*corners, piece, box, self.is_cut[box], own, programs, joins, whole)
 
 
 def _ordered(

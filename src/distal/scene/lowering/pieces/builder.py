@@ -286,8 +286,12 @@ class _Division:
                 cells = entry[chosen] - first[i]
                 parts.append(batch.taken(cells, batch.low[cells], batch.high[cells], chosen))
                 places.append(chosen)
+        # The last program is that of the whole tree.
+        whole = self._first
+        parts.append(whole.taken(np.array([0]), whole.low, whole.high, np.array([0])))
+        places.append(np.array([len(order.pieces)]))
         programs = emitted(joined_cells(parts), self._tree)
-        program = np.empty(len(order.pieces), np.int64)
+        program = np.empty(len(order.pieces) + 1, np.int64)
         program[np.concatenate(places)] = programs.program
         return order.tree(programs, program, self._tree.joins)
 

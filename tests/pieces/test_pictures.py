@@ -1,0 +1,134 @@
+"""A tree of many shapes shows the same with pieces and without, on every target."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from distal import (
+    AmbientLight,
+    Box,
+    Camera,
+    Cylinder,
+    DistantLight,
+    Ellipsoid,
+    Plane,
+    PointLight,
+    Scene,
+    Sphere,
+    Torus,
+    checker,
+    matte,
+    mirror,
+    union,
+)
+from distal.scene.lowering.parts.table import split_table
+from distal.scene.lowering.pieces.table import pieced
+
+SIZE = (64, 48)
+EYE = Camera((3.0, 2.5, 5.0), target=(0.0, 0.0, 0.0))
+SUN = DistantLight((1.0, 2.0, 1.5), angle=0.05)
+
+
+def balls(count, radius=0.25, seed=0, *, paint=False):
+    rng = np.random.default_rng(seed)
+    made = [Sphere(radius).translate(*p) for p in rng.uniform(-1, 1, (count, 3)).tolist()]
+    return [b.paint(tuple(rng.uniform(0.1, 0.9, 3))) for b in made] if paint else made
+
+
+def posts(count, seed=0):
+    rng = np.random.default_rng(seed)
+    return [
+        Cylinder(0.12, 4.0).rotate(x=a, z=b).translate(c, 0, d)
+        for a, b, c, d in rng.uniform(-1, 1, (count, 4)).tolist()
+    ]
+
+
+def plate():
+    holes = [
+        Cylinder(0.12, 1).translate(0.4 * i - 1, 0, 0.4 * j - 1) for i in range(6) for j in range(6)
+    ]
+    return Box(2.6, 0.3, 2.6) - union(holes)
+
+
+TREES = {
+    "plate": plate,
+    "plate on a floor": lambda: plate().rotate(x=0.5).paint("orange") | Plane(y=-1.2),
+    "cheese": lambda: Box(2, 2, 2) - union(balls(40)),
+    "colors": lambda: union(balls(30, paint=True)) & Box(1.6, 1.6, 1.6).paint("red"),
+    "cut faces": lambda: union(balls(24, 0.4, paint=True)) - Box(4, 4, 4).translate(2, 0, 0),
+    "cutters with colors": lambda: (
+        Box(2, 2, 2).paint("gray") - union(balls(20, 0.3, paint=True)).cut_material("gold")
+    ),
+    "soft": lambda: union(balls(40, 0.2, paint=True), smooth=0.1),
+    "soft less hard": lambda: union(balls(30, 0.3, paint=True), smooth=0.05) - union(posts(10)),
+    "hard less soft": lambda: Box(2, 2, 2).difference(union(balls(20, 0.3)), smooth=0.1),
+    "shell": lambda: union(balls(20, 0.5)).shell(0.1) - Box(4, 4, 4).translate(2, 1, 0),
+    "posts": lambda: union(posts(20)) & Ellipsoid(1.2, 1.0, 1.4),
+    "nested": lambda: (
+        (Box(2, 1, 2) - union(balls(12)))
+        | (union(balls(12, 0.3, seed=1), smooth=0.1) & Box(1, 3, 1))
+        | Torus(1.3, 0.1)
+    ),
+    "moved": lambda: (
+        (union(balls(20)) - Box(1, 4, 1)).scale(0.7).rotate(y=0.4).translate(0.3, 0.2, 0)
+        | (Box(1, 1, 1) - union(posts(8))).symmetry(across=(1, 0, 0))
+    ),
+    "complement": lambda: Box(2, 2, 2) & union(balls(20, 0.3)).complement(),
+}
+
+
+def has_pieces(shape):
+    table, _ = split_table(pieced(shape.node, default_varies=False))
+    return table is not None and table.table.pieces is not None
+
+
+def both(shape, **given):
+    """Render a scene with pieces and without; return the linear light of both."""
+    assert has_pieces(shape)
+    given = {"camera": EYE, "lights": SUN, "background": (0.1, 0.2, 0.4), **given}
+    scenes = [Scene(shape, acceleration=a, **given) for a in (True, False)]
+    return [s.render(size=SIZE, samples=1).array.astype(float)[..., :3] for s in scenes]
+
+
+def far_off(a, b, limit=0.05):
+    """The share of pixels that differ."""
+    return float((np.abs(a - b).max(axis=-1) > limit).mean())
+
+
+@pytest.mark.parametrize("name", TREES)
+def test_trees_have_the_same_picture(name):
+    a, b = both(TREES[name]())
+    assert far_off(a, b) < 0.02
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"lights": [SUN, AmbientLight(0.4)]},
+        {"lights": PointLight((2.0, 4.0, 3.0), intensity=20.0, radius=0.4)},
+        {"lights": DistantLight((1.0, 2.0, 1.5))},
+        {"camera": Camera((0.0, 0.2, 0.1), target=(1.0, 0.0, 0.0))},
+    ],
+    ids=["occlusion", "lamp", "sharp", "among"],
+)
+def test_lights_and_cameras(given):
+    a, b = both((Box(2.2, 2.2, 2.2) - union(balls(40, 0.35))) | Plane(y=-1.3), **given)
+    assert far_off(a, b) < 0.03
+
+
+@pytest.mark.parametrize("material", [mirror(), matte(checker("white", "black", 0.2))])
+def test_materials(material):
+    whole = (Box(2.2, 2.2, 2.2) - union(balls(40, 0.35))).paint(material) | Plane(y=-1.3)
+    a, b = both(whole)
+    assert far_off(a, b) < 0.03
+
+
+@pytest.mark.parametrize("device", ["reference", "gpu", "gpu-fragment"])
+def test_targets_agree_on_pieces(device):
+    shape = (union(balls(20, 0.4, paint=True), smooth=0.1) - union(posts(6))) | Plane(y=-1.3)
+    assert has_pieces(shape)
+    scene = Scene(shape, lights=[SUN, AmbientLight(0.3)], camera=EYE)
+    pictures = [scene.render(size=(24, 18), samples=1, device=d).array for d in ("cpu", device)]
+    a, b = (p.astype(float)[..., :3] for p in pictures)
+    assert far_off(a, b, 0.02) < 0.01
