@@ -171,7 +171,7 @@ def test_the_table_of_a_union_is_exported(tmp_path, target):
     path = tmp_path / "out.txt"
     distal.load(tmp_path / "balls.py").export(path, target=target)
     entries = {e["name"]: e for e in json.loads(path.with_suffix(".json").read_text())["buffers"]}
-    assert set(entries) == {"part_rows", "part_boxes"}
+    assert set(entries) == {"part_rows", "part_boxes", "part_distances"}
     rows = consumer.numbers(entries["part_rows"])
     places = {(round(0.3 * (i % 20), 3), round(0.3 * (i // 20), 3)) for i in range(300)}
     found = {(round(float(row[0]), 3), round(float(row[2]), 3)) for row in rows}

@@ -10,7 +10,7 @@ import pytest
 from distal import Camera, Scene, Sphere, union
 
 
-@pytest.mark.parametrize(("count", "smooth"), [(4, 0.0), (30, 0.0), (60, 0.02)])
+@pytest.mark.parametrize(("count", "smooth"), [(4, 0.0), (30, 0.0), (60, 0.0), (60, 0.02)])
 def test_a_scene_that_nobody_holds_is_gone(count, smooth):
     parts = [Sphere(0.1).translate(x=0.1 * i) for i in range(count)]
     whole = union(parts, smooth=smooth) if smooth else union(parts)

@@ -22,7 +22,6 @@ from distal import (
     mirror,
     union,
 )
-from distal.scene.lowering.parts.table import split_table
 from distal.scene.lowering.pieces.table import pieced
 
 SIZE = (64, 48)
@@ -79,8 +78,7 @@ TREES = {
 
 
 def has_pieces(shape):
-    table, _ = split_table(pieced(shape.node, default_varies=False))
-    return table is not None and table.table.pieces is not None
+    return pieced(shape.node).table is not None
 
 
 def both(shape, **given):

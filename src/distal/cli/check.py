@@ -75,6 +75,7 @@ def report_lines(report: ValidationReport) -> Iterator[str]:
     yield from _tree(report)
     yield from _table(report)
     yield from _smooth(report)
+    yield from _pieces(report)
     yield ""
     yield from _slope(report)
     yield from _measurements(report)
@@ -133,6 +134,22 @@ def _smooth(report: ValidationReport) -> Iterator[str]:
         lists = f"{union.cells:,} cells with {union.mean:.1f} shapes each, {union.longest} at most"
         yield f"a smooth union of {many} has {lists}, {union.bytes / 1e6:.1f} MB  {line}".rstrip()
         yield "  one shape of each kind is shown"
+
+
+def _pieces(report: ValidationReport) -> Iterator[str]:
+    """Yield how joined shapes are drawn."""
+    pieces = report.pieces
+    if pieces is None:
+        return
+    yield ""
+    if pieces.count:
+        steps = f"programs of {pieces.mean:.1f} steps, {pieces.longest} at most"
+        size = f"{pieces.bytes / 1e6:.2f} MB"
+        yield f"joined shapes are drawn as {pieces.count:,} pieces with {steps}, {size}"
+    else:
+        yield "joined shapes are drawn together, each at each point"
+    for whole in pieces.whole[:MOST_ROWS]:
+        yield f"  {whole.name} is not taken apart: {whole.reason}  {_line(whole.place)}".rstrip()
 
 
 def _rows(report: ValidationReport) -> Iterator[tuple[str, str, str, str]]:

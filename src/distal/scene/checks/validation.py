@@ -20,6 +20,7 @@ from distal.scene.checks.bounds_report import NodeBounds, bounds_of_nodes
 from distal.scene.checks.flush_cuts import FlushCut, flush_cuts
 from distal.scene.checks.measuring import Measured, Region, measure
 from distal.scene.checks.moved_faces import moved_face
+from distal.scene.checks.piece_report import PieceReport, pieces_of
 from distal.scene.checks.proof_report import proof_note
 from distal.scene.checks.smooth_report import SmoothReport, smooth_unions_of
 from distal.scene.checks.table_report import TableReport, table_of
@@ -89,6 +90,7 @@ class ValidationReport:
             beside the table.
         smooth: The smooth unions of many shapes. The shapes are one of each kind of those with
             lists for cells.
+        pieces: The pieces as which pictures draw joined shapes, or None.
     """
 
     shapes: tuple[ShapeReport, ...]
@@ -96,6 +98,7 @@ class ValidationReport:
     findings: tuple[CheckFinding, ...]
     table: TableReport | None = None
     smooth: tuple[SmoothReport, ...] = ()
+    pieces: PieceReport | None = None
 
     @property
     def holds(self) -> bool:
@@ -110,6 +113,7 @@ class ValidationReport:
             "slope_from": list(self.slope_from),
             "table": None if self.table is None else self.table.as_json(),
             "smooth": [union.as_json() for union in self.smooth],
+            "pieces": None if self.pieces is None else self.pieces.as_json(),
             "shapes": [_shape_json(i, row) for i, row in enumerate(self.shapes)],
             "findings": [
                 {
@@ -160,7 +164,8 @@ def check(
     found += _cuts_at_faces(numbers, flush_cuts(shape.node, given, time, seed))
     order = {severity: i for i, severity in enumerate(Severity)}
     found = sorted(_at_their_roots(found, rows), key=lambda f: order[f.severity])
-    return ValidationReport(tuple(rows), _slope_from(rows), tuple(found), table, smooth)
+    pieces = pieces_of(shape.node)
+    return ValidationReport(tuple(rows), _slope_from(rows), tuple(found), table, smooth, pieces)
 
 
 def _regions(nodes: Sequence[Node], declared: Mapping[int, NodeBounds]) -> dict[int, Region | None]:

@@ -62,7 +62,7 @@ class DistanceGrid(Buffer):
     element: Type = INT
 
     def __init__(self, node: TableNode) -> None:
-        self._node = node
+        self._node: TableNode | None = node  # until its distances are known
         low, high = (np.array(corner) for corner in (node.table.low, node.table.high))
         sides = high - low
         sizes = sides.max() / MOST_CELLS * GROWTH ** np.arange(MOST_SIZES)
@@ -105,7 +105,9 @@ class DistanceGrid(Buffer):
         index = np.indices(counts).reshape(3, -1)[::-1].T
         places = self.low + self.cell * (index[:, None] + AROUND)
         points = np.asarray(places.reshape(-1, 3), np.float32)
+        assert self._node is not None
         found = executor().evaluate(PartDistance(self._node), [points], {}, 0.0)
+        self._node = None  # devices hold buffers longer than a scene lives
         means: NDArray[np.float32] = np.asarray(found).reshape(*counts, len(AROUND)).mean(axis=-1)
         return means
 

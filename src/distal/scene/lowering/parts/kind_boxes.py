@@ -37,24 +37,26 @@ class KindBounds:
         high: The high corners (n, 3).
         slope: Lipschitz bound (slope) of each (n,).
         divisor: The number that makes distances of the values of each (n,).
+        growth: How fast the sides of each box grow with the level (``fields.guarantees``) (n,).
     """
 
     low: Floats
     high: Floats
     slope: Floats
     divisor: Floats
+    growth: Floats
 
     @staticmethod
     def of(kind: PartKind, found: Any) -> KindBounds:
         """Return what a function of a kind's columns found; one row stands for all parts."""
         count = len(kind.members)
-        low, high, slope, divisor = (np.asarray(part, np.float64) for part in found)
+        low, high, *numbers = (np.asarray(part, np.float64) for part in found)
         corners = (np.broadcast_to(corner, (count, 3)) for corner in (low, high))
-        return KindBounds(*corners, *(np.broadcast_to(n, (count,)) for n in (slope, divisor)))
+        return KindBounds(*corners, *(np.broadcast_to(n, (count,)) for n in numbers))
 
     def chosen(self, fits: NDArray[np.bool_]) -> KindBounds:
         """Return the bounds of some of the parts."""
-        parts = (self.low, self.high, self.slope, self.divisor)
+        parts = (self.low, self.high, self.slope, self.divisor, self.growth)
         return KindBounds(*(part[fits] for part in parts))
 
 
@@ -74,7 +76,7 @@ def swept_bounds_of(kind: PartKind) -> KindBounds:
     ends = executor().sweep(BoxOfKind(kind), columns_of(kind))
     low = np.stack([np.broadcast_to(a, len(kind.members)) for a, _ in ends[:3]], axis=1)
     high = np.stack([np.broadcast_to(b, len(kind.members)) for _, b in ends[3:6]], axis=1)
-    return KindBounds.of(kind, (low, high, ends[6][1], ends[7][1]))
+    return KindBounds.of(kind, (low, high, *(end for _, end in ends[6:9])))
 
 
 def columns_of(kind: PartKind) -> list[Floats]:
@@ -92,14 +94,14 @@ def _array(floats: int, values: Sequence[Plain]) -> Floats:
 
 
 class BoxOfKind(Composed):
-    """The box, the slope and the divisor of a part of a kind, from the numbers of its row."""
+    """The box, slope, divisor and growth of a part of a kind, from the numbers of its row."""
 
     def __init__(self, kind: PartKind) -> None:
         self.name = f"boxes of {kind.node.name}"
         self._kind = kind
         self.signature = tuple((f"column_{i}", c.type) for i, c in enumerate(kind.columns))
         corner = VEC2 if kind.node.flat else VEC3
-        self.result: Type = tuple_type((corner, corner, FLOAT, FLOAT))
+        self.result: Type = tuple_type((corner, corner, FLOAT, FLOAT, FLOAT))
 
     def compose(self, assembly: Assembly) -> str:
         """Add the function to the program, and return its name."""
@@ -109,7 +111,8 @@ class BoxOfKind(Composed):
         node = self._kind.node
         found = BoundsComposer(values).of(body, node, values.all(node))
         box = body.let("box", found.bounds)
-        parts = (field(box, "low"), field(box, "high"), found.slope, found.divisor)
+        corners = (field(box, "low"), field(box, "high"))
+        parts = (*corners, found.slope, found.divisor, found.side_growth)
         body.statements.append(Return(Construct(parts, self.result)))
         params = [Param(name, type) for name, type in self.signature]
         return assembly.define("box", params, self.result, body.statements)

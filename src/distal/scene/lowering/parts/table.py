@@ -213,7 +213,7 @@ def pieced_for(assembly: Assembly, root: Node, *, default_varies: bool) -> Node:
     if assembly.table_from is None:
         return root
     try:
-        return pieces.pieced(root, default_varies=default_varies)
+        return pieces.pieced(root, default_varies=default_varies).node
     except (ImportError, RecursionError):
         return root  # without NumPy; lowering reports a tree that is too deep
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from distal.scene.lowering.pieces.cell_programs import CellPrograms
+from distal.scene.lowering.pieces.cell_programs import CellPrograms, ranges
 from distal.scene.lowering.pieces.operands import CHAIN, CHANGE, LEAF, Flags, OperandTree, Whole
 
 
@@ -146,15 +146,14 @@ def _tops(cells: CellPrograms, tree: OperandTree) -> list[tuple[Flags, Whole]]:
 def _shared(steps: NDArray[np.int32], start: Whole, count: Whole, depth: int) -> EmittedPrograms:
     """Return programs, equal ones once."""
     known: dict[bytes, int] = {}
+    first: list[int] = []
+    program = np.empty(len(start), np.int64)
     data = steps.tobytes()
     size = steps.shape[1] * steps.itemsize
-    program = np.array(
-        [
-            known.setdefault(data[a * size : (a + n) * size], len(known))
-            for a, n in zip(start.tolist(), count.tolist(), strict=True)
-        ],
-        np.int64,
-    )
-    counts = np.array([len(own) // size for own in known], np.int64)
-    whole = np.frombuffer(b"".join(known), np.int32).reshape(-1, steps.shape[1])
+    for i, (begin, many) in enumerate(zip(start.tolist(), count.tolist(), strict=True)):
+        program[i] = known.setdefault(data[begin * size : (begin + many) * size], len(known))
+        if program[i] == len(first):
+            first.append(i)
+    counts = count[first]
+    whole = steps[ranges(start[first], counts)]
     return EmittedPrograms(whole, np.cumsum(counts) - counts, counts, program, depth)

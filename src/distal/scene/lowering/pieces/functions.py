@@ -34,7 +34,7 @@ class PieceFunctions(PartFunctions):
 
     def __init__(self, composer: ShapeComposer, table: PartTable) -> None:
         super().__init__(composer, table)
-        data = table.pieces
+        data, fixed = table.pieces, composer.values.fixed
         assert data is not None
         self._joins = data.joins
         self._leaf = self.distance_of
@@ -43,7 +43,7 @@ class PieceFunctions(PartFunctions):
             "pieces": composer.assembly.resource(data.numbers, "pieces"),
             "leaf": self._leaf,
             "joined": self._of_join("values_joined", self._joined),
-            "first_piece": integer(data.first_piece),
+            "first_piece": fixed("first_piece", INT, data.first_piece),
         }
         self.value_of = self.made("part_value", scene_code.value_of_part, self._own, _AT_PART)
         self._field_of = self.value_of
@@ -51,8 +51,8 @@ class PieceFunctions(PartFunctions):
             **self._own,
             "boxes": self.given["boxes"],
             "value": self.value_of,
-            "factor": number(1.0 / max(table.divisor, 1.0)),
-            "whole": integer(data.whole),
+            "factor": fixed("piece_factor", FLOAT, 1.0 / max(table.divisor, 1.0)),
+            "whole": fixed("whole_piece", INT, data.whole),
         }
         self.given["within"] = self.made("within_box", scene_code.within_box, bound, _AT_PART)
         self.distance_of = self.made("piece_distance", scene_code.distance_to_part, bound, _AT_PART)

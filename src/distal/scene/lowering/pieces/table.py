@@ -8,9 +8,11 @@ no finite box stays beside the table, as planes do.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
+from dataclasses import dataclass
+from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from distal.fields.combine.joins import UNION
 from distal.frontend import Assembly
@@ -19,6 +21,7 @@ from distal.ir.types import FLOAT, VEC3, Type
 from distal.lang.composed import Composed
 from distal.lang.resources import Buffer
 from distal.lang.runtime_access import executor
+from distal.render.pieces import JOINS, MODES, RECORD
 from distal.scene.lowering.part_functions import ZERO_CELL
 from distal.scene.lowering.parts.box_tree import OF_PLACE
 from distal.scene.lowering.parts.flatten import UnionMember, members_of
@@ -29,23 +32,36 @@ from distal.scene.lowering.parts.table import (
     LEAST_PARTS,
     MOST_KINDS,
     PARTS,
+    RARE,
+    THIN,
     PartTable,
     PieceData,
     TableNode,
 )
 from distal.scene.lowering.pieces.box_order import PieceTree
-from distal.scene.lowering.pieces.builder import PieceLimits, build
+from distal.scene.lowering.pieces.builder import ENDLESS_SOLID, PieceLimits, build
 from distal.scene.lowering.pieces.emission import StepMode
 from distal.scene.lowering.pieces.lone_leaves import unites_leaves
 from distal.scene.lowering.pieces.operands import Floats, Whole
-from distal.scene.lowering.pieces.programs import MANY, SMALL_SUBTREE, PieceProgram, program_of
+from distal.scene.lowering.pieces.programs import (
+    MANY,
+    SMALL_SUBTREE,
+    PieceProgram,
+    WholeSubtree,
+    program_of,
+)
 from distal.scene.lowering.shapes import ShapeComposer
 from distal.scene.lowering.union_parts import united
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
 
+MOVING: Final = "it depends on parameters or time"
+MANY_JOINS: Final = "it is joined in too many different ways"
+MANY_ROWS: Final = "it has too many shapes"
+DEEP: Final = "more than three values of joined shapes are needed at once"
+EMPTY: Final = "it is empty"
 # Limits of the numbers of a step (``render.pieces``).
-MOST_JOINS: Final = 127
+MOST_JOINS: Final = JOINS
 MOST_ROWS: Final = 1 << 21
 MOST_ASIDE: Final = 3
 LIMITS: Final = PieceLimits(interior=True)
@@ -53,39 +69,57 @@ LIMITS: Final = PieceLimits(interior=True)
 MOST_INTERPRETED: Final = 200_000
 
 
-def pieced(root: Node, *, default_varies: bool) -> Node:
-    """Return a tree with a table of pieces; the tree itself if it can have none.
+@dataclass(frozen=True, slots=True)
+class Pieced:
+    """A tree with a table of pieces.
+
+    Attributes:
+        node: The tree; the given one if it has no table.
+        table: The table, or None.
+        whole: The leaves that join shapes and stay whole.
+        reason: Why there is no table, if the tree joins many shapes; else "".
+        blamed: The shape that prevents it; None if there is no single one.
+    """
+
+    node: Node
+    table: PartTable | None = None
+    whole: Sequence[WholeSubtree] = ()
+    reason: str = ""
+    blamed: Node | None = None
+
+
+def pieced(root: Node, *, default_varies: bool = False) -> Pieced:
+    """Return a tree with a table of pieces, if it joins many shapes in other ways than by a union.
 
     Args:
         root: The tree.
         default_varies: Whether the material of leaves without one depends on the place.
     """
     key = f"pieces {default_varies}"
-    found: Node = root.derived(key, lambda: _pieced(root, default_varies=default_varies))
+    found: Pieced = root.derived(key, lambda: _pieced(root, default_varies=default_varies))
     return found
 
 
-def _pieced(root: Node, *, default_varies: bool) -> Node:
+def _pieced(root: Node, *, default_varies: bool) -> Pieced:
     if root.flat or root.parts < LEAST_PARTS:
-        return root
+        return Pieced(root)
     members = members_of(root)
-    beside = [m for m in members if _is_linear(m.part)]
-    others = [m for m in members if not _is_linear(m.part)]
+    beside = [m.part for m in members if _is_linear(m.part)]
+    others = [m.part for m in members if not _is_linear(m.part)]
     most = SMALL_SUBTREE if len(others) >= MANY else 1
-    if not any(m.part.parts > most for m in others):
-        return root
-    node = united(root, [m.part for m in others])
-    program = program_of(node, default_varies=default_varies)
+    if not any(part.parts > most for part in others):
+        return Pieced(root)
+    program = program_of(united(root, others), default_varies=default_varies)
     if len(program.leaves) < LEAST_PARTS or unites_leaves(program):
-        return root
+        return Pieced(root)
     table = _table_of(program)
-    if table is None:
-        return root
+    if isinstance(table, Refusal):
+        return Pieced(root, None, program.whole, table.reason, table.blamed)
     children = tuple(kind.node for kind in table.kinds)
-    made = TableNode(PARTS, False, place=root.place, children=children, table=table)
-    if not beside:
-        return made
-    return Node(UNION, False, (made, *(m.part for m in beside)), place=root.place)
+    node: Node = TableNode(PARTS, False, place=root.place, children=children, table=table)
+    if beside:
+        node = Node(UNION, False, (node, *beside), place=root.place)
+    return Pieced(node, table, program.whole)
 
 
 def _is_linear(node: Node) -> bool:
@@ -94,26 +128,41 @@ def _is_linear(node: Node) -> bool:
     return node.rule.linear
 
 
-def _table_of(program: PieceProgram) -> PartTable | None:
-    """Return the table of a program; None if it can have none."""
+class Refusal(NamedTuple):
+    """Why a program has no table, and the shape that prevents it, if it is one."""
+
+    reason: str
+    blamed: Node | None = None
+
+
+def _table_of(program: PieceProgram) -> PartTable | Refusal:
+    """Return the table of a program, or why it can have none."""
     kinds = sorted(kinds_of(program.leaves), key=lambda kind: -len(kind.members))
-    solid = all(kind.node.solid and not kind.moving for kind in kinds)
-    if not solid or len(kinds) > MOST_KINDS or len(program.joins) >= MOST_JOINS:
-        return None
+    for kind in kinds:
+        reason = MOVING if kind.moving else THIN if not kind.node.solid else ""
+        if reason:
+            return Refusal(reason, kind.members[0].source)
+    if len(kinds) > MOST_KINDS:
+        return Refusal(RARE)
+    if len(program.joins) >= MOST_JOINS:
+        return Refusal(MANY_JOINS)
     found = rows_of(kinds)
     if found.refused:
-        return None
+        source = {id(m): m.source for kind in kinds for m in kind.members}
+        number, reason = next(iter(found.refused.items()))
+        return Refusal(reason, source[number])
     rows, places = row_data(found.kinds, [])
     if len(rows) >= MOST_ROWS:
-        return None
+        return Refusal(MANY_ROWS)
     leaves = _LeafArrays.of(program.leaves, found.kinds, found.swept, places)
+    corners = leaves.low, leaves.high
     try:
-        tree = build(program, leaves.low, leaves.high, leaves.slope, leaves.distances, LIMITS)
+        tree = build(program, *corners, leaves.slope, leaves.distances, LIMITS, leaves.growth)
     except ValueError:
-        return None
-    if tree.programs.depth > MOST_ASIDE or not len(tree.box):
-        return None
-    return _packed(tree, leaves, found.kinds, rows)
+        return Refusal(ENDLESS_SOLID)
+    if tree.programs.depth > MOST_ASIDE:
+        return Refusal(DEEP)
+    return _packed(tree, leaves, found.kinds, rows) if len(tree.box) else Refusal(EMPTY)
 
 
 class _LeafArrays:
@@ -136,12 +185,12 @@ class _LeafArrays:
         """
         count = len(leaf)
         self.low, self.high = np.empty((2, count, 3))
-        self.slope, self.divisor = np.empty((2, count))
+        self.slope, self.divisor, self.growth = np.empty((3, count))
         self.row, self._kind, self._ordinal = np.empty((3, count), np.int64)
         self.low[leaf] = np.concatenate([b.low for b in bounds])
         self.high[leaf] = np.concatenate([b.high for b in bounds])
-        self.slope[leaf] = np.concatenate([b.slope for b in bounds])
-        self.divisor[leaf] = np.concatenate([b.divisor for b in bounds])
+        for name in ("slope", "divisor", "growth"):
+            getattr(self, name)[leaf] = np.concatenate([getattr(b, name) for b in bounds])
         self.row[leaf] = row
         sizes = [len(kind.members) for kind in kinds]
         self._kind[leaf] = np.repeat(np.arange(len(kinds)), sizes)
@@ -208,29 +257,30 @@ def _packed(
     tree: PieceTree, leaves: _LeafArrays, kinds: Sequence[PartKind], rows: Floats
 ) -> PartTable:
     """Return a table in the form that ``render.part_tree`` and ``render.pieces`` read."""
-    first_piece = len(rows)
-    steps = tree.programs.steps.astype(np.int64)
-    own = np.where(steps[:, 1] >= 0, leaves.row[steps[:, 1]], 0)
-    is_one = steps[:, 0] == StepMode.ONE
-    own = np.where(is_one, np.where(steps[:, 1] >= 0, own + 1, 0), own)
-    code = (own << 10) | (np.maximum(steps[:, 2], 0) << 3) | steps[:, 0]
-    count = len(tree.box) + 1
+    steps, first_piece = tree.programs.steps.astype(np.int64), len(rows)
+    row = np.where(steps[:, 1] >= 0, leaves.row[steps[:, 1]], -1)
+    # A change has a row only if it names the leaf that is shown; 0 is none.
+    row = np.where(steps[:, 0] == StepMode.ONE, row + 1, row)
+    code = row * (MODES * JOINS) + np.maximum(steps[:, 2], 0) * MODES + steps[:, 0]
     program = np.append(tree.program, tree.whole)
-    records = np.stack(
-        [
-            3 * count + tree.programs.start[program],
-            tree.programs.count[program],
-            np.append(np.where(tree.is_cut, tree.box, -1), -1),
-        ],
-        axis=1,
-    )
+    start, count = tree.programs.start[program], tree.programs.count[program]
+    box = np.append(np.where(tree.is_cut, tree.box, -1), -1)
+    records = np.stack([RECORD * len(program) + start, count, box], axis=1)
     numbers = np.concatenate([records.reshape(-1), code]).astype(np.int32)
     # A leaf alone, and whole, is a part by itself.
-    first = tree.programs.start[tree.program]
-    lone = (tree.programs.count[tree.program] == 1) & ~tree.is_cut
-    part = np.where(lone, own[first], first_piece + np.arange(len(tree.box)))
-    boxes = np.empty((len(tree.skip), 8), np.float32)
+    is_lone = (count[:-1] == 1) & ~tree.is_cut
+    part = np.where(is_lone, row[start[:-1]], first_piece + np.arange(len(tree.box)))
+    data = PieceData(Buffer(numbers), tree.joins, first_piece, first_piece + len(tree.box))
+    low, high = (tuple(map(float, corners[0])) for corners in (tree.low, tree.high))
+    slope, divisor = float(leaves.slope.max()), float(leaves.divisor.max())
+    boxes = Buffer(_boxes_of(tree, part))
+    return PartTable(kinds, boxes, Buffer(rows), low, high, slope, divisor, data)
+
+
+def _boxes_of(tree: PieceTree, part: Whole) -> NDArray[np.float32]:
+    """Return the tree of boxes, as ``BoxTree.filled``; ``part`` is that of each piece."""
     margin = OF_PLACE * np.maximum(np.abs(tree.low), np.abs(tree.high))
+    boxes = np.empty((len(tree.skip), 8), np.float32)
     boxes[:, :3], boxes[:, 4:7] = tree.low - margin, tree.high + margin
     boxes[:, 3] = tree.skip
     boxes[tree.box, 7] = part
@@ -239,15 +289,4 @@ def _packed(
     around[inner + 1] = inner
     around[tree.skip[inner + 1]] = inner
     boxes[inner, 7] = -1 - (tree.axis[inner] + 4 * around[inner])
-    low, high = (tuple(map(float, c[0])) for c in (tree.low, tree.high))
-    data = PieceData(Buffer(numbers), tree.joins, first_piece, first_piece + count - 1)
-    return PartTable(
-        kinds,
-        Buffer(boxes.reshape(-1, 4)),
-        Buffer(rows),
-        low,
-        high,
-        float(leaves.slope.max()),
-        float(leaves.divisor.max()),
-        data,
-    )
+    return boxes.reshape(-1, 4)
