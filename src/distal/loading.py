@@ -289,17 +289,23 @@ def _forget_neighbors(folder: Path, known: Set[str]) -> list[Path]:
 
     Python caches modules by name only, so ``shapes`` of one folder would also be imported by scenes
     of another folder. Removing them also makes the next load read edited modules again. The modules
-    stay alive in the globals of the scene that imported them.
+    stay alive in the globals of the scene that imported them. A module that another thread is
+    importing stays: Python looks for it once more when it has run, and that load forgets it.
     """
     tops = {name.partition(".")[0] for name in set(sys.modules) - known}
     near = {top for top in tops if _is_directly_in(sys.modules.get(top), folder)}
     files: set[Path] = set()
     for name in set(sys.modules) - known:
-        if name.partition(".")[0] in near:
+        if name.partition(".")[0] in near and not _is_being_imported(sys.modules.get(name)):
             file = getattr(sys.modules.pop(name), "__file__", None)
             if file is not None and Path(file).is_relative_to(folder):
                 files.add(Path(file))
     return sorted(files)
+
+
+def _is_being_imported(module: types.ModuleType | None) -> bool:
+    """Return whether a module has not run to its end yet."""
+    return getattr(getattr(module, "__spec__", None), "_initializing", False)
 
 
 def _is_directly_in(module: types.ModuleType | None, folder: Path) -> bool:
