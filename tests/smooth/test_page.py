@@ -1,4 +1,4 @@
-"""A page carries the cells of a large smooth union as data, and shows the picture of the CPU."""
+"""A page carries the pieces of a large smooth union as data, and shows the picture of the CPU."""
 
 from __future__ import annotations
 
@@ -40,6 +40,6 @@ def test_a_page_of_a_large_smooth_union(tmp_path):
         assert looked.beside(viewable(scene)).is_agreement
 
 
-def test_targets_without_buffers_have_no_cells():
-    assert "smooth_cells" not in distal.compile(scene_of(20), target="glsl-es100").text
-    assert "smooth_cells" in distal.compile(scene_of(300), target="glsl-es300").text
+def test_targets_without_buffers_have_no_pieces():
+    assert "value_of_piece" not in distal.compile(scene_of(20), target="glsl-es100").text
+    assert "value_of_piece" in distal.compile(scene_of(300), target="glsl-es300").text
