@@ -128,9 +128,7 @@ class SceneLowering:
         # A table is the first member of the union.
         members = [*members_of(bodies[common]), *bodies[:common], *bodies[common + 1 :]]
         self.node = united(node, members) if len(bodies) > 1 else bodies[0]
-        self._shown_node = self.node
-        if rolls:
-            self._shown_node = rolled_for(assembly, scene.shape.node, exact=True)
+        self._rolls = rolls
         self.composer = ShapeComposer(assembly, [self.node])
         closed = paths and not self._hybrid
         self._rays = RayFunctions(self.composer, self.node, self._function, closed=closed)
@@ -411,6 +409,13 @@ class SceneLowering:
         if self._shown_node is not self.node:
             given["field"] = self._shown_field()
         return given
+
+    @property
+    def _shown_node(self) -> Node:
+        """The tree whose values views and layers show, also far away; made when it is needed."""
+        if not self._rolls:
+            return self.node
+        return rolled_for(self._assembly, self._scene.shape.node, exact=True)
 
     def _shown_field(self) -> FunctionRef:
         """Return the author's field, which views and layers show."""

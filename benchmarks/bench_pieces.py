@@ -1,0 +1,109 @@
+"""Joined shapes as pieces: frames and first pictures beside those of a union of the same shapes.
+
+Scenes: a box less n balls and the box united with them, plates with holes, smooth unions of balls,
+shells, intersections. One sharp sun with shadows, 640x480, one sample. Each scene is measured in a
+fresh process with an empty kernel cache: seconds of the processor for the first picture and for the
+fastest of five more, how many pieces there are, and their size.
+
+    python benchmarks/bench_pieces.py [NAME ...]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+MEASURED = """
+import json, sys
+from time import process_time
+import numpy
+from distal import Box, Camera, Cylinder, DistantLight, Ellipsoid, Scene, Sphere, union
+from distal.scene.checks.piece_report import pieces_of
+
+kind, count = sys.argv[1], int(sys.argv[2])
+
+
+def balls(radius, seed=0):
+    rng = numpy.random.default_rng(seed)
+    return [Sphere(radius).translate(*p) for p in rng.uniform(-1, 1, (count, 3)).tolist()]
+
+
+def plate():
+    side = round(count**0.5)
+    step = 4.0 / side
+    at = [(i + 0.5) * step - 2 for i in range(side)]
+    holes = [Cylinder(0.3 * step, 1).translate(x, 0, z) for x in at for z in at]
+    return Box(4, 0.1, 4) - union(holes)
+
+
+radius = 0.6 * count ** (-1 / 3)
+SHAPES = {
+    "difference": lambda: Box(2, 2, 2) - union(balls(radius)),
+    "union": lambda: Box(2, 2, 2) | union(balls(radius)),
+    "plate": plate,
+    "soft": lambda: union(balls(radius), smooth=0.1 * radius),
+    "shell": lambda: union(balls(1.5 * radius)).shell(0.05) - Box(4, 4, 4).translate(2, 0, 0),
+    "intersection": lambda: union(balls(radius)) & Ellipsoid(1.0, 0.8, 1.0),
+}
+begin = process_time()
+scene = Scene(
+    SHAPES[kind](),
+    lights=DistantLight((1, 2, 1.5)),
+    camera=Camera((3, 3, 4), target=(0, 0, 0)),
+    floor=False,
+)
+frames = []
+for _ in range(6):
+    before = process_time()
+    scene.render(size=(640, 480), samples=1)
+    frames.append(process_time() - (before if frames else begin))
+found = pieces_of(scene.shape.node)
+print(json.dumps({"first": frames[0], "frame": min(frames[1:]),
+    "pieces": found.count if found else 0, "bytes": found.bytes if found else 0}))
+"""
+SCENES = (
+    ("union", 1000),
+    ("difference", 1000),
+    ("union", 10_000),
+    ("difference", 10_000),
+    ("plate", 100),
+    ("plate", 400),
+    ("plate", 1500),
+    ("soft", 1000),
+    ("shell", 200),
+    ("intersection", 300),
+)
+
+
+def measured(kind: str, count: int) -> dict[str, float]:
+    """Return what was measured of a scene."""
+    with tempfile.TemporaryDirectory() as cache:
+        environment = {**os.environ, "DISTAL_CACHE_DIR": cache}
+        command = [sys.executable, "-c", MEASURED, kind, str(count)]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    found: dict[str, float] = json.loads(done.stdout)
+    return found
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("names", nargs="*")
+    options = parser.parse_args()
+    print("scene                  first      frame   pieces       size")
+    for kind, count in SCENES:
+        if options.names and kind not in options.names:
+            continue
+        row = measured(kind, count)
+        times = f"{row['first']:9.2f} s{1000 * row['frame']:8.1f} ms"
+        print(
+            f"{kind:13}{count:7,}{times}{row['pieces']:9,}{row['bytes'] / 1e6:8.2f} MB", flush=True
+        )
+
+
+if __name__ == "__main__":
+    main()
