@@ -90,14 +90,14 @@ class LeafCheck:
 
     def warnings(self) -> list[str]:
         """Return what is not certain, in words."""
-        found = [
+        said = [
             f"{leaf.text} is thin in too many places: not all of them were looked up"
             for leaf in self.coarse
         ]
         if self.bridges is not None and len(self.bridges):
             where = shown_place(self.bridges[0])
-            found.append(f"two surfaces may be joined across a narrow gap or wall at {where}")
-        return found
+            said.append(f"two surfaces may be joined across a narrow gap or wall at {where}")
+        return said
 
 
 def refuse_missing(missing: Sequence[MissingLeaf], result: str, hint: str) -> NoReturn:
@@ -175,8 +175,8 @@ def with_all_leaves(
     far = away > limit
     if far.any() and limit > MISSING * tolerance:
         away[far] = distances(rows.some(far), found.made.points[found.made.triangles], limit)
-    made = result_of(search, rows, away, limit)
-    return found, replace(made, bridges=bridges.place) if halved > most else made
+    check = result_of(search, rows, away, limit)
+    return found, replace(check, bridges=bridges.place) if halved > most else check
 
 
 def _limit(found: Extracted, tolerance: float) -> float:

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from distal.at_once import cached_property
 from distal.frontend import Assembly
-from distal.ir.build import field
 from distal.ir.nodes import Param, Read, Return
 from distal.ir.types import FLOAT, INT, VEC3, Type
 from distal.lang.composed import Composed
@@ -143,6 +142,5 @@ class PartDistance(Composed):
         composer = ShapeComposer(assembly, [self._node])
         body = StatementList(taken={"p"})
         given = {**composer.table(self._node).given, "p": Read("p", VEC3)}
-        nearest = body.let("nearest", composer.call(part_tree.nearest_of_all, given))
-        body.statements.append(Return(field(nearest, "distance")))
+        body.statements.append(Return(composer.call(part_tree.distance_to_all, given)))
         return assembly.define("distance_to_parts", [Param("p", VEC3)], FLOAT, body.statements)

@@ -97,7 +97,8 @@ def box_tree(low: Floats, high: Floats, parts: Whole) -> BoxTree:
         whole = slice(int(above[0]), int(above[-1]) + 1)
         is_whole = whole.stop - whole.start == len(above)
         parents.append((whole if is_whole else above, made))
-        order, axis = _sorted_within(middles, order, first, size)
+        within, axis = sorted_within(middles[order], first, size)
+        order = order[within]
         links[1, place[apart]] = -1 - (axis + 4 * around)[apart]
         is_new = np.repeat(apart, 1 + apart)
         around = np.where(is_new, np.repeat(place, 1 + apart), np.repeat(around, 1 + apart))
@@ -112,14 +113,18 @@ def box_tree(low: Floats, high: Floats, parts: Whole) -> BoxTree:
     return BoxTree(leaves, parents[::-1], at, links.astype(np.float32))
 
 
-def _sorted_within(middles: Floats, order: Whole, first: Whole, size: Whole) -> tuple[Whole, Whole]:
-    """Return the order of the parts, sorted within each box along its longest side; that axis."""
-    here = middles[order]
-    extent = np.maximum.reduceat(here, first) - np.minimum.reduceat(here, first)
+def sorted_within(middles: Floats, first: Whole, size: Whole) -> tuple[Whole, Whole]:
+    """Return the order of points, sorted within each group along its longest side, and that axis.
+
+    Args:
+        middles: The points (n, 3), group by group.
+        first: Where each group begins.
+        size: How many points it has.
+    """
+    extent = np.maximum.reduceat(middles, first) - np.minimum.reduceat(middles, first)
     axis = np.argmax(extent, axis=1)
-    group = np.repeat(np.arange(len(first)), size)
-    along = here[np.arange(len(order)), np.repeat(axis, size)]
-    return order[np.lexsort((along, group))], axis
+    along = middles[np.arange(len(middles)), np.repeat(axis, size)]
+    return np.lexsort((along, np.repeat(np.arange(len(first)), size))), axis
 
 
 def _halves(first: Whole, size: Whole, place: Whole) -> tuple[Whole, Whole, Whole]:

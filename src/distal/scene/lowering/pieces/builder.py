@@ -22,7 +22,7 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from distal.fields.guarantees import ENDLESS
-from distal.scene.lowering.parts.box_tree import OF_PLACE, OF_SIZE
+from distal.scene.lowering.parts.box_tree import OF_PLACE, OF_SIZE, sorted_within
 from distal.scene.lowering.pieces.box_order import BoxNodes, PieceTree, surface
 from distal.scene.lowering.pieces.cell_programs import CellPrograms, joined_cells, ranges
 from distal.scene.lowering.pieces.cell_pruning import CellPruning, blended
@@ -352,17 +352,3 @@ def _bulges_of(tree: OperandTree) -> Floats:
             found[chosen, n] = -value[0]
         found[chosen, count + 1] = tree.width[chosen]
     return found
-
-
-def sorted_within(middles: Floats, first: Whole, size: Whole) -> tuple[Whole, Whole]:
-    """Return the order of points, sorted within each group along its longest side, and that axis.
-
-    Args:
-        middles: The points (n, 3), group by group.
-        first: Where each group begins.
-        size: How many points it has.
-    """
-    extent = np.maximum.reduceat(middles, first) - np.minimum.reduceat(middles, first)
-    axis = np.argmax(extent, axis=1)
-    along = middles[np.arange(len(middles)), np.repeat(axis, size)]
-    return np.lexsort((along, np.repeat(np.arange(len(first)), size))), axis
