@@ -18,10 +18,14 @@ from distal import (
     Sphere,
     Torus,
     checker,
+    glass,
     matte,
     mirror,
     union,
 )
+from distal.compiler import driver
+from distal.scene.checks.probe import probe
+from distal.scene.lowering.pieces.brick_table import bricked
 from distal.scene.lowering.pieces.table import pieced
 
 SIZE = (64, 48)
@@ -130,3 +134,71 @@ def test_targets_agree_on_pieces(device):
     pictures = [scene.render(size=(24, 18), samples=1, device=d).array for d in ("cpu", device)]
     a, b = (p.astype(float)[..., :3] for p in pictures)
     assert far_off(a, b, 0.02) < 0.01
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: union(balls(70, 0.3, paint=True), smooth=0.05).paint(glass(1.2, "#ddffee")),
+        lambda: (Box(2, 2, 2) - union(balls(70, 0.2))).paint(glass()) | Plane(y=-1.1),
+    ],
+    ids=["soft", "bubbles"],
+)
+def test_glass_has_bricks(make):
+    shape = make()
+    assert bricked(shape.node, exact=False).tables
+    given = {"camera": EYE, "lights": SUN, "background": (0.1, 0.2, 0.4)}
+    scenes = [Scene(shape, acceleration=a, **given) for a in (True, False)]
+    a, b = (s.render(size=SIZE, samples=1).array.astype(float)[..., :3] for s in scenes)
+    assert far_off(a, b) < 0.02
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: (Box(2, 2, 2).paint("red") - union(balls(40))) | Plane(y=-1.1),
+        lambda: TREES["cutters with colors"]() | Sphere(0.5).translate(1.6, 0, 1).paint(glass()),
+        lambda: (Box(2, 2, 2) - union(balls(40))).paint(mirror()) | Plane(y=-1.1),
+    ],
+    ids=["matte", "beside glass", "mirror"],
+)
+def test_paths_have_the_same_light(make):
+    given = {"camera": EYE, "lights": [SUN, AmbientLight(0.5)]}
+    scenes = [Scene(make(), acceleration=a, **given) for a in (True, False)]
+    a, b = (
+        s.render(size=(24, 18), samples=64, mode="path").array.astype(float)[..., :3]
+        for s in scenes
+    )
+    # The same random numbers: only paths along edges differ.
+    assert far_off(a, b, 0.1) < 0.03
+    assert a.mean() == pytest.approx(b.mean(), rel=0.01)
+
+
+def test_texts_have_the_same_size_for_any_number_of_shapes():
+    for make in (
+        lambda n: union(balls(n, 0.1), smooth=0.05),
+        lambda n: (Box(2, 2, 2) - union(balls(n, 0.1))).paint(glass()),
+    ):
+        sizes = [len(driver.compile(Scene(make(n), camera=EYE), "wgsl").text) for n in (260, 400)]
+        assert abs(sizes[0] - sizes[1]) < 200
+
+
+def test_probes_find_the_shape_with_the_larger_share():
+    shape = union(balls(30, paint=True), smooth=0.06)
+    near = Camera((0.8, 0.8, 1.8), target=(0.0, 0.0, 0.0))
+    scenes = [Scene(shape, acceleration=on, camera=near, lights=SUN) for on in (True, False)]
+    leaves = set()
+    for pixel in ((24, 12), (9, 7), (45, 8), (20, 18)):
+        a, b = (probe(scene, pixel, size=(48, 36)) for scene in scenes)
+        assert [id(node) for node in a.path] == [id(node) for node in b.path]
+        assert a.material is b.material
+        leaves |= {id(node) for node in a.path[-1:]}
+    assert len(leaves) > 1
+
+
+@pytest.mark.parametrize("view", ["slice", "material", "normal", "depth", "distance"])
+def test_views_show_the_same(view):
+    shape = union(balls(30, 0.3, paint=True), smooth=0.06) - Box(0.6, 3, 0.6)
+    scenes = [Scene(shape, acceleration=on, camera=EYE, lights=SUN) for on in (True, False)]
+    a, b = (s.render(size=(48, 36), samples=1, view=view).array / 255.0 for s in scenes)
+    assert far_off(a, b) < 0.02

@@ -332,7 +332,7 @@ def test_blends_edges_and_counts_of_cells():
 
 
 def test_a_smooth_union_of_many_moves_with_the_time():
-    """Members that move have no lists for cells of a grid, although all bounds are constant."""
+    """Members that move are in no bricks, although all bounds are constant."""
     bead = Sphere(0.1).translate(0.0, 0.2 * np.sin(distal.time + cell.x), 0.0)
     rows = [bead.repeat(0.5, count=(2, 1, 1)).translate(0.0, 0.0, 0.7 * i) for i in range(60)]
     whole = rows[0].union(*rows[1:], smooth=0.01)

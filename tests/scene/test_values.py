@@ -420,14 +420,15 @@ import distal.fields
 from distal import Scene, Sphere
 from distal.fields.guarantees import Operator, Primitive
 from distal.scene.lowering.parts.table import PARTS
-from distal.scene.lowering.smooth.cells import CELLS
+from distal.scene.lowering.pieces.brick_table import JOINED
 from distal.scene.tree.rules import name_of
 
 for module in pkgutil.walk_packages(distal.fields.__path__, "distal.fields."):
     importlib.import_module(module.name)
 rules = [each for each in gc.get_objects() if isinstance(each, Operator | Primitive)]
 # Those of tables exist in compiled programs alone.
-print(len(rules), [each.name for each in rules if not name_of(each) and each not in (CELLS, PARTS)])
+nameless = [each for each in rules if not name_of(each) and each not in (JOINED, PARTS)]
+print(len(rules), [each.name for each in nameless])
 """
 
 

@@ -74,8 +74,8 @@ def report_lines(report: ValidationReport) -> Iterator[str]:
     """Yield the lines of the report."""
     yield from _tree(report)
     yield from _table(report)
-    yield from _smooth(report)
     yield from _pieces(report)
+    yield from _bricks(report)
     yield ""
     yield from _slope(report)
     yield from _measurements(report)
@@ -121,21 +121,6 @@ def _table(report: ValidationReport) -> Iterator[str]:
         yield f"  beside it: {name}{times}: {reason}  {line}".rstrip()
 
 
-def _smooth(report: ValidationReport) -> Iterator[str]:
-    """Yield what is known of smooth unions of many shapes."""
-    if report.smooth:
-        yield ""
-    for union in report.smooth[:MOST_ROWS]:
-        many, line = f"{union.count:,} shapes", _line(union.place)
-        if union.reason:
-            asked = f"{many} of a smooth union are asked at each point"
-            yield f"{asked}: {union.reason}  {line}".rstrip()
-            continue
-        lists = f"{union.cells:,} cells with {union.mean:.1f} shapes each, {union.longest} at most"
-        yield f"a smooth union of {many} has {lists}, {union.bytes / 1e6:.1f} MB  {line}".rstrip()
-        yield "  one shape of each kind is shown"
-
-
 def _pieces(report: ValidationReport) -> Iterator[str]:
     """Yield how joined shapes are drawn."""
     pieces = report.pieces
@@ -150,6 +135,18 @@ def _pieces(report: ValidationReport) -> Iterator[str]:
         yield "joined shapes are drawn together, each at each point"
     for whole in pieces.whole[:MOST_ROWS]:
         yield f"  {whole.name} is not taken apart: {whole.reason}  {_line(whole.place)}".rstrip()
+
+
+def _bricks(report: ValidationReport) -> Iterator[str]:
+    """Yield what is known of joined shapes that are not drawn as pieces."""
+    for shapes in report.bricks[:MOST_ROWS]:
+        many, line = f"{shapes.count:,} joined shapes", _line(shapes.place)
+        if shapes.reason:
+            yield f"  {many} are asked at each point: {shapes.reason}  {line}".rstrip()
+            continue
+        steps = f"programs of {shapes.mean:.1f} steps, {shapes.longest} at most"
+        size = f"{shapes.bytes / 1e6:.2f} MB"
+        yield f"  {many} have {shapes.bricks:,} bricks with {steps}, {size}  {line}".rstrip()
 
 
 def _rows(report: ValidationReport) -> Iterator[tuple[str, str, str, str]]:

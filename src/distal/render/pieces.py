@@ -22,8 +22,11 @@ from distal.render.part_tree import beyond_sides
 Attribute = TypeVar("Attribute", Surface, float)
 
 RECORD = 3  # numbers for each piece
-MODES = 8
-JOINS = 128
+# A step has its mode in the lowest bits, then the join, then the row.
+MODE_MASK = 7
+JOIN_AT = 3
+JOIN_MASK = 127
+ROW_AT = 10
 # Modes, as ``scene.lowering.pieces.emission.StepMode``.
 PUSH = 1
 JOIN = 2
@@ -71,6 +74,7 @@ def value_of_piece(
     pieces: Buffer[int],
     leaf: Callable[[vec3, int], float],
     joined: Callable[[int, float, float], float],
+    some_others: bool,
     p: vec3,
     piece: int,
 ) -> float:
@@ -80,18 +84,25 @@ def value_of_piece(
         pieces: The pieces.
         leaf: The value of a leaf, by its row.
         joined: Two values joined, by the number of the join; of one value its change.
+        some_others: Whether some steps do something else than to join a leaf; a constant.
         p: The point.
         piece: The number of the piece.
     """
     start = pieces[RECORD * piece]
+    if not some_others:
+        value = leaf(p, pieces[start] >> ROW_AT)
+        for i in range(1, pieces[RECORD * piece + 1]):
+            step = pieces[start + i]
+            value = joined((step >> JOIN_AT) & JOIN_MASK, value, leaf(p, step >> ROW_AT))
+        return value
     aside = Aside(0, 0.0, 0.0, 0.0)
     value = 0.0
     for i in range(pieces[RECORD * piece + 1]):
         step = pieces[start + i]
-        mode = step % MODES
+        mode = step & MODE_MASK
         d = value
         if mode < POP:
-            d = leaf(p, step // (MODES * JOINS))
+            d = leaf(p, step >> ROW_AT)
         if mode == PUSH:
             aside = put_aside(aside, value)
         if mode < JOIN:
@@ -101,7 +112,7 @@ def value_of_piece(
             if mode == POP:
                 before = last_aside(aside)
                 aside.count -= 1
-            value = joined((step // MODES) % JOINS, before, d)
+            value = joined((step >> JOIN_AT) & JOIN_MASK, before, d)
     return value
 
 
@@ -111,6 +122,7 @@ def value_of_part(
     leaf: Callable[[vec3, int], float],
     joined: Callable[[int, float, float], float],
     first_piece: int,
+    some_others: bool,
     p: vec3,
     part: int,
 ) -> float:
@@ -121,12 +133,13 @@ def value_of_part(
         leaf: The value of a leaf, by its row.
         joined: Two values joined, by the number of the join.
         first_piece: The part that is the first piece.
+        some_others: As for ``value_of_piece``.
         p: The point.
         part: The part.
     """
     if part < first_piece:
         return leaf(p, part)
-    return value_of_piece(pieces, leaf, joined, p, part - first_piece)
+    return value_of_piece(pieces, leaf, joined, some_others, p, part - first_piece)
 
 
 @func
@@ -224,7 +237,7 @@ def first_row(pieces: Buffer[int], first_piece: int, part: int) -> int:
     """Return the row of the first leaf of a part."""
     if part < first_piece:
         return part
-    return pieces[pieces[RECORD * (part - first_piece)]] // (MODES * JOINS)
+    return pieces[pieces[RECORD * (part - first_piece)]] >> ROW_AT
 
 
 @func
@@ -266,8 +279,8 @@ def mixed_in_piece(
     third_found = found
     for i in range(1, 1 if part < first_piece else pieces[RECORD * piece + 1]):
         step = pieces[start + i]
-        mode = step % MODES
-        row = step // (MODES * JOINS)
+        mode = step & MODE_MASK
+        row = step >> ROW_AT
         d = value
         of = found
         if mode < POP or (mode == ONE and names_cut and row > 0):
@@ -282,7 +295,7 @@ def mixed_in_piece(
             else:
                 third_found = found
             aside = put_aside(aside, value)
-        how = (step // MODES) % JOINS
+        how = (step >> JOIN_AT) & JOIN_MASK
         if mode < JOIN:
             value = d
             found = of

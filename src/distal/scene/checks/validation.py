@@ -20,9 +20,8 @@ from distal.scene.checks.bounds_report import NodeBounds, bounds_of_nodes
 from distal.scene.checks.flush_cuts import FlushCut, flush_cuts
 from distal.scene.checks.measuring import Measured, Region, measure
 from distal.scene.checks.moved_faces import moved_face
-from distal.scene.checks.piece_report import PieceReport, pieces_of
+from distal.scene.checks.piece_report import BrickReport, PieceReport, bricks_of, pieces_of
 from distal.scene.checks.proof_report import proof_note
-from distal.scene.checks.smooth_report import SmoothReport, smooth_unions_of
 from distal.scene.checks.table_report import TableReport, table_of
 from distal.scene.objects.field import BaseShape
 from distal.scene.tree.node import Node
@@ -88,17 +87,16 @@ class ValidationReport:
         slope_from: Indices of the shapes that increase the slope of the whole, outermost first.
         table: The table of parts, or None. Then the shapes are one of each kind of parts, and those
             beside the table.
-        smooth: The smooth unions of many shapes. The shapes are one of each kind of those with
-            lists for cells.
         pieces: The pieces as which pictures draw joined shapes, or None.
+        bricks: What is known of joined shapes that are not drawn as pieces.
     """
 
     shapes: tuple[ShapeReport, ...]
     slope_from: tuple[int, ...]
     findings: tuple[CheckFinding, ...]
     table: TableReport | None = None
-    smooth: tuple[SmoothReport, ...] = ()
     pieces: PieceReport | None = None
+    bricks: tuple[BrickReport, ...] = ()
 
     @property
     def holds(self) -> bool:
@@ -112,8 +110,8 @@ class ValidationReport:
             "holds": self.holds,
             "slope_from": list(self.slope_from),
             "table": None if self.table is None else self.table.as_json(),
-            "smooth": [union.as_json() for union in self.smooth],
             "pieces": None if self.pieces is None else self.pieces.as_json(),
+            "bricks": [shapes.as_json() for shapes in self.bricks],
             "shapes": [_shape_json(i, row) for i, row in enumerate(self.shapes)],
             "findings": [
                 {
@@ -139,8 +137,7 @@ def check(
         seed: Seed of the random points.
     """
     given = dict(params or {})
-    smooth, root = smooth_unions_of(shape.node)
-    table, root = table_of(root)
+    table, root = table_of(shape.node)
     nodes = list(root.walk())
     numbers = {id(node): i for i, node in enumerate(nodes)}
     declared = bounds_of_nodes(root, given, time)
@@ -164,8 +161,8 @@ def check(
     found += _cuts_at_faces(numbers, flush_cuts(shape.node, given, time, seed))
     order = {severity: i for i, severity in enumerate(Severity)}
     found = sorted(_at_their_roots(found, rows), key=lambda f: order[f.severity])
-    pieces = pieces_of(shape.node)
-    return ValidationReport(tuple(rows), _slope_from(rows), tuple(found), table, smooth, pieces)
+    pieces, bricks = pieces_of(shape.node), bricks_of(shape.node)
+    return ValidationReport(tuple(rows), _slope_from(rows), tuple(found), table, pieces, bricks)
 
 
 def _regions(nodes: Sequence[Node], declared: Mapping[int, NodeBounds]) -> dict[int, Region | None]:

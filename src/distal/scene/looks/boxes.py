@@ -25,8 +25,7 @@ from distal.lang.expressions import Expression
 from distal.lang.runtime_access import executor
 from distal.packages import PackageError
 from distal.scene.lowering.bounds import BoundsComposer
-from distal.scene.lowering.parts.table import rolled
-from distal.scene.lowering.smooth.cells import celled
+from distal.scene.lowering.parts.table import rolled, with_boxes
 from distal.scene.lowering.union_parts import is_placed, parts_of, placed_parts_of
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.node import Node
@@ -88,7 +87,7 @@ def subject_box(root: Node, params: Mapping[str, Any], time: float) -> SubjectBo
         time: Time in seconds.
     """
     if root.parts > MOST_FOLDED:
-        root = celled(root).node
+        root = with_boxes(root)
     parts = sources = list(parts_of(root))
     if root.parts > MOST_FOLDED and (table := rolled(root)).table is not None:
         parts = list(parts_of(table.node))

@@ -29,14 +29,13 @@ from distal.render.material import Surface, choose_surface, mix_surfaces
 from distal.render.section import cut_surface
 from distal.scene.lowering.part_functions import POINT
 from distal.scene.lowering.parts.kinds import PartKind, materials_in, paths_to_leaves
-from distal.scene.lowering.parts.table import TableNode
+from distal.scene.lowering.parts.table import RowsNode
 from distal.scene.lowering.shapes import ShapeComposer, existing
-from distal.scene.lowering.smooth.cells import CellNode
 from distal.scene.section import HATCH
 from distal.scene.tree.calls import FACING, FOOTPRINT
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
-from distal.scene.tree.varying import host_number
+from distal.scene.tree.varying import ZERO_CELL, host_number
 
 
 class Attribute(ABC):
@@ -154,13 +153,9 @@ def _visit_here(
 ) -> tuple[Expr | None, Expr]:
     composer = kind.composer
     whole = kind.leaf(body, node, site)
-    if isinstance(node, TableNode) and whole is None:
+    if isinstance(node, RowsNode) and whole is None:
         d = composer.table(node).distance(site.p) if measured else None
         return d, _of_table(body, kind, node, site)
-    if isinstance(node, CellNode) and whole is None:
-        members = composer.members(node.grid)
-        d = members.distance(site.p, exact=node.exact) if measured else None
-        return d, _of_members(kind, node, site)
     if whole is not None:
         d = composer.distance(body, node, site.p, site.cell, site.values) if measured else None
         return d, whole
@@ -222,30 +217,13 @@ def _selected(
     return d, result
 
 
-def _of_table(body: StatementList, kind: Attribute, node: TableNode, site: AttributePoint) -> Expr:
+def _of_table(body: StatementList, kind: Attribute, node: RowsNode, site: AttributePoint) -> Expr:
     """Return the attribute of the part of a table that is nearest to a point."""
     part = kind.composer.table(node).nearest(body, site.p)
     return of_part(kind, node, site, part)
 
 
-def _of_members(kind: Attribute, node: CellNode, site: AttributePoint) -> Expr:
-    """Return the attribute of a smooth union with a grid."""
-    composer = kind.composer
-    given: dict[str, Expr] = {"cell": site.cell}
-    if site.footprint is not None:
-        given["footprint"] = site.footprint
-    members = composer.members(node.grid)
-
-    def make(inner: StatementList, of: PartKind) -> Expr:
-        footprint = Read("footprint", given["footprint"].type) if "footprint" in given else None
-        values, cell = composer.values.all(of.node), Read("cell", VEC3)
-        here = AttributePoint(POINT, cell, values, footprint)
-        return kind.in_row(of, members.ordinal, lambda: attribute(inner, kind, of.node, here))
-
-    return members.attribute(kind.name, kind.result, site.p, given, make)
-
-
-def of_part(kind: Attribute, node: TableNode, site: AttributePoint, part: Expr) -> Expr:
+def of_part(kind: Attribute, node: RowsNode, site: AttributePoint, part: Expr) -> Expr:
     """Return the attribute of a part of a table.
 
     Args:
@@ -259,10 +237,13 @@ def of_part(kind: Attribute, node: TableNode, site: AttributePoint, part: Expr) 
     given: dict[str, Expr] = {"p": site.p, "part": part}
     if site.footprint is not None:
         given["footprint"] = site.footprint
+    if site.cell is not ZERO_CELL:
+        given["cell"] = site.cell
+    reads = {name: Read(name, value.type) for name, value in given.items()}
 
     def make(inner: StatementList, of: PartKind) -> Expr:
-        footprint = Read("footprint", given["footprint"].type) if "footprint" in given else None
-        here = AttributePoint(POINT, site.cell, composer.values.all(of.node), footprint)
+        values, cell = composer.values.all(of.node), reads.get("cell", ZERO_CELL)
+        here = AttributePoint(POINT, cell, values, reads.get("footprint"))
         return kind.in_row(of, functions.ordinal, lambda: attribute(inner, kind, of.node, here))
 
     params = [(name, value.type) for name, value in given.items()]

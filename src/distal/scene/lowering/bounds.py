@@ -43,8 +43,7 @@ from distal.scene.lowering.box_axes import (
     turns_boxes_again,
 )
 from distal.scene.lowering.existence import NEVER, exists_after, exists_of_either
-from distal.scene.lowering.parts.table import PartTable, TableNode
-from distal.scene.lowering.smooth.cells import CellNode, MemberGrid
+from distal.scene.lowering.parts.table import PartTable, RowsNode
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values, plain_name
 
@@ -144,10 +143,8 @@ class BoundsComposer:
         """
         if axes is not None or turns_boxes_again(node):
             return self._along(body, node, values, axes or BoxAxes.own())
-        if isinstance(node, TableNode):
+        if isinstance(node, RowsNode):
             return self._of_table(node.table)
-        if isinstance(node, CellNode):
-            return self._of_grid(node.grid)
         own, shares = self._values.split(node, values)
         rule = node.rule
         if isinstance(rule, Primitive):
@@ -254,18 +251,10 @@ class BoundsComposer:
         slope = constant_number(table.slope)
         divisor = constant_number(table.divisor) if table.needs_factors else ONE
         box = Construct(corners, self._values.assembly.struct(Bounds))
-        return ShapeBounds(slope, divisor, box, UNKNOWN, UNKNOWN)
-
-    def _of_grid(self, grid: MemberGrid) -> ShapeBounds:
-        low, high = grid.box
-        corners = (
-            self._values.fixed("smooth_low", VEC3, low),
-            self._values.fixed("smooth_high", VEC3, high),
-        )
-        slope = constant_number(grid.slope)
-        growth, side_growth = map(constant_number, grid.growth)
-        box = Construct(corners, self._values.assembly.struct(Bounds))
-        return ShapeBounds(slope, slope, box, growth, side_growth)
+        bricks = table.programs.bricks if table.programs is not None else None
+        growth = UNKNOWN if bricks is None else constant_number(bricks.growth)
+        corner = growth if bricks is None else _corner_growth(StatementList(), growth, 3)
+        return ShapeBounds(slope, divisor, box, corner, growth)
 
     def of_operator(
         self,

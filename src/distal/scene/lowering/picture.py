@@ -54,12 +54,18 @@ from distal.scene.lowering.attributes import (
     attribute,
     of_part,
 )
-from distal.scene.lowering.bodies import BodyFunctions, bodies_of, largest_of, members_of
+from distal.scene.lowering.bodies import BodyFunctions, bodies_of, is_clear, largest_of, members_of
 from distal.scene.lowering.bumps import has_bump, tilted
 from distal.scene.lowering.camera_functions import CameraFunctions
 from distal.scene.lowering.glass_shadows import colored_shadow, split_glass
 from distal.scene.lowering.light_functions import LightFunctions
-from distal.scene.lowering.parts.table import has_table, pieced_for, rolled_for, split_table
+from distal.scene.lowering.parts.table import (
+    bricked_for,
+    has_table,
+    pieced_for,
+    rolled_for,
+    split_table,
+)
 from distal.scene.lowering.photon_functions import PhotonFunctions
 from distal.scene.lowering.ray_functions import RayFunctions, function_in, step_limit
 from distal.scene.lowering.scattering import number_bsdfs, scattering_functions
@@ -116,14 +122,17 @@ class SceneLowering:
         rolls = scene.acceleration and not self._hybrid
         node = scene.shape.node
         bodies, common = [node], 0
-        if paths or scene.renderer == "refracted":
+        is_glassy = paths or scene.renderer == "refracted"
+        if is_glassy:
             apart = paths and not (rolls and has_table(assembly, node))
             bodies = bodies_of(node, scene.material, apart=apart)
             common = largest_of(bodies)
-        if rolls and not paths and len(bodies) == 1 and scene.renderer != "refracted":
-            varies = bool(scene.material.uses)
-            bodies[common] = pieced_for(assembly, bodies[common], default_varies=varies)
         if rolls:
+            # Rays within glass ask for the value at any place; pieces have the surface alone.
+            varies = bool(scene.material.uses)
+            if not (is_glassy and is_clear(bodies[common], scene.material)):
+                bodies[common] = pieced_for(assembly, bodies[common], default_varies=varies)
+            bodies = [bricked_for(assembly, body, default_varies=varies) for body in bodies]
             bodies[common] = rolled_for(assembly, bodies[common])
         # A table is the first member of the union.
         members = [*members_of(bodies[common]), *bodies[:common], *bodies[common + 1 :]]

@@ -31,13 +31,11 @@ from distal.lang.places import CELL
 from distal.lang.resources import Buffer, TextureValue
 from distal.scene.lowering.bounds import BoundsComposer
 from distal.scene.lowering.part_functions import PartFunctions
-from distal.scene.lowering.parts.table import TableNode
-from distal.scene.lowering.pieces.functions import PieceFunctions
+from distal.scene.lowering.parts.table import RowsNode
+from distal.scene.lowering.pieces.functions import functions_of
 from distal.scene.lowering.safe_parts import SafeParts
 from distal.scene.lowering.selection import selected
 from distal.scene.lowering.sheets import Sheets
-from distal.scene.lowering.smooth.cells import CellNode, MemberGrid
-from distal.scene.lowering.smooth.functions import MemberFunctions
 from distal.scene.lowering.turned_boxes import TurnedBoxes
 from distal.scene.tree.errors import refuse
 from distal.scene.tree.node import Node
@@ -67,7 +65,6 @@ class ShapeComposer:
         self._kinds: dict[int, set[int]] = {}
         self._count_kinds(root_nodes)
         self._tables: dict[int, PartFunctions] = {}
-        self._members: dict[int, MemberFunctions] = {}
         self.sheets = Sheets(self)
 
     # Equality of subtrees
@@ -107,22 +104,12 @@ class ShapeComposer:
             self._uses_cell[id(node)] = found
         return found
 
-    def table(self, node: TableNode) -> PartFunctions:
+    def table(self, node: RowsNode) -> PartFunctions:
         """Return the functions of a table's parts."""
         found = self._tables.get(id(node))
         if found is None:
-            kind = PartFunctions if node.table.pieces is None else PieceFunctions
-            found = self._tables[id(node)] = kind(self, node.table)
+            found = self._tables[id(node)] = functions_of(self, node.table)
         return found
-
-    def members(self, grid: MemberGrid) -> MemberFunctions:
-        """Return the functions of the members of a smooth union with a grid."""
-        found = self._members.get(id(grid))
-        if found is None:
-            found = self._members[id(grid)] = MemberFunctions(self, grid)
-        return found
-
-    # Distances
 
     def field(self, node: Node, values: Sequence[Expr], cell: Expr) -> FunctionRef:
         """Return a subtree's distance as a function of the point alone.
@@ -312,10 +299,8 @@ class ShapeComposer:
     ) -> Expr:
         if factors and not self.parts.splits(node):
             return self._scaled(body, node, p, cell, values, factors)
-        if isinstance(node, TableNode):
+        if isinstance(node, RowsNode):
             return body.let("d", self.table(node).distance(p))
-        if isinstance(node, CellNode):
-            return body.let("d", self.members(node.grid).distance(p, exact=node.exact))
         given, shares = self.given(body, node, p, cell, values)
         rule = node.rule
         if isinstance(rule, Primitive):

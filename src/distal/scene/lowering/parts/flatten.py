@@ -163,10 +163,11 @@ def copies_of(node: Node) -> int:
     if node.rule is not REPEAT_AT:
         return 1
     count = len(node.constants["positions"].data)
-    return 1 if count < LEAST_COPIES or _reads_cell(node.children[0]) else count
+    return 1 if count < LEAST_COPIES or reads_cell(node.children[0]) else count
 
 
-def _reads_cell(root: Node) -> bool:
+def reads_cell(root: Node) -> bool:
+    """Return whether a tree reads the index of a repetition."""
     if varied_in(root):
         return True
     materials = (m for n in root.walk() for m in (n.material, n.cut_material) if m is not None)

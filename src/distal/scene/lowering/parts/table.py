@@ -21,15 +21,16 @@ from distal.lang.resources import Buffer
 from distal.scene.lowering.parts.flatten import UnionMember, member_count, members_of
 from distal.scene.lowering.parts.kinds import PartKind, kinds_of
 from distal.scene.lowering.safe_parts import SafeParts
-from distal.scene.lowering.smooth.cells import celled_for
 from distal.scene.lowering.union_parts import parts_of
 from distal.scene.tree.node import Node
 
 if TYPE_CHECKING:
     from distal.scene.lowering.parts import rows
+    from distal.scene.lowering.pieces import brick_table as bricks
     from distal.scene.lowering.pieces import table as pieces
     from distal.scene.lowering.pieces.joins import ValueJoin
 else:
+    bricks = LazyModule("distal.scene.lowering.pieces.brick_table")
     pieces = LazyModule("distal.scene.lowering.pieces.table")
     rows = LazyModule("distal.scene.lowering.parts.rows")  # needs NumPy
 
@@ -53,20 +54,51 @@ PARTS: Final = Operator("parts", keeps=EXACT_OUTSIDE)
 
 
 @dataclass(frozen=True, slots=True)
-class PieceData:
-    """The programs of a table of pieces, in the form that ``render.pieces`` reads.
+class BrickData:
+    """Which program has the values of a tree where, in the form that ``render.bricks`` reads.
 
     Attributes:
-        numbers: The pieces and their steps, a buffer of whole numbers.
+        programs: The program of each brick, a buffer of whole numbers.
+        counts: How many bricks lie along each axis.
+        low: The low corner of all bricks.
+        high: The high corner.
+        growth: The growth of the sides of the box around the tree (``fields.guarantees``).
+        exact: Whether values outside of the bricks are those of the tree, not only bounds.
+    """
+
+    programs: Buffer
+    counts: tuple[int, int, int]
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    growth: float
+    exact: bool = False
+
+    @property
+    def per_unit(self) -> tuple[float, ...]:
+        """Bricks for each unit of length along each axis."""
+        sides = zip(self.counts, self.low, self.high, strict=True)
+        return tuple(count / (b - a) for count, a, b in sides)
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramData:
+    """The programs of a table, in the form that ``render.pieces`` reads.
+
+    Attributes:
+        numbers: The programs and their steps, a buffer of whole numbers.
         joins: How steps join values.
-        first_piece: The number of the first piece as a part; lower ones are rows of leaves.
+        first_program: The number of the first program as a part; lower ones are rows of leaves.
         whole: That of the program of the whole tree.
+        some_others: Whether some steps do something else than to join a leaf.
+        bricks: Which program has the values where; None for pieces, which have boxes.
     """
 
     numbers: Buffer
     joins: Sequence[ValueJoin]
-    first_piece: int
+    first_program: int
     whole: int
+    some_others: bool
+    bricks: BrickData | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,14 +107,13 @@ class PartTable:
 
     Attributes:
         kinds: The kinds of parts.
-        boxes: The tree of boxes, a buffer of vec4 (``render.part_tree``); None for members of a
-            smooth union.
+        boxes: The tree of boxes, a buffer of vec4 (``render.part_tree``); None for bricks.
         rows: The numbers of the parts, a buffer of vec4.
         low: The low corner of the box around all parts.
         high: The high corner.
         slope: Lipschitz bound (slope) of all parts.
         divisor: The largest number that a part's values are divided by to make distances.
-        pieces: The programs, if parts are pieces of a tree; None if they are leaves.
+        programs: The programs, if parts are pieces or bricks of a tree; None if they are leaves.
     """
 
     kinds: Sequence[PartKind]
@@ -92,12 +123,12 @@ class PartTable:
     high: tuple[float, ...]
     slope: float
     divisor: float
-    pieces: PieceData | None = None
+    programs: ProgramData | None = None
 
     @property
     def needs_factors(self) -> bool:
         """Whether values of some parts are not distances before they get their factors."""
-        if self.pieces is not None:
+        if self.programs is not None:
             return self.divisor > 1.0
         return any(kind.factor is not None for kind in self.kinds)
 
@@ -113,8 +144,8 @@ class PartTable:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class TableNode(Node):
-    """A node that stands for all parts of a table."""
+class RowsNode(Node):
+    """A node that stands for shapes whose numbers are rows of a table."""
 
     table: PartTable = None  # type: ignore[assignment]  # always given; the base class has defaults
 
@@ -122,6 +153,18 @@ class TableNode(Node):
     def has_rows(self) -> bool:
         """Whether the numbers of its children are rows of a table."""
         return True
+
+
+class TableNode(RowsNode):
+    """A node that stands for all parts of a table, which rays meet one by one."""
+
+    __slots__ = ()
+
+
+class BrickNode(RowsNode):
+    """A node that stands for joined shapes: a point asks those that matter in its brick."""
+
+    __slots__ = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,19 +221,19 @@ def _rolled(root: Node) -> Rolled:
 
 
 def rolled_for(assembly: Assembly, root: Node, *, exact: bool = False) -> Node:
-    """Return the tree with a table and with grids of smooth unions, if a program can have them.
+    """Return the tree with a table and with bricks of joined shapes, if a program can have them.
 
     Args:
         assembly: The program.
         root: The tree.
-        exact: Whether values far from smooth unions are those of the shape, not only bounds.
+        exact: Whether values far from joined shapes are those of the tree, not only bounds.
 
     Raises:
         CompileError: The target has no buffers for a table, and the parts are too many without one;
-            or a smooth union has too many members and can have no grid.
+            or too many joined shapes can have no bricks.
     """
-    root = celled_for(assembly.table_from, root, exact=exact)
     if assembly.table_from is not None:
+        root = bricked_for(assembly, root, exact=exact)
         return rolled(root).node if has_table(assembly, root) else root
     if root.parts > MOST_WITHOUT:
         raise CompileError.at(
@@ -200,6 +243,40 @@ def rolled_for(assembly: Assembly, root: Node, *, exact: bool = False) -> Node:
             f"take a target with buffers; {MOST_WITHOUT:,} parts are possible without",
         )
     return root
+
+
+def bricked_for(
+    assembly: Assembly, root: Node, *, exact: bool = False, default_varies: bool = False
+) -> Node:
+    """Return the tree with bricks for its joined shapes, if a program can have them.
+
+    Other arguments, and errors, as for ``rolled_for``.
+
+    Args:
+        assembly: The program.
+        root: The tree.
+        exact: Whether values far from joined shapes are those of the tree.
+        default_varies: Whether the material of shapes without one depends on the place.
+    """
+    if assembly.table_from is None:
+        return root
+    try:
+        found = bricks.bricked(root, exact=exact, default_varies=default_varies)
+    except RecursionError:
+        return root  # lowering reports a tree that is too deep
+    except ImportError:  # also of the module itself
+        if root.parts > MOST_WITHOUT:
+            raise
+        return root  # texts are compiled without NumPy too
+    for shapes in found.whole:
+        if shapes.count > MOST_WITHOUT:
+            raise CompileError.at(
+                ErrorCode.TARGET,
+                f"{shapes.count:,} joined shapes need programs for boxes, but {shapes.reason}",
+                (shapes.blamed or shapes.node).place,
+                f"without them, {MOST_WITHOUT:,} shapes are possible",
+            )
+    return found.node
 
 
 def pieced_for(assembly: Assembly, root: Node, *, default_varies: bool) -> Node:
@@ -216,6 +293,15 @@ def pieced_for(assembly: Assembly, root: Node, *, default_varies: bool) -> Node:
         return pieces.pieced(root, default_varies=default_varies).node
     except (ImportError, RecursionError):
         return root  # without NumPy; lowering reports a tree that is too deep
+
+
+def with_boxes(root: Node) -> Node:
+    """Return the tree with pieces or bricks, which have boxes of their own, if it can have some."""
+    try:
+        found = pieces.pieced(root)
+        return found.node if found.table is not None else bricks.bricked(root, exact=False).node
+    except (ImportError, RecursionError):
+        return root
 
 
 def has_table(assembly: Assembly, root: Node) -> bool:

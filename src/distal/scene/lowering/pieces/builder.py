@@ -15,22 +15,26 @@ All boxes of a level are divided together, as arrays.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
 
 from distal.fields.guarantees import ENDLESS
 from distal.scene.lowering.parts.box_tree import OF_PLACE, OF_SIZE, sorted_within
 from distal.scene.lowering.pieces.box_order import BoxNodes, PieceTree, surface
-from distal.scene.lowering.pieces.cell_programs import CellPrograms, joined_cells, ranges
-from distal.scene.lowering.pieces.cell_pruning import CellPruning, blended
+from distal.scene.lowering.pieces.cell_programs import (
+    ENDLESS_SOLID,
+    CellPrograms,
+    joined_cells,
+    ranges,
+    whole_cell,
+)
+from distal.scene.lowering.pieces.cell_pruning import CellPruning, LeafDistances, bulges_of
 from distal.scene.lowering.pieces.emission import emitted
 from distal.scene.lowering.pieces.lone_leaves import lone_leaves, unites_leaves
 from distal.scene.lowering.pieces.operands import (
     CHAIN,
-    LEAF,
     Flags,
     Floats,
     OperandTree,
@@ -39,18 +43,10 @@ from distal.scene.lowering.pieces.operands import (
 )
 from distal.scene.lowering.pieces.programs import PieceProgram
 
-# Distances of points (n, 3) to leaves (n,): floats (n,).
-Distances: TypeAlias = Callable[[Floats, Whole], Floats]
-
-ENDLESS_SOLID: Final = "the solid has no finite box"
-# What the middle of a cell is away from its corners, more than computed, for rounding.
-OF_REACH: Final = 5e-4
 # Members of a union that overlap are divided nevertheless from this number on.
 MANY_MEMBERS: Final = 64
 MOST_OVERLAP: Final = 1.6
 MOST_LEVELS: Final = 64
-# Blends of more operands than this add as much as a whole width.
-MOST_BULGES: Final = 32
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +81,7 @@ def build(
     low: Floats,
     high: Floats,
     slopes: Floats,
-    distances: Distances,
+    distances: LeafDistances,
     limits: PieceLimits = PieceLimits(),
     growths: Floats | None = None,
 ) -> PieceTree:
@@ -123,23 +119,18 @@ class _Division:
         tree: OperandTree,
         low: Floats,
         high: Floats,
-        distances: Distances,
+        distances: LeafDistances,
         limits: PieceLimits,
     ) -> None:
         self._tree = tree
         self._low, self._high = low, high
-        self._distances = distances
         self._limits = limits
-        self._bulges = _bulges_of(tree)
-        whole = CellPrograms.whole(tree, np.full(3, -np.inf), np.full(3, np.inf))
-        (box,) = whole.boxes(tree, low, high, self._bulges)[0]
-        if not (np.abs(box) < ENDLESS).all():
-            raise ValueError(ENDLESS_SOLID)
-        self._first = whole.taken(np.array([0]), box[None, :3], -box[None, 3:], np.array([0]))
-        self._size = float((-box[3:] - box[:3]).max())
-        self._pruning = CellPruning(tree, self._bulges, limits.margin * self._size)
-        self._asked = 0
-        self._farthest = float(np.abs(box).max())
+        self._bulges = bulges_of(tree)
+        self._first = whole_cell(tree, low, high, self._bulges)
+        farthest = float(np.maximum(np.abs(self._first.low), np.abs(self._first.high)).max())
+        self._size = float((self._first.high - self._first.low).max())
+        self._margin = limits.margin * self._size
+        self._pruning = CellPruning(tree, self._bulges, distances, farthest, self._margin)
         self._is_union = tree.kind[0] == CHAIN and tree.is_open[0] and tree.width[0] == 0.0
         self._nodes = BoxNodes()
         self._batches: list[CellPrograms] = []
@@ -159,7 +150,7 @@ class _Division:
             size = (batch.high - batch.low).max(axis=1, initial=0.0)
             smallest = self._limits.smallest * self._size
             is_divided = (count > self._limits.leaves) & (size >= smallest) & (size > 0.0)
-            is_divided &= self._asked < self._limits.values
+            is_divided &= self._pruning.asked < self._limits.values
             parted, by_member = self._parted(batch, members)
             halves, is_inside = self._halved(batch, is_divided & ~by_member & ~is_inside)
             is_inside = np.concatenate([np.zeros(len(parted), bool), is_inside])
@@ -237,35 +228,14 @@ class _Division:
     def _halved(self, batch: CellPrograms, is_divided: Flags) -> tuple[CellPrograms, Flags]:
         """Return the halves of cells that have a part of the surface, with what matters there."""
         cells = np.flatnonzero(is_divided)
-        low, high = batch.low[cells], batch.high[cells]
-        axis = np.argmax(high - low, axis=1)
-        number = np.arange(len(cells))
-        middle = 0.5 * (low[number, axis] + high[number, axis])
-        place = self._nodes.divided(batch.place[cells], axis)
-        lows, highs = np.repeat(low, 2, axis=0), np.repeat(high, 2, axis=0)
-        highs[2 * number, axis] = middle
-        lows[2 * number + 1, axis] = middle
-        halves = batch.taken(np.repeat(cells, 2), lows, highs, place)
-        halves = replace(halves, is_cut=np.ones(len(halves), bool))
+        axis = np.argmax(batch.high[cells] - batch.low[cells], axis=1)
+        halves = batch.halved(cells, axis, self._nodes.divided(batch.place[cells], axis))
         if not len(halves):
             return halves, np.zeros(0, bool)
-        reach = 0.5 * np.sqrt(((highs - lows) ** 2).sum(axis=1)) * (1.0 + OF_REACH)
-        reach += OF_PLACE * self._farthest
-        own = self._leaf_distances(halves)
-        return self._pruning.pruned(halves, own, reach, interior=self._limits.interior)
-
-    def _leaf_distances(self, cells: CellPrograms) -> list[Floats]:
-        """Return the distances of the cells' middles to their leaves, level by level."""
-        middle = 0.5 * (cells.low + cells.high)
-        points, leaves, counts = [], [], []
-        for entries, cell in zip(cells.levels, cells.cells(), strict=True):
-            chosen = self._tree.kind[entries.node] == LEAF
-            points.append(middle[cell[chosen]])
-            leaves.append(self._tree.leaf[entries.node[chosen]])
-            counts.append(len(leaves[-1]))
-        self._asked += sum(counts)
-        found = self._distances(np.concatenate(points), np.concatenate(leaves))
-        return np.split(np.asarray(found, np.float64), np.cumsum(counts)[:-1])
+        values, _ = self._pruning.values(halves)
+        is_inside = values[0].high < -self._margin
+        chosen = (values[0].low <= self._margin) & (self._limits.interior | ~is_inside)
+        return self._pruning.pruned(halves, values, chosen), is_inside[chosen]
 
     def _tree_of_pieces(self) -> PieceTree:
         """Return the tree of boxes that is cheapest, and the programs of its pieces."""
@@ -333,22 +303,3 @@ class _MemberHalves:
             axis,
             is_upper,
         )
-
-
-def _bulges_of(tree: OperandTree) -> Floats:
-    """Return how far the blend of each node is below n equal values, for n from 0.
-
-    Of values that are all 0 or more the blend is at least that, because it never falls where a
-    value grows.
-    """
-    count = min(int(np.bincount(tree.parent[1:]).max(initial=0)), MOST_BULGES)
-    found = np.zeros((len(tree.kind), count + 2))
-    chains = np.flatnonzero((tree.kind == CHAIN) & (tree.width > 0.0))
-    for join in np.unique(tree.own_join[chains]).tolist():
-        chosen = chains[tree.own_join[chains] == join]
-        value = np.zeros(1)
-        for n in range(2, count + 1):
-            value = blended(tree.joins[join], value, np.zeros(1))
-            found[chosen, n] = -value[0]
-        found[chosen, count + 1] = tree.width[chosen]
-    return found

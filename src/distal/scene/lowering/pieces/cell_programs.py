@@ -7,11 +7,15 @@ the tree, the boxes of their programs, and selections of cells.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
+from distal.fields.guarantees import ENDLESS
 from distal.scene.lowering.pieces.operands import CHANGE, LEAF, Flags, Floats, OperandTree, Whole
+
+ENDLESS_SOLID: Final = "the solid has no finite box"
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +85,23 @@ class CellPrograms:
             parent = np.repeat(np.arange(len(chosen)), count)
             chosen = ranges(entries.start[chosen], count)
         return CellPrograms(low, high, self.is_cut[cells], place, _counted(levels))
+
+    def halved(self, cells: Whole, axis: Whole, place: Whole) -> CellPrograms:
+        """Return both halves of some of the cells, the lower ones first.
+
+        Args:
+            cells: The cells.
+            axis: The axis along which each is halved.
+            place: The numbers of the boxes of the halves.
+        """
+        low, high = self.low[cells], self.high[cells]
+        number = np.arange(len(cells))
+        middle = 0.5 * (low[number, axis] + high[number, axis])
+        lows, highs = np.repeat(low, 2, axis=0), np.repeat(high, 2, axis=0)
+        highs[2 * number, axis] = middle
+        lows[2 * number + 1, axis] = middle
+        halves = self.taken(np.repeat(cells, 2), lows, highs, place)
+        return replace(halves, is_cut=np.ones(len(halves), bool))
 
     def kept(self, keep: Sequence[Flags]) -> CellPrograms:
         """Return the cells without some of their entries, and without what is below those.
@@ -171,6 +192,25 @@ def _moved_out(tree: OperandTree, node: Whole, count: Whole, bulges: Floats) -> 
     bulge = np.where(tree.is_open[node], bulges[node, np.minimum(count, last)], 0.0)
     moved: Floats = np.where(tree.kind[node] == CHANGE, change, bulge) * tree.growth[node]
     return moved
+
+
+def whole_cell(tree: OperandTree, low: Floats, high: Floats, bulges: Floats) -> CellPrograms:
+    """Return the box of the whole solid as a cell with the whole program.
+
+    Args:
+        tree: The operands.
+        low: The low corners of the boxes of the leaves (n, 3).
+        high: The high corners.
+        bulges: ``cell_pruning.bulges_of`` the operands.
+
+    Raises:
+        ValueError: The solid has no finite box.
+    """
+    whole = CellPrograms.whole(tree, np.full(3, -np.inf), np.full(3, np.inf))
+    (box,) = whole.boxes(tree, low, high, bulges)[0]
+    if not (np.abs(box) < ENDLESS).all():
+        raise ValueError(ENDLESS_SOLID)
+    return whole.taken(np.array([0]), box[None, :3], -box[None, 3:], np.array([0]))
 
 
 def joined_cells(batches: Sequence[CellPrograms]) -> CellPrograms:

@@ -37,17 +37,25 @@ Eurographics 2025, for the intervals and the difference of two operands; the ban
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
 from distal.lang.runtime_access import executor
+from distal.scene.lowering.parts.box_tree import OF_PLACE
 from distal.scene.lowering.pieces.cell_programs import CellEntries, CellPrograms
 from distal.scene.lowering.pieces.joins import JoinCode, ValueJoin
-from distal.scene.lowering.pieces.operands import LEAF, Flags, Floats, OperandTree, Whole
+from distal.scene.lowering.pieces.operands import CHAIN, LEAF, Flags, Floats, OperandTree, Whole
 
+# Distances of points (n, 3) to leaves (n,): floats (n,).
+LeafDistances: TypeAlias = Callable[[Floats, Whole], Floats]
+
+# What the middle of a cell is away from its corners, more than computed, for rounding.
+OF_REACH: Final = 5e-4
+# Blends of more operands than this add as much as a whole width.
+MOST_BULGES: Final = 32
 # By how many widths the band of a chain of more than two operands is widened.
 WIDENING: Final = 2.0
 # How much operands beyond twice the width may change a blend, in widths.
@@ -55,72 +63,107 @@ MOST_BEYOND: Final = 0.08
 
 
 @dataclass(slots=True)
-class _EntryIntervals:
+class EntryIntervals:
     """The values of the entries of one level: in the middle, and the ends of their intervals."""
 
     middle: Floats
     low: Floats
     high: Floats
 
-    def turned(self, sign: Floats) -> _EntryIntervals:
+    def turned(self, sign: Floats) -> EntryIntervals:
         """Return the values times signs."""
         low = np.where(sign < 0.0, -self.high, self.low)
-        return _EntryIntervals(sign * self.middle, low, np.where(sign < 0.0, -self.low, self.high))
+        return EntryIntervals(sign * self.middle, low, np.where(sign < 0.0, -self.low, self.high))
+
+    def chosen(self, entries: Whole) -> EntryIntervals:
+        """Return the values of some of the entries."""
+        return EntryIntervals(self.middle[entries], self.low[entries], self.high[entries])
 
 
 class CellPruning:
-    """Prunes the programs of cells."""
+    """Prunes the programs of cells.
 
-    def __init__(self, tree: OperandTree, bulges: Floats, margin: float) -> None:
+    Attributes:
+        asked: How many distances to leaves were asked for.
+    """
+
+    def __init__(
+        self,
+        tree: OperandTree,
+        bulges: Floats,
+        distances: LeafDistances,
+        farthest: float,
+        margin: float = np.inf,
+    ) -> None:
         """Prepare the operands.
 
         Args:
             tree: The operands.
             bulges: How far each chain's blend is below the least of 0, 1, 2 ... equal values.
-            margin: How far from the surface values matter.
+            distances: Returns the distances of points to leaves, each to its own.
+            farthest: The largest coordinate, for rounding.
+            margin: How far from the surface values matter. If all do, nothing is dropped that has
+                an effect anywhere, also in chains of blends.
         """
         self._tree = tree
-        self._bulges = bulges
+        self._distances = distances
+        self._farthest = farthest
         self._margin = margin
+        self._bulges = bulges
+        self.asked = 0
 
     def pruned(
-        self, cells: CellPrograms, distances: Sequence[Floats], reach: Floats, *, interior: bool
-    ) -> tuple[CellPrograms, Flags]:
-        """Return the cells with a part of the surface, and what matters there.
+        self, cells: CellPrograms, values: Sequence[EntryIntervals], chosen: Flags
+    ) -> CellPrograms:
+        """Return some of the cells, with what matters there.
 
         Args:
             cells: The cells.
-            distances: For each level, the distances of the cells' middles to the leaves on it.
-            reach: The radius of each cell.
-            interior: Whether cells within the solid are kept.
-
-        Returns:
-            The cells, and whether each is within the solid.
+            values: The values in them (``values``).
+            chosen: Which of them are kept.
         """
-        values = self._values(cells, distances, reach)
-        root = values[0]
-        margin = self._margin
-        inside = root.high < -margin
-        keep = [(root.low <= margin) & (interior | ~inside)]
-        low, high = np.full(len(cells), -margin), np.full(len(cells), margin)
+        keep = [chosen]
+        low, high = np.full(len(cells), -self._margin), np.full(len(cells), self._margin)
         for i, entries in enumerate(cells.levels[:-1]):
             below = cells.levels[i + 1]
             kept, low, high = self._below(entries, below, values[i + 1], low, high)
             keep.append(kept)
-        return cells.kept(keep), inside[keep[0]]
+        return cells.kept(keep)
 
     # Up
 
+    def values(self, cells: CellPrograms) -> tuple[list[EntryIntervals], Floats]:
+        """Return the values in cells, level by level, and the radius of each cell.
+
+        Those on the first level are the values of the tree.
+        """
+        reach = 0.5 * np.sqrt(((cells.high - cells.low) ** 2).sum(axis=1)) * (1.0 + OF_REACH)
+        reach += OF_PLACE * self._farthest
+        return self._values(cells, self._leaf_distances(cells), reach), reach
+
+    def _leaf_distances(self, cells: CellPrograms) -> list[Floats]:
+        """Return the distances of the cells' middles to their leaves, level by level."""
+        middle = 0.5 * (cells.low + cells.high)
+        points, leaves, counts = [], [], []
+        for entries, cell in zip(cells.levels, cells.cells(), strict=True):
+            chosen = self._tree.kind[entries.node] == LEAF
+            points.append(middle[cell[chosen]])
+            leaves.append(self._tree.leaf[entries.node[chosen]])
+            counts.append(len(leaves[-1]))
+        self.asked += sum(counts)
+        found = self._distances(np.concatenate(points), np.concatenate(leaves))
+        return np.split(np.asarray(found, np.float64), np.cumsum(counts)[:-1])
+
     def _values(
         self, cells: CellPrograms, distances: Sequence[Floats], reach: Floats
-    ) -> list[_EntryIntervals]:
-        tree, found = self._tree, list[_EntryIntervals]()
+    ) -> list[EntryIntervals]:
+        tree, found = self._tree, list[EntryIntervals]()
         numbers = cells.cells()
         for i in range(len(cells.levels) - 1, -1, -1):
             entries = cells.levels[i]
             node = entries.node
             around = tree.slope[node] * reach[numbers[i]]
-            values = _EntryIntervals(*(np.empty(len(node)) for _ in range(3)))
+            values = EntryIntervals(*(np.empty(len(node)) for _ in range(3)))
             leaves = tree.kind[node] == LEAF
             middle = distances[i]
             values.middle[leaves] = middle
@@ -140,9 +183,9 @@ class CellPruning:
         entries: CellEntries,
         inner: Whole,
         below: CellEntries,
-        operands: _EntryIntervals,
+        operands: EntryIntervals,
         around: Floats,
-    ) -> _EntryIntervals:
+    ) -> EntryIntervals:
         """Return the values of nodes with operands.
 
         Args:
@@ -155,7 +198,7 @@ class CellPruning:
         tree = self._tree
         node, start = entries.node[inner], entries.start[inner]
         turned = operands.turned(tree.member_turn[below.node])
-        least = _EntryIntervals(
+        least = EntryIntervals(
             *(np.minimum.reduceat(v, start) for v in (turned.middle, turned.low, turned.high))
         )
         many = entries.count[inner] > 1
@@ -185,8 +228,8 @@ class CellPruning:
         count: Whole,
         chosen: Whole,
         start: Whole,
-        turned: _EntryIntervals,
-        least: _EntryIntervals,
+        turned: EntryIntervals,
+        least: EntryIntervals,
     ) -> None:
         """Put the blended values of some chains in place of the least of their operands.
 
@@ -225,7 +268,7 @@ class CellPruning:
         self,
         entries: CellEntries,
         below: CellEntries,
-        operands: _EntryIntervals,
+        operands: EntryIntervals,
         low: Floats,
         high: Floats,
     ) -> tuple[Flags, Floats, Floats]:
@@ -249,9 +292,16 @@ class CellPruning:
         turned = operands.turned(sign)
         most = np.minimum.reduceat(turned.high, start)
         width = tree.width[node]
-        beyond = np.where(count > 2, WIDENING * width, width)
+        is_long = (count > 2) & (width > 0.0)
+        is_exact = self._margin == np.inf
+        beyond = np.where(is_long, np.inf if is_exact else WIDENING * width, width)
         top = np.minimum(high, most)
         keep = turned.low <= (top + beyond)[of]
+        if is_exact:
+            chains = np.flatnonzero(is_long[of])
+            if len(chains):
+                place = chains - start[of[chains]]
+                keep[chains] &= self._effective(node, of[chains], place, turned.chosen(chains))
         best = _first_least(turned.high, most, of, start)
         keep &= (most >= low)[of]  # below the band one is enough
         none = np.add.reduceat(keep.astype(np.int64), start) == 0
@@ -270,6 +320,31 @@ class CellPruning:
             np.where(own, -band_low, band_high),
         )
 
+    def _effective(self, node: Whole, of: Whole, place: Whole, operands: EntryIntervals) -> Flags:
+        """Return which operands of chains have an effect on what is joined before, and after.
+
+        What is joined before is at most the least of its operands, and below it by its bulge. An
+        operand that is farther by the width has no effect on it; if it is nearer by as much, what
+        is joined before has none.
+
+        Args:
+            node: The chains.
+            of: The chain of each operand.
+            place: Its place in the chain.
+            operands: The values of the operands, with their signs in the chain.
+        """
+        width = self._tree.width[node[of]]
+        last = self._bulges.shape[1] - 1
+        bulge = self._bulges[node[of], np.minimum(place, last)]
+        least_high = np.append(np.inf, running_least(operands.high, of)[:-1])
+        least_low = np.append(np.inf, running_least(operands.low, of)[:-1])
+        later = place > 0
+        keep = ~later | (operands.low < least_high + width)
+        replaces = later & (operands.high <= least_low - bulge - width)
+        first = np.flatnonzero(~later)
+        since = np.maximum.reduceat(np.where(replaces, place, 0), first)
+        return keep & (place >= np.repeat(since, np.diff(np.append(first, len(place)))))
+
     def _inside(self, node: Whole, low: Floats, high: Floats) -> tuple[Floats, Floats]:
         """Return the bands of values below the signs and changes of nodes."""
         tree = self._tree
@@ -279,6 +354,19 @@ class CellPruning:
         high = np.where(shell, across, high) + tree.shift[node]
         turn = tree.turn[node] < 0.0
         return np.where(turn, -high, low), np.where(turn, -low, high)
+
+
+def running_least(values: Floats, group: Whole) -> Floats:
+    """Return the least of each value and of those before it in its group.
+
+    Args:
+        values: The values, group by group.
+        group: The number of each value's group, in rising order.
+    """
+    # Each group is below those before it.
+    below = group * (values.max(initial=0.0) - values.min(initial=0.0) + 1.0)
+    found: Floats = np.minimum.accumulate(values - below) + below
+    return found
 
 
 def _first_least(values: Floats, least: Floats, of: Whole, start: Whole) -> Whole:
@@ -300,3 +388,22 @@ def blended(join: ValueJoin, a: Floats, b: Floats) -> Floats:
     assert function is not None
     found = np.asarray(executor().call(function, (), given, device="reference"), np.float64)
     return -found if above else found
+
+
+def bulges_of(tree: OperandTree) -> Floats:
+    """Return how far the blend of each node is below n equal values, for n from 0.
+
+    Of values that are all 0 or more the blend is at least that, because it never falls where a
+    value grows.
+    """
+    count = min(int(np.bincount(tree.parent[1:]).max(initial=0)), MOST_BULGES)
+    found = np.zeros((len(tree.kind), count + 2))
+    chains = np.flatnonzero((tree.kind == CHAIN) & (tree.width > 0.0))
+    for join in np.unique(tree.own_join[chains]).tolist():
+        chosen = chains[tree.own_join[chains] == join]
+        value = np.zeros(1)
+        for n in range(2, count + 1):
+            value = blended(tree.joins[join], value, np.zeros(1))
+            found[chosen, n] = -value[0]
+        found[chosen, count + 1] = tree.width[chosen]
+    return found

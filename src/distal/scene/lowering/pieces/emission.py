@@ -46,6 +46,12 @@ class EmittedPrograms:
     program: Whole
     depth: int
 
+    @property
+    def has_others(self) -> bool:
+        """Whether some steps do something else than to load or join a leaf."""
+        mode = self.steps[:, 0]
+        return bool(((mode != StepMode.LOAD) & (mode != StepMode.JOIN)).any())
+
 
 def emitted(cells: CellPrograms, tree: OperandTree) -> EmittedPrograms:
     """Return the programs of cells.

@@ -68,7 +68,6 @@ from distal.fields.place.flat import SCALE_FLAT
 from distal.fields.place.mirrors import SYMMETRY_PLANES, SYMMETRY_PLANES_FLAT
 from distal.fields.place.solid import SCALE, SHEAR, STRETCH
 from distal.lang.functions import Func
-from distal.scene.lowering.smooth.chain import BOTH, EVERYWHERE, MOVING_BLEND
 from distal.scene.tree.node import Node
 from distal.scene.tree.varying import VaryingNumber
 
@@ -77,6 +76,9 @@ MOVING_SCALE: Final = "the scale of a shape with blends or offsets depends on pa
 VARYING: Final = "its numbers differ from place to place"
 SEVERAL_PLACES: Final = "it repeats its shape, or computes it at several points"
 OTHER_JOIN: Final = "'{}' is no union, intersection or difference"
+MOVING_BLEND: Final = "the size of its blend depends on parameters or time"
+EVERYWHERE: Final = "the blend '{}' differs from the minimum everywhere"
+BOTH: Final = "where the blend '{}' differs from the minimum depends on more than the difference"
 OTHER_CHANGE: Final = "'{}' does not only move the point or the surface"
 DEFORMED: Final = "a deformed shape with blends, offsets or a shape without end stays whole"
 

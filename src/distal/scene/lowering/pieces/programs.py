@@ -137,6 +137,16 @@ def program_of(root: Node, *, default_varies: bool = False) -> PieceProgram:
     return PieceProgram(writer.leaves, writer.looks, writer.steps, list(writer.joins), writer.whole)
 
 
+def values_of(root: Node, *, default_varies: bool = False) -> PieceProgram:
+    """Return the program of a tree of solids that has its values at any place.
+
+    Deformations of joined shapes are leaves. Arguments as for ``program_of``.
+    """
+    writer = _ProgramWriter(default_varies=default_varies)
+    writer.write(root, _AboveNode(lambda node: node, is_exact=True))
+    return PieceProgram(writer.leaves, writer.looks, writer.steps, list(writer.joins), writer.whole)
+
+
 class _ProgramWriter:
     """Writes the steps of a tree."""
 

@@ -1,4 +1,4 @@
-"""The table of pieces of a tree: leaves as rows, boxes with programs.
+"""The tables of a tree's programs: leaves as rows; pieces with boxes, or bricks.
 
 Input: a tree of solids. Output: the same tree, in which a node with a table takes the place of the
 shapes that are joined in other ways than by a union; the tree itself if it can have none. What has
@@ -21,7 +21,7 @@ from distal.ir.types import FLOAT, VEC3, Type
 from distal.lang.composed import Composed
 from distal.lang.resources import Buffer
 from distal.lang.runtime_access import executor
-from distal.render.pieces import JOINS, MODES, RECORD
+from distal.render.pieces import JOIN_AT, JOIN_MASK, RECORD, ROW_AT
 from distal.scene.lowering.part_functions import ZERO_CELL
 from distal.scene.lowering.parts.box_tree import OF_PLACE
 from distal.scene.lowering.parts.flatten import UnionMember, members_of
@@ -35,12 +35,13 @@ from distal.scene.lowering.parts.table import (
     RARE,
     THIN,
     PartTable,
-    PieceData,
+    ProgramData,
     TableNode,
 )
 from distal.scene.lowering.pieces.box_order import PieceTree
-from distal.scene.lowering.pieces.builder import ENDLESS_SOLID, PieceLimits, build
-from distal.scene.lowering.pieces.emission import StepMode
+from distal.scene.lowering.pieces.builder import PieceLimits, build
+from distal.scene.lowering.pieces.cell_programs import ENDLESS_SOLID
+from distal.scene.lowering.pieces.emission import EmittedPrograms, StepMode
 from distal.scene.lowering.pieces.lone_leaves import unites_leaves
 from distal.scene.lowering.pieces.operands import Floats, Whole
 from distal.scene.lowering.pieces.programs import (
@@ -61,7 +62,7 @@ MANY_ROWS: Final = "it has too many shapes"
 DEEP: Final = "more than three values of joined shapes are needed at once"
 EMPTY: Final = "it is empty"
 # Limits of the numbers of a step (``render.pieces``).
-MOST_JOINS: Final = JOINS
+MOST_JOINS: Final = JOIN_MASK + 1
 MOST_ROWS: Final = 1 << 21
 MOST_ASIDE: Final = 3
 LIMITS: Final = PieceLimits(interior=True)
@@ -101,25 +102,55 @@ def pieced(root: Node, *, default_varies: bool = False) -> Pieced:
 
 
 def _pieced(root: Node, *, default_varies: bool) -> Pieced:
-    if root.flat or root.parts < LEAST_PARTS:
+    found = joined_shapes(root)
+    if found is None:
         return Pieced(root)
-    members = members_of(root)
-    beside = [m.part for m in members if _is_linear(m.part)]
-    others = [m.part for m in members if not _is_linear(m.part)]
-    most = SMALL_SUBTREE if len(others) >= MANY else 1
-    if not any(part.parts > most for part in others):
-        return Pieced(root)
-    program = program_of(united(root, others), default_varies=default_varies)
-    if len(program.leaves) < LEAST_PARTS or unites_leaves(program):
+    program = program_of(found.node, default_varies=default_varies)
+    if not is_worth_programs(program):
         return Pieced(root)
     table = _table_of(program)
     if isinstance(table, Refusal):
         return Pieced(root, None, program.whole, table.reason, table.blamed)
     children = tuple(kind.node for kind in table.kinds)
     node: Node = TableNode(PARTS, False, place=root.place, children=children, table=table)
-    if beside:
-        node = Node(UNION, False, (node, *beside), place=root.place)
-    return Pieced(node, table, program.whole)
+    return Pieced(found.with_shapes(node), table, program.whole)
+
+
+@dataclass(frozen=True, slots=True)
+class JoinedShapes:
+    """The shapes of a tree that may have programs, and the members of its union that have none.
+
+    Attributes:
+        node: The tree without those members.
+        beside: They: shapes without end, such as planes.
+    """
+
+    node: Node
+    beside: Sequence[Node]
+
+    def with_shapes(self, node: Node) -> Node:
+        """Return the tree with another node in place of the shapes."""
+        if not self.beside:
+            return node
+        return Node(UNION, False, (node, *self.beside), place=self.node.place)
+
+
+def joined_shapes(root: Node) -> JoinedShapes | None:
+    """Return the shapes of a tree that may have programs; None if they are few, or only united."""
+    if root.flat or root.parts < LEAST_PARTS:
+        return None
+    members = members_of(root)
+    beside = [m.part for m in members if _is_linear(m.part)]
+    others = [m.part for m in members if not _is_linear(m.part)]
+    most = SMALL_SUBTREE if len(others) >= MANY else 1
+    if not any(part.parts > most for part in others):
+        return None
+    return JoinedShapes(united(root, others), beside)
+
+
+def is_worth_programs(program: PieceProgram) -> bool:
+    """Return whether a program joins many leaves, in other ways than by a union."""
+    return len(program.leaves) >= LEAST_PARTS and not unites_leaves(program)
 
 
 def _is_linear(node: Node) -> bool:
@@ -136,7 +167,23 @@ class Refusal(NamedTuple):
 
 
 def _table_of(program: PieceProgram) -> PartTable | Refusal:
-    """Return the table of a program, or why it can have none."""
+    """Return the table of pieces of a program, or why it can have none."""
+    leaves = leaves_of(program)
+    if isinstance(leaves, Refusal):
+        return leaves
+    try:
+        tree = build(
+            program, leaves.low, leaves.high, leaves.slope, leaves.distances, LIMITS, leaves.growth
+        )
+    except ValueError:
+        return Refusal(ENDLESS_SOLID)
+    if tree.programs.depth > MOST_ASIDE:
+        return Refusal(DEEP)
+    return _packed(tree, leaves) if len(tree.box) else Refusal(EMPTY)
+
+
+def leaves_of(program: PieceProgram) -> LeafArrays | Refusal:
+    """Return the leaves of a program as rows, or why they can be none."""
     kinds = sorted(kinds_of(program.leaves), key=lambda kind: -len(kind.members))
     for kind in kinds:
         reason = MOVING if kind.moving else THIN if not kind.node.solid else ""
@@ -151,39 +198,35 @@ def _table_of(program: PieceProgram) -> PartTable | Refusal:
         source = {id(m): m.source for kind in kinds for m in kind.members}
         number, reason = next(iter(found.refused.items()))
         return Refusal(reason, source[number])
-    rows, places = row_data(found.kinds, [])
-    if len(rows) >= MOST_ROWS:
-        return Refusal(MANY_ROWS)
-    leaves = _LeafArrays.of(program.leaves, found.kinds, found.swept, places)
-    corners = leaves.low, leaves.high
-    try:
-        tree = build(program, *corners, leaves.slope, leaves.distances, LIMITS, leaves.growth)
-    except ValueError:
-        return Refusal(ENDLESS_SOLID)
-    if tree.programs.depth > MOST_ASIDE:
-        return Refusal(DEEP)
-    return _packed(tree, leaves, found.kinds, rows) if len(tree.box) else Refusal(EMPTY)
+    leaves = LeafArrays(program.leaves, found.kinds, found.swept)
+    return leaves if len(leaves.rows) < MOST_ROWS else Refusal(MANY_ROWS)
 
 
-class _LeafArrays:
-    """The leaves of a program as arrays, in the order of the program."""
+class LeafArrays:
+    """The leaves of a program as arrays, in the order of the program.
+
+    Attributes:
+        kinds: Their kinds.
+        rows: The numbers of all leaves, as vec4.
+        low: The low corners of their boxes (n, 3).
+        high: The high corners.
+        slope: Lipschitz bound (slope) of each (n,).
+        divisor: The number that makes distances of its values.
+        growth: The growth of the sides of its box.
+        row: The number of its first vec4.
+    """
 
     def __init__(
         self,
+        members: Sequence[UnionMember],
         kinds: Sequence[PartKind],
         bounds: Sequence[KindBounds],
-        leaf: Whole,
-        row: Whole,
     ) -> None:
-        """Keep the arrays.
-
-        Args:
-            kinds: The kinds of leaves.
-            bounds: Their bounds.
-            leaf: The leaf of each row, kind by kind.
-            row: The number of each row's first vec4.
-        """
+        number = {id(member): i for i, member in enumerate(members)}
+        leaf = np.array([number[id(member)] for kind in kinds for member in kind.members])
         count = len(leaf)
+        self.kinds = kinds
+        self.rows, places = row_data(kinds, [])
         self.low, self.high = np.empty((2, count, 3))
         self.slope, self.divisor, self.growth = np.empty((3, count))
         self.row, self._kind, self._ordinal = np.empty((3, count), np.int64)
@@ -191,24 +234,12 @@ class _LeafArrays:
         self.high[leaf] = np.concatenate([b.high for b in bounds])
         for name in ("slope", "divisor", "growth"):
             getattr(self, name)[leaf] = np.concatenate([getattr(b, name) for b in bounds])
-        self.row[leaf] = row
+        self.row[leaf] = places
         sizes = [len(kind.members) for kind in kinds]
         self._kind[leaf] = np.repeat(np.arange(len(kinds)), sizes)
         self._ordinal[leaf] = np.concatenate([np.arange(size) for size in sizes])
         self._functions = [LeafDistance(kind) for kind in kinds]
         self._columns = [columns_of(kind) for kind in kinds]
-
-    @staticmethod
-    def of(
-        members: Sequence[UnionMember],
-        kinds: Sequence[PartKind],
-        bounds: Sequence[KindBounds],
-        row: Whole,
-    ) -> _LeafArrays:
-        """Return the arrays of leaves."""
-        number = {id(member): i for i, member in enumerate(members)}
-        leaf = np.array([number[id(member)] for kind in kinds for member in kind.members])
-        return _LeafArrays(kinds, bounds, leaf, row)
 
     def distances(self, points: Floats, leaves: Whole) -> Floats:
         """Return the values of points (n, 3) in the fields of leaves (n,)."""
@@ -253,28 +284,43 @@ class LeafDistance(Composed):
         return assembly.define("leaf_distance", params, FLOAT, body.statements)
 
 
-def _packed(
-    tree: PieceTree, leaves: _LeafArrays, kinds: Sequence[PartKind], rows: Floats
-) -> PartTable:
+def _packed(tree: PieceTree, leaves: LeafArrays) -> PartTable:
     """Return a table in the form that ``render.part_tree`` and ``render.pieces`` read."""
-    steps, first_piece = tree.programs.steps.astype(np.int64), len(rows)
-    row = np.where(steps[:, 1] >= 0, leaves.row[steps[:, 1]], -1)
-    # A change has a row only if it names the leaf that is shown; 0 is none.
-    row = np.where(steps[:, 0] == StepMode.ONE, row + 1, row)
-    code = row * (MODES * JOINS) + np.maximum(steps[:, 2], 0) * MODES + steps[:, 0]
+    programs, first_piece = tree.programs, len(leaves.rows)
     program = np.append(tree.program, tree.whole)
-    start, count = tree.programs.start[program], tree.programs.count[program]
     box = np.append(np.where(tree.is_cut, tree.box, -1), -1)
-    records = np.stack([RECORD * len(program) + start, count, box], axis=1)
-    numbers = np.concatenate([records.reshape(-1), code]).astype(np.int32)
+    numbers = records(programs, program, box, leaves)
     # A leaf alone, and whole, is a part by itself.
-    is_lone = (count[:-1] == 1) & ~tree.is_cut
-    part = np.where(is_lone, row[start[:-1]], first_piece + np.arange(len(tree.box)))
-    data = PieceData(Buffer(numbers), tree.joins, first_piece, first_piece + len(tree.box))
+    start, count = programs.start[tree.program], programs.count[tree.program]
+    row = leaves.row[programs.steps[start, 1]]
+    is_lone = (count == 1) & ~tree.is_cut
+    part = np.where(is_lone, row, first_piece + np.arange(len(tree.box)))
+    data = ProgramData(
+        numbers, tree.joins, first_piece, first_piece + len(tree.box), programs.has_others
+    )
     low, high = (tuple(map(float, corners[0])) for corners in (tree.low, tree.high))
     slope, divisor = float(leaves.slope.max()), float(leaves.divisor.max())
     boxes = Buffer(_boxes_of(tree, part))
-    return PartTable(kinds, boxes, Buffer(rows), low, high, slope, divisor, data)
+    return PartTable(leaves.kinds, boxes, Buffer(leaves.rows), low, high, slope, divisor, data)
+
+
+def records(programs: EmittedPrograms, program: Whole, box: Whole, leaves: LeafArrays) -> Buffer:
+    """Return programs and their steps in the form that ``render.pieces`` reads.
+
+    Args:
+        programs: The programs.
+        program: The program of each record.
+        box: The box that cuts each; -1 for none.
+        leaves: The leaves.
+    """
+    steps = programs.steps.astype(np.int64)
+    row = np.where(steps[:, 1] >= 0, leaves.row[steps[:, 1]], -1)
+    # A change has a row only if it names the leaf that is shown; 0 is none.
+    row = np.where(steps[:, 0] == StepMode.ONE, row + 1, row)
+    code = (row << ROW_AT) + (np.maximum(steps[:, 2], 0) << JOIN_AT) + steps[:, 0]
+    start, count = programs.start[program], programs.count[program]
+    found = np.stack([RECORD * len(program) + start, count, box], axis=1)
+    return Buffer(np.concatenate([found.reshape(-1), code]).astype(np.int32))
 
 
 def _boxes_of(tree: PieceTree, part: Whole) -> NDArray[np.float32]:

@@ -3,20 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 import distal
 from distal import Box, Camera, DistantLight, Plane, Scene, Sphere, union
-from distal.scene.lowering.smooth import grid
 from distal.scene.viewing.viewable import viewable
 from tests.page.looking import looked_at
 
 SMALL = {"width": 220, "height": 160}  # a driver in software takes seconds for a larger picture
-
-
-@pytest.fixture(autouse=True)
-def few_cells(monkeypatch):
-    monkeypatch.setattr(grid, "CELLS_PER_ROOT", 1000)
 
 
 def scene_of(count):
