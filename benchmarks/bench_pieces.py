@@ -5,7 +5,10 @@ shells, intersections. One sharp sun with shadows, 640x480, one sample. Each sce
 fresh process with an empty kernel cache: seconds of the processor for the first picture and for the
 fastest of five more, how many pieces there are, and their size.
 
-    python benchmarks/bench_pieces.py [NAME ...]
+With ``--meshes`` the meshes of plates with holes and of the plate united with pegs, at a tolerance
+of .02: the first, and the faster of two more of shapes made anew.
+
+    python benchmarks/bench_pieces.py [--meshes] [NAME ...]
 """
 
 from __future__ import annotations
@@ -16,6 +19,7 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 
 MEASURED = """
 import json, sys
@@ -32,23 +36,31 @@ def balls(radius, seed=0):
     return [Sphere(radius).translate(*p) for p in rng.uniform(-1, 1, (count, 3)).tolist()]
 
 
-def plate():
+def posts():
     side = round(count**0.5)
     step = 4.0 / side
     at = [(i + 0.5) * step - 2 for i in range(side)]
-    holes = [Cylinder(0.3 * step, 1).translate(x, 0, z) for x in at for z in at]
-    return Box(4, 0.1, 4) - union(holes)
+    return union([Cylinder(0.3 * step, 1).translate(x, 0, z) for x in at for z in at])
 
 
 radius = 0.6 * count ** (-1 / 3)
 SHAPES = {
     "difference": lambda: Box(2, 2, 2) - union(balls(radius)),
     "union": lambda: Box(2, 2, 2) | union(balls(radius)),
-    "plate": plate,
+    "plate": lambda: Box(4, 0.1, 4) - posts(),
+    "pegs": lambda: Box(4, 0.1, 4) | posts(),
     "soft": lambda: union(balls(radius), smooth=0.1 * radius),
     "shell": lambda: union(balls(1.5 * radius)).shell(0.05) - Box(4, 4, 4).translate(2, 0, 0),
     "intersection": lambda: union(balls(radius)) & Ellipsoid(1.0, 0.8, 1.0),
 }
+if sys.argv[3] == "mesh":
+    times = []
+    for _ in range(3):
+        shape, begin = SHAPES[kind](), process_time()
+        mesh = shape.mesh(tolerance=0.02)
+        times.append(process_time() - begin)
+    print(json.dumps({"first": times[0], "next": min(times[1:]), "triangles": len(mesh.triangles)}))
+    sys.exit()
 begin = process_time()
 scene = Scene(
     SHAPES[kind](),
@@ -77,13 +89,14 @@ SCENES = (
     ("shell", 200),
     ("intersection", 300),
 )
+MESHES = (("plate", 100), ("pegs", 100), ("plate", 400), ("pegs", 400))
 
 
-def measured(kind: str, count: int) -> dict[str, float]:
+def measured(kind: str, count: int, what: str) -> dict[str, float]:
     """Return what was measured of a scene."""
     with tempfile.TemporaryDirectory() as cache:
         environment = {**os.environ, "DISTAL_CACHE_DIR": cache}
-        command = [sys.executable, "-c", MEASURED, kind, str(count)]
+        command = [sys.executable, "-c", MEASURED, kind, str(count), what]
         done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     found: dict[str, float] = json.loads(done.stdout)
     return found
@@ -93,16 +106,33 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*")
+    parser.add_argument("--meshes", action="store_true", help="measure meshes in place of frames")
     options = parser.parse_args()
+    (print_meshes if options.meshes else print_frames)(options.names)
+
+
+def print_frames(names: Sequence[str]) -> None:
+    """Measure the frames of scenes with these names, or of all."""
     print("scene                  first      frame   pieces       size")
     for kind, count in SCENES:
-        if options.names and kind not in options.names:
+        if names and kind not in names:
             continue
-        row = measured(kind, count)
+        row = measured(kind, count, "frames")
         times = f"{row['first']:9.2f} s{1000 * row['frame']:8.1f} ms"
         print(
             f"{kind:13}{count:7,}{times}{row['pieces']:9,}{row['bytes'] / 1e6:8.2f} MB", flush=True
         )
+
+
+def print_meshes(names: Sequence[str]) -> None:
+    """Measure the meshes of shapes with these names, or of all."""
+    print("shape                  first       next  triangles")
+    for kind, count in MESHES:
+        if names and kind not in names:
+            continue
+        row = measured(kind, count, "mesh")
+        times = f"{row['first']:9.2f} s{row['next']:9.2f} s"
+        print(f"{kind:13}{count:7,}{times}{row['triangles']:11,}", flush=True)
 
 
 if __name__ == "__main__":

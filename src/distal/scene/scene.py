@@ -133,8 +133,8 @@ class Scene(RenderedScene, SceneValue, Composed, Presentable):
         steps: The maximum number of steps of a ray. None: 160, and more where the Lipschitz bound
             (slope) of a field is above 1.
         acceleration: Whether many parts (16 or more members of a union) are drawn through a tree of
-            boxes, and smooth unions of 48 or more through lists for the cells of a grid. False
-            evaluates every part at every step, which shows the same picture.
+            boxes, and 16 or more shapes that are joined in other ways as boxes with short programs.
+            False evaluates every part at every step, which shows the same picture.
         near: The distance at which rays begin, in scene units.
         far: The distance at which rays end, in scene units. None: rays end beyond the last surface;
             in an infinite scene at 40 times the larger of the size of what is finite and of the

@@ -46,6 +46,7 @@ from distal.scene.lowering.existence import NEVER, exists_after, exists_of_eithe
 from distal.scene.lowering.parts.table import PartTable, RowsNode
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values, plain_name
+from distal.scene.tree.varying import varied_in
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,7 +151,8 @@ class BoundsComposer:
         if isinstance(rule, Primitive):
             return self.of_primitive(body, rule, own, flat=node.flat)
         children = list(zip(node.children, shares, strict=True))
-        if len(children) > AT_ONCE and _is_closed(values) and not _folds(rule):
+        is_grouped = len(children) > AT_ONCE and _is_closed(values) and not _folds(rule)
+        if is_grouped and not varied_in(node):
             return self._of_many(body, rule, children, own, flat=node.flat)
         inner = [self.of(body, child, share) for child, share in children]
         return self.of_operator(body, rule, inner, own)

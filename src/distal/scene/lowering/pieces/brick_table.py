@@ -25,7 +25,7 @@ from distal.scene.lowering.parts.table import (
     PartTable,
     ProgramData,
 )
-from distal.scene.lowering.pieces.bricks import BrickGrid, BrickLimits, build_bricks
+from distal.scene.lowering.pieces.bricks import BrickPrograms, BrickLimits, build_bricks
 from distal.scene.lowering.pieces.cell_programs import ENDLESS_SOLID
 from distal.scene.lowering.pieces.programs import values_of
 from distal.scene.lowering.pieces.table import (
@@ -209,7 +209,7 @@ def _table_node(node: Node, table: PartTable, *, exact: bool) -> BrickNode:
     return BrickNode(JOINED, False, place=node.place, label=node.label, **made)
 
 
-def _packed(grid: BrickGrid, leaves: LeafArrays) -> PartTable:
+def _packed(grid: BrickPrograms, leaves: LeafArrays) -> PartTable:
     """Return a table in the form that ``render.bricks`` and ``render.pieces`` read."""
     programs, first = grid.programs, len(leaves.rows)
     every = np.arange(len(programs.start))

@@ -59,7 +59,7 @@ class BrickLimits:
 
 
 @dataclass(frozen=True, slots=True)
-class BrickGrid:
+class BrickPrograms:
     """A grid of bricks.
 
     Attributes:
@@ -95,7 +95,7 @@ def build_bricks(
     distances: LeafDistances,
     limits: BrickLimits = BrickLimits(),
     growths: Floats | None = None,
-) -> BrickGrid:
+) -> BrickPrograms:
     """Return the bricks of a program; arguments as for ``builder.build``.
 
     Raises:
@@ -125,7 +125,7 @@ class _Bricks:
         self._whole = solid.taken(np.array([0]), low, high, np.array([0]))
         self._limits = limits
 
-    def divided(self, pruning: CellPruning) -> BrickGrid:
+    def divided(self, pruning: CellPruning) -> BrickPrograms:
         """Return the bricks."""
         batch, is_far = self._whole, np.array([False])
         # The number of leaves of the boxes around, when their radius was twice as large.
@@ -172,7 +172,7 @@ class _Bricks:
         axis = np.argmax(batch.high[cells] - batch.low[cells], axis=1)
         return batch.halved(cells, axis, np.zeros(2 * len(cells), np.int64))
 
-    def _finished(self, boxes: CellPrograms) -> BrickGrid:
+    def _finished(self, boxes: CellPrograms) -> BrickPrograms:
         """Return the grid of boxes that are side by side."""
         whole = self._whole
         programs = emitted(joined_cells([boxes, whole]), self._tree)
@@ -191,7 +191,7 @@ class _Bricks:
         i, j, k = (first[of] + np.stack([x, y, z], axis=1)).T
         program = np.empty(counts.prod(), np.int64)
         program[i + counts[0] * (j + counts[1] * k)] = programs.program[of]
-        return BrickGrid(
+        return BrickPrograms(
             low=whole.low[0],
             high=whole.high[0],
             counts=tuple(counts.tolist()),
