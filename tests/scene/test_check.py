@@ -297,7 +297,7 @@ def test_plain_values_are_json_without_infinity():
     text = json.dumps(found.as_json(), allow_nan=False)
     made = json.loads(text)
     assert set(made) == {
-        *("version", "holds", "slope_from", "table", "smooth", "pieces", "shapes", "findings")
+        *("version", "holds", "slope_from", "table", "pieces", "bricks", "shapes", "findings")
     }
     assert made["shapes"][0]["bounds"] == {"low": [None] * 3, "high": [None] * 3}
     own = next(row for row in made["shapes"] if row["name"] == "wobbly")

@@ -25,7 +25,7 @@ from distal.scene.lowering.parts.table import (
     PartTable,
     ProgramData,
 )
-from distal.scene.lowering.pieces.bricks import BrickPrograms, BrickLimits, build_bricks
+from distal.scene.lowering.pieces.bricks import BrickLimits, BrickPrograms, build_bricks
 from distal.scene.lowering.pieces.cell_programs import ENDLESS_SOLID
 from distal.scene.lowering.pieces.programs import values_of
 from distal.scene.lowering.pieces.table import (

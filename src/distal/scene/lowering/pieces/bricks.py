@@ -104,11 +104,11 @@ def build_bricks(
     growths = np.ones(len(low)) if growths is None else growths
     tree = operand_tree(program, slopes, growths)
     bulges = bulges_of(tree)
-    bricks = _Bricks(tree, whole_cell(tree, low, high, bulges), limits)
+    bricks = _BrickDivision(tree, whole_cell(tree, low, high, bulges), limits)
     return bricks.divided(CellPruning(tree, bulges, distances, bricks.farthest))
 
 
-class _Bricks:
+class _BrickDivision:
     """Bricks under construction.
 
     Attributes:
