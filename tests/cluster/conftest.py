@@ -10,13 +10,19 @@ import pytest
 
 pytest.importorskip("distributed")
 
+import dask
 from distributed import Client, LocalCluster
 
 
 @contextmanager
 def local_cluster(count: int = 2, **given: Any) -> Iterator[Any]:
-    """A client of some processes of one thread each; nothing listens beyond this machine."""
+    """A client of some processes of one thread each; nothing listens beyond this machine.
+
+    A process that died starts again, however long that takes: on a busy machine longer than the 15
+    seconds after which Dask would do without it.
+    """
     with (
+        dask.config.set({"distributed.deploy.lost-worker-timeout": "600s"}),
         LocalCluster(
             n_workers=count,
             threads_per_worker=1,
