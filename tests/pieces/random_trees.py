@@ -131,14 +131,14 @@ def bounds_of_leaves(program):
 
 
 def distances_of(program):
-    """The distances of points to leaves, each to its own."""
+    """The distances of points to leaves, each to its own, as the ends of intervals."""
 
     def distances(points, leaves):
         found = np.empty(len(points))
         for leaf in np.unique(leaves).tolist():
             chosen = leaves == leaf
             found[chosen] = field_of(program.leaves[leaf].part, points[chosen])
-        return found
+        return found, found
 
     return distances
 

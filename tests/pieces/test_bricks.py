@@ -7,16 +7,16 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from distal import Box, Capsule, Cylinder, Ellipsoid, Plane, Sphere, Torus, cell, union
+from distal import Box, Capsule, Cylinder, Ellipsoid, Plane, Sphere, Torus, cell, time, union
 from distal.diagnostics import CompileError
 from distal.fields.combine.blends import BLENDS
-from distal.lang import slider
 from distal.lang.runtime_access import executor
 from distal.scene.checks.validation import check
 from distal.scene.lowering.derived import DistanceOf
 from distal.scene.lowering.parts.table import LEAST_PARTS, MOST_WITHOUT, BrickNode
 from distal.scene.lowering.pieces import brick_table
 from distal.scene.lowering.pieces.brick_table import bricked
+from distal.scene.lowering.pieces.joins import MOVING_BLEND
 from tests.pieces.random_trees import random_tree
 
 MANY = LEAST_PARTS + 8
@@ -215,7 +215,7 @@ def test_two_balls_among_others_have_a_closed_form():
 def test_bounds_outside_of_the_grid_are_bounds(seed):
     """A step by the value never passes a surface, and the value changes by the slope at most."""
     rng = np.random.default_rng(seed)
-    shape = union(balls(rng, 80), smooth=float(rng.uniform(0.01, 0.3)))
+    shape = union(balls(rng, 80), smooth=float(rng.uniform(0.01, 0.05)))
     found = bricked(shape.node, exact=False)
     (table,) = found.tables
     _, outside = places(table.table.programs.bricks, rng, 600)
@@ -247,10 +247,9 @@ def test_the_box_contains_the_surface():
 def test_what_has_no_bricks_says_why():
     rng = np.random.default_rng(2)
     made = balls(rng)
-    size = slider("size", 0.1, 0.01, 1.0)
     cases = {
-        "the size of its blend depends": union(made, smooth=size),
-        "depends on parameters or time": Box(2.0) - union([Sphere(size), *made]),
+        "the size of its blend has no largest": union(made, smooth=0.1 + abs(time)),
+        "no finite box holds it at all times": Box(2.0) - union([Sphere(abs(time)), *made]),
         "no finite box": union([*made, Sphere(0.1).repeat(1.0)], smooth=0.1),
     }
     for reason, shape in cases.items():
@@ -261,7 +260,7 @@ def test_what_has_no_bricks_says_why():
 
 def test_what_moves_is_joined_to_bricks_of_what_does_not():
     still = balls(np.random.default_rng(2))
-    moving = [Sphere(slider("size", 0.3, 0.01, 1.0)), Box(0.3).translate(0.0, 1.0, 0.0)]
+    moving = [Sphere(0.2).translate(0.0, abs(time), 0.0), Box(0.3).translate(0.0, 1.0, 0.0)]
     whole = union([*still, *moving], smooth=0.1).named("blob").paint("red")
     found = bricked(whole.node, exact=True)
     (made,) = found.tables
@@ -272,7 +271,7 @@ def test_what_moves_is_joined_to_bricks_of_what_does_not():
 
 
 def test_still_shapes_in_a_moving_tree():
-    lid = Box(0.5).translate(slider("x", 0.0, -1.0, 1.0), 1.0, 0.0)
+    lid = Box(0.5).translate(abs(time), 1.0, 0.0)
     whole = plate() | lid
     found = bricked(whole.node, exact=True)
     assert [isinstance(child, BrickNode) for child in found.node.children] == [True, False]
@@ -361,14 +360,14 @@ def test_widths_are_those_of_the_blends(name):
 
 
 def test_a_check_says_what_bricks_are():
-    moving = Box(0.3).translate(slider("x", 0.0, -1.0, 1.0), 2.0, 0.0)
-    found = check(union(balls(np.random.default_rng(3), 80), smooth=0.1) | moving)
+    moving = Box(0.3).translate(abs(time), 2.0, 0.0)
+    found = check(union(balls(np.random.default_rng(3), 80), smooth=0.01) | moving)
     (report,) = found.bricks
     assert report.count == 80 and report.reason == "" and report.bricks > 0
     assert 1.0 <= report.mean <= report.longest <= 80
     many = balls(np.random.default_rng(3), 80)
-    changing = check(union(many, smooth=slider("size", 0.1, 0.01, 1.0)))
-    assert changing.bricks[0].reason == "the size of its blend depends on parameters or time"
+    changing = check(union(many, smooth=abs(time)))
+    assert changing.bricks[0].reason == MOVING_BLEND
 
 
 def test_too_many_shapes_without_bricks_are_refused():

@@ -8,6 +8,7 @@ import pytest
 from distal import Box, Cylinder, Ellipsoid, Plane, Sphere, Torus, union
 from distal.scene.lowering.pieces.emission import StepMode
 from distal.scene.lowering.pieces.joins import JoinCode
+from distal.scene.lowering.pieces.table import DENSE, Pieced, pieced
 from tests.pieces.pieces_oracle import built, check_looks, check_order, check_values
 from tests.pieces.random_trees import WIDE, random_tree
 
@@ -243,3 +244,12 @@ def test_a_hole_alone_names_what_it_is_cut_from():
     for _, leaf, join in ones:
         assert made.pieces.joins[join].code is JoinCode.COMPLEMENT
         assert made.program.leaves[leaf].source.name == "Box"
+
+
+def test_few_shapes_and_shapes_that_are_everywhere_have_no_pieces():
+    few, many = (Box(2, 2, 2) - union(balls(n, 0.2)) for n in (24, 40))
+    assert pieced(few.node) == Pieced(few.node)
+    assert pieced(many.node).table is not None
+    assert pieced(union(balls(24, 0.2), smooth=0.01).node).table is not None
+    wide = pieced(union(balls(60, 0.2), smooth=0.1).node)
+    assert wide.table is None and wide.reason == DENSE

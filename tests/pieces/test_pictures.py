@@ -28,6 +28,7 @@ from distal.scene.checks.probe import probe
 from distal.scene.lowering.pieces.brick_table import bricked
 from distal.scene.lowering.pieces.table import pieced
 
+pytestmark = pytest.mark.usefixtures("always_pieces")
 SIZE = (64, 48)
 EYE = Camera((3.0, 2.5, 5.0), target=(0.0, 0.0, 0.0))
 SUN = DistantLight((1.0, 2.0, 1.5), angle=0.05)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from distal import Box, Cylinder, Plane, Sphere, Torus, union
+from distal import Box, Cylinder, Plane, Sphere, Torus, time, union
 from distal.fields.combine.blends import BLENDS
 from distal.fields.guarantees import OPERATORS, Growth
 from distal.lang import slider
@@ -129,7 +129,7 @@ def test_copies_are_leaves():
         (BODY.xor(HOLE), joins.OTHER_JOIN.format("xor")),
         (BODY.union(HOLE, smooth=0.1, blend="chamfer"), joins.BOTH.format("chamfer")),
         (BODY.union(HOLE, smooth=0.1, blend="root"), joins.EVERYWHERE.format("root")),
-        (BODY.union(HOLE, smooth=slider("k", 0.1)), joins.MOVING_BLEND),
+        (BODY.union(HOLE, smooth=0.1 + abs(time)), joins.MOVING_BLEND),
         ((BODY | HOLE).round(slider("r", 0.1, low=0.0)), joins.MOVING_SIZE),
         (BODY.union(HOLE, smooth=0.1).scale(slider("s", 1.0, low=0.1)), joins.MOVING_SCALE),
         ((BODY | HOLE).repeat(3.0), joins.SEVERAL_PLACES),

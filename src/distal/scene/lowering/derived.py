@@ -12,7 +12,7 @@ from distal.ir.nodes import Call, Gradient, Param, Read, Return
 from distal.ir.types import FLOAT, VEC2, VEC3, tuple_type
 from distal.lang.composed import Composed
 from distal.scene.lowering.bounds import BoundsComposer, packed_types
-from distal.scene.lowering.parts.table import rolled_for, split_table
+from distal.scene.lowering.parts.table import RowsNode, rolled_for
 from distal.scene.lowering.shapes import ZERO_CELL, ShapeComposer
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList, Values, plain_name
@@ -78,8 +78,8 @@ class BoundsOf(Composed):
         It returns (slope, divisor, low, high, growth, side_growth).
         """
         body, node = StatementList(), rolled_for(assembly, self._node)
-        table, _ = split_table(node)
-        if table is not None and table.table.moves and self._node.parts <= MOST_MOVING:
+        moves = any(isinstance(n, RowsNode) and n.table.moves for n in node.walk())
+        if moves and self._node.parts <= MOST_MOVING:
             node = self._node  # the box of a table holds its parts at all times
         values = Values(assembly)
         found = BoundsComposer(values).of(body, node, values.all(node))

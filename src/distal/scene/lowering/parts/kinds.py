@@ -343,9 +343,11 @@ def materials_in(node: Node) -> Iterator[Any]:
 
 def is_moving(node: Node) -> bool:
     """Return whether the shape of a tree depends on parameters or time."""
-    for inner in node.walk():
-        if any(isinstance(number.value, Expression) for number in inner.numbers.values()):
-            return True
-        if any(isinstance(v, VaryingNumber) and v.moves for v in inner.constants.values()):
-            return True
-    return False
+    return any(map(moves_itself, node.walk()))
+
+
+def moves_itself(node: Node) -> bool:
+    """Return whether numbers of a node, without those below it, depend on parameters or time."""
+    if any(isinstance(number.value, Expression) for number in node.numbers.values()):
+        return True
+    return any(isinstance(v, VaryingNumber) and v.moves for v in node.constants.values())

@@ -63,6 +63,7 @@ class BrickData:
         low: The low corner of all bricks.
         high: The high corner.
         growth: The growth of the sides of the box around the tree (``fields.guarantees``).
+        share: The number of steps in a brick, on average, for each of the program of the whole.
         exact: Whether values outside of the bricks are those of the tree, not only bounds.
     """
 
@@ -71,6 +72,7 @@ class BrickData:
     low: tuple[float, ...]
     high: tuple[float, ...]
     growth: float
+    share: float
     exact: bool = False
 
     @property

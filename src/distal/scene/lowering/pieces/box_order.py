@@ -35,7 +35,7 @@ class PieceTree:
         program: The program of each piece (m,).
         programs: The programs.
         joins: How steps join values.
-        whole: The program of the whole tree; -1 for a hard union of leaves.
+        whole: The program of the whole tree.
     """
 
     low: Floats
@@ -48,7 +48,14 @@ class PieceTree:
     program: Whole
     programs: EmittedPrograms
     joins: Sequence[ValueJoin]
-    whole: int = -1
+    whole: int
+
+    @property
+    def share(self) -> float:
+        """The number of steps in a piece, by area, for each of the program of the whole tree."""
+        count = self.programs.count
+        area = surface(self.low[self.box], self.high[self.box])
+        return float((area * count[self.program]).sum() / (area.sum() * count[self.whole] or 1.0))
 
     def steps_of(self, piece: int) -> NDArray[np.int32]:
         """Return the steps of a piece: (mode, leaf, join) each."""

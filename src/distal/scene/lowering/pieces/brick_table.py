@@ -30,6 +30,8 @@ from distal.scene.lowering.pieces.cell_programs import ENDLESS_SOLID
 from distal.scene.lowering.pieces.programs import values_of
 from distal.scene.lowering.pieces.table import (
     DEEP,
+    DENSE,
+    LARGEST_SHARE,
     MOST_ASIDE,
     LeafArrays,
     Refusal,
@@ -129,6 +131,8 @@ class _Insertion:
             table = shapes.node.derived(
                 f"table of bricks {varies}", lambda: self._table_of(shapes.node)
             )
+            if isinstance(table, PartTable) and self._is_dense(table):
+                table = Refusal(DENSE)
             if isinstance(table, PartTable):
                 return shapes.with_shapes(self._inserted(shapes.node, table, exact=exact))
         found = self._below(node, exact=exact, in_cells=in_cells)
@@ -160,6 +164,12 @@ class _Insertion:
         except ValueError:
             return Refusal(ENDLESS_SOLID)
         return Refusal(DEEP) if grid.programs.depth > MOST_ASIDE else _packed(grid, leaves)
+
+    def _is_dense(self, table: PartTable) -> bool:
+        """Return whether pictures are drawn faster without the bricks."""
+        data = table.programs
+        assert data is not None and data.bricks is not None
+        return self._least == LEAST_DRAWN and data.bricks.share > LARGEST_SHARE
 
     def _below(self, node: Node, *, exact: bool, in_cells: bool) -> Node:
         """Return a tree that has no bricks as a whole, with bricks for what is below its root."""
@@ -224,6 +234,7 @@ def _packed(grid: BrickPrograms, leaves: LeafArrays) -> PartTable:
         _corner(grid.low),
         _corner(grid.high),
         grid.growth,
+        grid.share,
     )
     data = ProgramData(numbers, grid.joins, first, first + grid.whole, programs.has_others, bricks)
     corners = _corner(grid.solid_low), _corner(grid.solid_high)

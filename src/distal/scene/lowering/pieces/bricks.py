@@ -13,14 +13,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 
 from distal.scene.lowering.pieces.cell_programs import (
+    HALVINGS,
     CellPrograms,
     joined_cells,
     ranges,
+    shortens,
     whole_cell,
 )
 from distal.scene.lowering.pieces.cell_pruning import CellPruning, LeafDistances, bulges_of
@@ -28,11 +29,6 @@ from distal.scene.lowering.pieces.emission import EmittedPrograms, emitted
 from distal.scene.lowering.pieces.joins import ValueJoin
 from distal.scene.lowering.pieces.operands import Flags, Floats, OperandTree, Whole, operand_tree
 from distal.scene.lowering.pieces.programs import PieceProgram
-
-# A box has half the radius after so many halvings.
-HALVINGS: Final = 3
-# Bricks narrower than a blend are divided further if that has left fewer leaves than this share.
-SHORTER: Final = 0.6
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +82,12 @@ class BrickPrograms:
     joins: Sequence[ValueJoin]
     whole: int
 
+    @property
+    def share(self) -> float:
+        """The number of steps in a brick, on average, for each of the program of the whole."""
+        count = self.programs.count
+        return float(count[self.program].mean() / count[self.whole])
+
 
 def build_bricks(
     program: PieceProgram,
@@ -133,7 +135,8 @@ class _BrickDivision:
         done: list[CellPrograms] = []
         while len(batch):
             count = batch.leaf_counts(self._tree)
-            divides = self._divides(batch, is_far, count) & self._shortens(batch, count, around)
+            divides = self._divides(batch, is_far, count)
+            divides &= shortens(self._tree, batch, count, around)
             if pruning.asked + 2 * count[divides].sum() > self._limits.values:
                 divides[:] = False
             rest, cells = np.flatnonzero(~divides), np.flatnonzero(divides)
@@ -153,19 +156,6 @@ class _BrickDivision:
         leaves = np.where(is_far, limits.far_leaves, limits.leaves)
         smallest = np.where(is_far, limits.far_smallest, limits.smallest) * self._size
         found: Flags = (count > leaves) & ((batch.high - batch.low).max(axis=1) > smallest)
-        return found
-
-    def _shortens(self, batch: CellPrograms, count: Whole, around: Floats) -> Flags:
-        """Return in which bricks smaller ones may have fewer leaves.
-
-        Where blends are wider than a brick, all their shapes matter in smaller ones, too.
-        """
-        width = np.zeros(len(batch))
-        for entries, cell in zip(batch.levels, batch.cells(), strict=True):
-            blends = np.flatnonzero(entries.count > 1)
-            np.maximum.at(width, cell[blends], self._tree.width[entries.node[blends]])
-        across = self._tree.slope[0] * np.sqrt(((batch.high - batch.low) ** 2).sum(axis=1))
-        found: Flags = (across > width) | (count < SHORTER * around[:, 0])
         return found
 
     def _halved(self, batch: CellPrograms, cells: Whole) -> CellPrograms:

@@ -20,19 +20,18 @@ from typing import Final
 
 import numpy as np
 
-from distal.fields.guarantees import ENDLESS
 from distal.scene.lowering.parts.box_tree import OF_PLACE, OF_SIZE, sorted_within
 from distal.scene.lowering.pieces.box_order import BoxNodes, PieceTree, surface
 from distal.scene.lowering.pieces.cell_programs import (
-    ENDLESS_SOLID,
+    HALVINGS,
     CellPrograms,
     joined_cells,
     ranges,
+    shortens,
     whole_cell,
 )
 from distal.scene.lowering.pieces.cell_pruning import CellPruning, LeafDistances, bulges_of
 from distal.scene.lowering.pieces.emission import emitted
-from distal.scene.lowering.pieces.lone_leaves import lone_leaves, unites_leaves
 from distal.scene.lowering.pieces.operands import (
     CHAIN,
     Flags,
@@ -71,7 +70,7 @@ class PieceLimits:
     margin: float = 5e-4
     box: float = 1.0
     visit: float = 24.0
-    leaf: float = 9.0
+    leaf: float = 18.0
     values: int = 10_000_000
     interior: bool = False
 
@@ -102,10 +101,6 @@ def build(
         ValueError: The solid has no finite box.
     """
     growths = np.ones(len(low)) if growths is None else growths
-    if unites_leaves(program):
-        if not (np.maximum(np.abs(low), np.abs(high)) < ENDLESS).all():
-            raise ValueError(ENDLESS_SOLID)
-        return lone_leaves(program, low, high)
     tree = operand_tree(program, slopes, growths)
     margin = OF_SIZE * (high - low) + OF_PLACE * np.maximum(np.abs(low), np.abs(high))
     return _Division(tree, low - margin, high + margin, distances, limits).pieces()
@@ -139,9 +134,11 @@ class _Division:
         """Return the pieces."""
         nodes = self._nodes
         batch, is_inside = self._first, np.array([False])
+        around = np.full((1, HALVINGS), np.inf)  # as for ``shortens``
         nodes.added(1)
         while len(batch):
-            batch, is_inside, members = self._clipped(batch, is_inside)
+            batch, chosen, members = self._clipped(batch)
+            is_inside, around = is_inside[chosen], around[chosen]
             count = batch.leaf_counts(self._tree)
             nodes.fill(batch.place, batch.low, batch.high, self._costs(batch, count), batch.is_cut)
             self._batches.append(batch)
@@ -151,9 +148,13 @@ class _Division:
             smallest = self._limits.smallest * self._size
             is_divided = (count > self._limits.leaves) & (size >= smallest) & (size > 0.0)
             is_divided &= self._pruning.asked < self._limits.values
+            is_divided &= shortens(self._tree, batch, count, around)
             parted, by_member = self._parted(batch, members)
-            halves, is_inside = self._halved(batch, is_divided & ~by_member & ~is_inside)
+            cells = np.flatnonzero(is_divided & ~by_member & ~is_inside)
+            halves, chosen, is_inside = self._halved(batch, cells)
             is_inside = np.concatenate([np.zeros(len(parted), bool), is_inside])
+            around = np.repeat(np.column_stack([around[cells, 1:], count[cells]]), 2, axis=0)
+            around = np.concatenate([np.full((len(parted), HALVINGS), np.inf), around[chosen]])
             batch = joined_cells([parted, halves])
         return self._tree_of_pieces()
 
@@ -162,12 +163,11 @@ class _Division:
         of_piece = limits.box + limits.visit + limits.leaf * count
         return surface(batch.low, batch.high) * of_piece
 
-    def _clipped(
-        self, batch: CellPrograms, is_inside: Flags
-    ) -> tuple[CellPrograms, Flags, tuple[Floats, Floats]]:
-        """Return the cells within the boxes of their programs, and the boxes of union members.
+    def _clipped(self, batch: CellPrograms) -> tuple[CellPrograms, Flags, tuple[Floats, Floats]]:
+        """Return the cells within the boxes of their programs, and which of them have anything.
 
-        Members of a hard union without a box in the cell are dropped.
+        Members of a hard union without a box in the cell are dropped; the boxes of the others come
+        last.
         """
         boxes = batch.boxes(self._tree, self._low, self._high, self._bulges)
         low = np.maximum(batch.low, boxes[0][:, :3])
@@ -185,9 +185,7 @@ class _Division:
             keep[0] &= np.bincount(cell[keep[1]], minlength=len(batch)) > 0
             chosen = keep[1] & keep[0][cell]
             members = members[0][chosen], members[1][chosen]
-        chosen = keep[0]
-        batch = replace(batch, low=low, high=high).kept(keep)
-        return batch, is_inside[chosen], members
+        return replace(batch, low=low, high=high).kept(keep), keep[0], members
 
     def _parted(
         self, batch: CellPrograms, members: tuple[Floats, Floats]
@@ -225,17 +223,20 @@ class _Division:
         by_member[cells] = True
         return twice.kept(keep), by_member
 
-    def _halved(self, batch: CellPrograms, is_divided: Flags) -> tuple[CellPrograms, Flags]:
-        """Return the halves of cells that have a part of the surface, with what matters there."""
-        cells = np.flatnonzero(is_divided)
+    def _halved(self, batch: CellPrograms, cells: Whole) -> tuple[CellPrograms, Flags, Flags]:
+        """Return the halves of cells that have a part of the surface, with what matters there.
+
+        Returns:
+            The halves; which of both halves of each cell they are; which of them are inside.
+        """
         axis = np.argmax(batch.high[cells] - batch.low[cells], axis=1)
         halves = batch.halved(cells, axis, self._nodes.divided(batch.place[cells], axis))
         if not len(halves):
-            return halves, np.zeros(0, bool)
+            return halves, np.zeros(0, bool), np.zeros(0, bool)
         values, _ = self._pruning.values(halves)
         is_inside = values[0].high < -self._margin
         chosen = (values[0].low <= self._margin) & (self._limits.interior | ~is_inside)
-        return self._pruning.pruned(halves, values, chosen), is_inside[chosen]
+        return self._pruning.pruned(halves, values, chosen), chosen, is_inside[chosen]
 
     def _tree_of_pieces(self) -> PieceTree:
         """Return the tree of boxes that is cheapest, and the programs of its pieces."""

@@ -16,6 +16,10 @@ from distal.fields.guarantees import ENDLESS
 from distal.scene.lowering.pieces.operands import CHANGE, LEAF, Flags, Floats, OperandTree, Whole
 
 ENDLESS_SOLID: Final = "the solid has no finite box"
+# A box has half the radius after so many halvings.
+HALVINGS: Final = 3
+# Boxes narrower than a blend are divided further if that has left fewer leaves than this share.
+SHORTER: Final = 0.6
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,6 +215,27 @@ def whole_cell(tree: OperandTree, low: Floats, high: Floats, bulges: Floats) -> 
     if not (np.abs(box) < ENDLESS).all():
         raise ValueError(ENDLESS_SOLID)
     return whole.taken(np.array([0]), box[None, :3], -box[None, 3:], np.array([0]))
+
+
+def shortens(tree: OperandTree, batch: CellPrograms, count: Whole, around: Floats) -> Flags:
+    """Return in which cells smaller ones may have fewer leaves.
+
+    Where blends are wider than a cell, all their shapes matter in smaller ones, too.
+
+    Args:
+        tree: The operands.
+        batch: The cells.
+        count: How many leaves each has.
+        around: Those of the boxes around each, the largest first, when they had twice the radius
+            and less (n, ``HALVINGS``); infinite for none.
+    """
+    width = np.zeros(len(batch))
+    for entries, cell in zip(batch.levels, batch.cells(), strict=True):
+        blends = np.flatnonzero(entries.count > 1)
+        np.maximum.at(width, cell[blends], tree.width[entries.node[blends]])
+    across = tree.slope[0] * np.sqrt(((batch.high - batch.low) ** 2).sum(axis=1))
+    found: Flags = (across > width) | (count < SHORTER * around[:, 0])
+    return found
 
 
 def joined_cells(batches: Sequence[CellPrograms]) -> CellPrograms:

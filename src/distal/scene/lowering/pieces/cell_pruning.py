@@ -5,7 +5,9 @@ without the operands that cannot change the surface in the cell.
 
 **Up.** A node's values in a cell of radius R lie in an interval: for a leaf of slope L the value in
 the middle, v, plus and minus L R; for a minimum the least ends of its operands' intervals; for a
-blend also at most its bulge below that, and at most L R from its own value in the middle.
+blend also at most its bulge below that, and at most L R from its own value in the middle. A leaf
+that moves has two values there, the least and the largest at any time; a blend of it has none,
+and neither has one whose size changes: its width and its bulge are the largest.
 
 **Down.** A node has a band of values that matter: at the root those within a margin of the surface.
 The rule of all that follows: *an operand may be replaced by another whose values, clamped to its
@@ -49,8 +51,8 @@ from distal.scene.lowering.pieces.cell_programs import CellEntries, CellPrograms
 from distal.scene.lowering.pieces.joins import JoinCode, ValueJoin
 from distal.scene.lowering.pieces.operands import CHAIN, LEAF, Flags, Floats, OperandTree, Whole
 
-# Distances of points (n, 3) to leaves (n,): floats (n,).
-LeafDistances: TypeAlias = Callable[[Floats, Whole], Floats]
+# The least and the largest distances of points (n, 3) to leaves (n,) at all times: floats (n,).
+LeafDistances: TypeAlias = Callable[[Floats, Whole], tuple[Floats, Floats]]
 
 # What the middle of a cell is away from its corners, more than computed, for rounding.
 OF_REACH: Final = 5e-4
@@ -64,7 +66,13 @@ MOST_BEYOND: Final = 0.08
 
 @dataclass(slots=True)
 class EntryIntervals:
-    """The values of the entries of one level: in the middle, and the ends of their intervals."""
+    """The values of the entries of one level.
+
+    Attributes:
+        middle: In the middle of the cell; NaN if it moves.
+        low: The low ends of their intervals.
+        high: The high ends.
+    """
 
     middle: Floats
     low: Floats
@@ -100,7 +108,7 @@ class CellPruning:
         Args:
             tree: The operands.
             bulges: How far each chain's blend is below the least of 0, 1, 2 ... equal values.
-            distances: Returns the distances of points to leaves, each to its own.
+            distances: Returns the distances of points to leaves, each to its own, from and to.
             farthest: The largest coordinate, for rounding.
             margin: How far from the surface values matter. If all do, nothing is dropped that has
                 an effect anywhere, also in chains of blends.
@@ -141,7 +149,7 @@ class CellPruning:
         reach += OF_PLACE * self._farthest
         return self._values(cells, self._leaf_distances(cells), reach), reach
 
-    def _leaf_distances(self, cells: CellPrograms) -> list[Floats]:
+    def _leaf_distances(self, cells: CellPrograms) -> list[tuple[Floats, Floats]]:
         """Return the distances of the cells' middles to their leaves, level by level."""
         middle = 0.5 * (cells.low + cells.high)
         points, leaves, counts = [], [], []
@@ -151,11 +159,17 @@ class CellPruning:
             leaves.append(self._tree.leaf[entries.node[chosen]])
             counts.append(len(leaves[-1]))
         self.asked += sum(counts)
-        found = self._distances(np.concatenate(points), np.concatenate(leaves))
-        return np.split(np.asarray(found, np.float64), np.cumsum(counts)[:-1])
+        low, high = (
+            np.split(end, np.cumsum(counts)[:-1])
+            for end in self._distances(np.concatenate(points), np.concatenate(leaves))
+        )
+        return list(zip(low, high, strict=True))
 
     def _values(
-        self, cells: CellPrograms, distances: Sequence[Floats], reach: Floats
+        self,
+        cells: CellPrograms,
+        distances: Sequence[tuple[Floats, Floats]],
+        reach: Floats,
     ) -> list[EntryIntervals]:
         tree, found = self._tree, list[EntryIntervals]()
         numbers = cells.cells()
@@ -165,10 +179,10 @@ class CellPruning:
             around = tree.slope[node] * reach[numbers[i]]
             values = EntryIntervals(*(np.empty(len(node)) for _ in range(3)))
             leaves = tree.kind[node] == LEAF
-            middle = distances[i]
-            values.middle[leaves] = middle
-            values.low[leaves] = middle - around[leaves]
-            values.high[leaves] = middle + around[leaves]
+            low, high = distances[i]
+            values.middle[leaves] = np.where(low == high, low, np.nan)
+            values.low[leaves] = low - around[leaves]
+            values.high[leaves] = high + around[leaves]
             inner = np.flatnonzero(entries.count)
             if len(inner):
                 below = cells.levels[i + 1]
@@ -204,7 +218,16 @@ class CellPruning:
         many = entries.count[inner] > 1
         for join in np.unique(tree.own_join[node[(tree.width[node] > 0.0) & many]]).tolist():
             chosen = np.flatnonzero((tree.own_join[node] == join) & many)
-            self._blend(tree.joins[join], node, entries.count[inner], chosen, start, turned, least)
+            count = entries.count[inner][chosen]
+            last = self._bulges.shape[1] - 1
+            least.low[chosen] -= self._bulges[node[chosen], np.minimum(count, last)]
+            if tree.joins[join].moving is not None:
+                least.middle[chosen] = np.nan
+            is_still = ~np.isnan(least.middle[chosen])
+            chosen, count = chosen[is_still], count[is_still]
+            if not len(chosen):
+                continue
+            self._blend(tree.joins[join], count, chosen, start, turned, least)
             reach = around[chosen] + MOST_BEYOND * tree.width[node[chosen]]
             low, high = least.middle[chosen] - reach, least.middle[chosen] + reach
             least.low[chosen] = np.maximum(least.low[chosen], low)
@@ -224,8 +247,7 @@ class CellPruning:
     def _blend(
         self,
         join: ValueJoin,
-        node: Whole,
-        count: Whole,
+        size: Whole,
         chosen: Whole,
         start: Whole,
         turned: EntryIntervals,
@@ -237,17 +259,12 @@ class CellPruning:
 
         Args:
             join: How the chains join.
-            node: The nodes.
-            count: How many operands each has.
-            chosen: Which of them are these chains.
+            size: How many operands each has.
+            chosen: Which of the nodes they are.
             start: Where the operands of each start.
             turned: The values of the operands, with their signs in the chain.
-            least: The least values of each; the middle values and the low ends change.
+            least: The least values of each; the middle values change.
         """
-        last = self._bulges.shape[1] - 1
-        bulge = self._bulges[node[chosen], np.minimum(count[chosen], last)]
-        least.low[chosen] -= bulge
-        size = count[chosen]
         chain = np.repeat(np.arange(len(chosen)), size)
         ends = np.cumsum(size)
         entry = np.arange(int(ends[-1])) + np.repeat(start[chosen] - (ends - size), size)
@@ -363,9 +380,14 @@ def running_least(values: Floats, group: Whole) -> Floats:
         values: The values, group by group.
         group: The number of each value's group, in rising order.
     """
+    is_finite = np.isfinite(values)
+    low = values.min(initial=0.0, where=is_finite) - 1.0
+    high = values.max(initial=0.0, where=is_finite) + 1.0
     # Each group is below those before it.
-    below = group * (values.max(initial=0.0) - values.min(initial=0.0) + 1.0)
-    found: Floats = np.minimum.accumulate(values - below) + below
+    below = group * (high - low + 1.0)
+    found: Floats = np.minimum.accumulate(np.clip(values, low, high) - below) + below
+    found[found >= high - 0.5] = np.inf
+    found[found <= low + 0.5] = -np.inf
     return found
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
-from distal.ir.build import boolean, compare, integer, number, select
+from distal.ir.build import boolean, compare, integer, multiply, number, select
 from distal.ir.nodes import Call, CompareOp, Construct, Expr, FunctionRef, If, Param, Read, Return
 from distal.ir.types import BOOL, FLOAT, INT, VEC2, VEC3, FunctionType, Type
 from distal.render import bricks as brick_code
@@ -18,6 +18,7 @@ from distal.scene.lowering.part_functions import PartFunctions
 from distal.scene.lowering.parts.table import PartTable
 from distal.scene.lowering.pieces.joins import JoinCode, ValueJoin
 from distal.scene.tree.values import StatementList
+from distal.scene.tree.varying import expression_of
 
 if TYPE_CHECKING:
     from distal.scene.lowering.shapes import ShapeComposer
@@ -69,7 +70,7 @@ class ProgramFunctions(PartFunctions):
 
     def _joined(self, body: StatementList, join: ValueJoin) -> Expr:
         """Return two values joined, or one changed."""
-        numbers = _numbers_of(join)
+        numbers = self._numbers_of(join)
         rule = join.rule
         if join.code.is_binary:
             assert rule.combine is not None
@@ -85,8 +86,20 @@ class ProgramFunctions(PartFunctions):
             return number(0.0)
         if join.mix is None:
             return select(compare(CompareOp.LT, LAST, BEFORE), number(1.0), number(0.0))
-        given = {**_numbers_of(join), "a": BEFORE, "b": LAST}
+        given = {**self._numbers_of(join), "a": BEFORE, "b": LAST}
         return self._composer.call(join.mix, given)
+
+    def _numbers_of(self, join: ValueJoin) -> dict[str, Expr]:
+        """Return the numbers of a join: constants, but for one that changes."""
+        found: dict[str, Expr] = {
+            name: integer(value) if isinstance(value, int) else number(value)
+            for name, value in join.numbers
+        }
+        if join.moving is not None:
+            name, value, factor = join.moving
+            size = expression_of(self._composer.assembly, value, name)
+            found[name] = multiply(number(factor), size) if factor != 1.0 else size
+        return found
 
     def attribute(self, result: Type, given: Mapping[str, Expr], of_leaf: FunctionRef) -> Expr:
         """Return an attribute of a part at a point; see ``PartFunctions.attribute``."""
@@ -97,14 +110,6 @@ class ProgramFunctions(PartFunctions):
         function = scene_code.number_of_part if result is FLOAT else scene_code.surface_of_part
         values = {**self._own, **given, "share": self._share, "shown": shown}
         return self._composer.call(function, values)
-
-
-def _numbers_of(join: ValueJoin) -> dict[str, Expr]:
-    """Return the numbers of a join as constants."""
-    return {
-        name: integer(value) if isinstance(value, int) else number(value)
-        for name, value in join.numbers
-    }
 
 
 class PieceFunctions(ProgramFunctions):

@@ -59,6 +59,7 @@ from distal.fields.deform.solid import (
 )
 from distal.fields.guarantees import (
     BOUNDS_OF_CHILDREN,
+    ENDLESS,
     OPERATORS,
     Operator,
     Primitive,
@@ -67,16 +68,22 @@ from distal.fields.guarantees import (
 from distal.fields.place.flat import SCALE_FLAT
 from distal.fields.place.mirrors import SYMMETRY_PLANES, SYMMETRY_PLANES_FLAT
 from distal.fields.place.solid import SCALE, SHEAR, STRETCH
+from distal.frontend import Assembly
+from distal.ir.nodes import Return
+from distal.ir.types import FLOAT
+from distal.lang.composed import Composed
 from distal.lang.functions import Func
+from distal.lang.runtime_access import executor
+from distal.scene.tree.conversion import Number
 from distal.scene.tree.node import Node
-from distal.scene.tree.varying import VaryingNumber
+from distal.scene.tree.varying import VaryingNumber, expression_of
 
 MOVING_SIZE: Final = "its size depends on parameters or time"
 MOVING_SCALE: Final = "the scale of a shape with blends or offsets depends on parameters or time"
 VARYING: Final = "its numbers differ from place to place"
 SEVERAL_PLACES: Final = "it repeats its shape, or computes it at several points"
 OTHER_JOIN: Final = "'{}' is no union, intersection or difference"
-MOVING_BLEND: Final = "the size of its blend depends on parameters or time"
+MOVING_BLEND: Final = "the size of its blend has no largest value for all parameters and times"
 EVERYWHERE: Final = "the blend '{}' differs from the minimum everywhere"
 BOTH: Final = "where the blend '{}' differs from the minimum depends on more than the difference"
 OTHER_CHANGE: Final = "'{}' does not only move the point or the surface"
@@ -107,7 +114,9 @@ class ValueJoin:
         code: What it does.
         rule: The operator whose function computes it: ``combine(a, b, **numbers)`` for two values,
             ``finish(d, **numbers)`` for one.
-        numbers: The numbers of the function by name, in the units of the whole tree.
+        numbers: The numbers of the function by name, in the units of the whole tree; of one that
+            depends on parameters or time the largest.
+        moving: A number of the function that depends on them: its name, it, the factor of its unit.
         width: For two values: from which difference on the blend is the minimum or maximum.
         settles: Whether the effect of a value on a chain of such blends fades at each further
             blend. Not that of stairs, whose treads depend on one value alone.
@@ -123,6 +132,7 @@ class ValueJoin:
     code: JoinCode
     rule: Operator
     numbers: tuple[tuple[str, float | int], ...] = ()
+    moving: tuple[str, Number, float] | None = None
     width: float = 0.0
     settles: bool = True
     shift: float = 0.0
@@ -236,8 +246,9 @@ def join_of(node: Node, factor: float | None) -> ValueJoin | str:
         return BOTH.format(name)
     if varies(node):
         return VARYING
-    size = node.numbers["smooth"].plain
-    if not isinstance(size, float | int):
+    number = node.numbers["smooth"]
+    size = _largest(number)
+    if not size < ENDLESS:
         return MOVING_BLEND
     if factor is None:
         return MOVING_SCALE
@@ -246,6 +257,7 @@ def join_of(node: Node, factor: float | None) -> ValueJoin | str:
         code,
         rule,
         tuple(numbers.items()),
+        None if number.plain is not None else ("smooth", number, factor),
         width=blend.width * factor * size,
         settles=not blend.counted,
         mix=rule.mix,
@@ -287,6 +299,30 @@ def _sized(
     return ValueJoin(
         change.code, rule, ((name, size),), shift=change.shift * size, half=change.half * size
     )
+
+
+def _largest(number: Number) -> float:
+    """Return the largest value of a number, at any time and for any values of its parameters."""
+    if isinstance(number.plain, float | int):
+        return number.plain
+    ((_, high),) = executor().sweep(_NumberAlone(number), ())
+    return max(float(high), 0.0)
+
+
+class _NumberAlone(Composed):
+    """The value of a number."""
+
+    name = "number"
+    signature = ()
+    result = FLOAT
+
+    def __init__(self, number: Number) -> None:
+        self._number = number
+
+    def compose(self, assembly: Assembly) -> str:
+        """Add the function to the program, and return its name."""
+        value = expression_of(assembly, self._number, "number")
+        return assembly.define("number", (), FLOAT, [Return(value)])
 
 
 def _choices(node: Node) -> dict[str, int]:

@@ -20,6 +20,7 @@ from distal.fields.combine.joins import CLEARANCE, COMPLEMENT, UNION
 from distal.fields.guarantees import ENDLESS, PRIMITIVES
 from distal.scene.lowering.known_bounds import known_bounds_of
 from distal.scene.lowering.parts.flatten import UnionMember, _copies, copies_of
+from distal.scene.lowering.parts.kinds import moves_itself
 from distal.scene.lowering.pieces.joins import (
     DEFORMED,
     HARD_RULES,
@@ -91,6 +92,7 @@ class PieceProgram:
         steps: The steps.
         joins: What the steps do, each once.
         whole: The leaves that stay whole, and why.
+        moved: A node that moves joined shapes by parameters or time; None if there is none.
     """
 
     leaves: Sequence[UnionMember]
@@ -98,6 +100,7 @@ class PieceProgram:
     steps: Sequence[PieceStep]
     joins: Sequence[ValueJoin]
     whole: Sequence[WholeSubtree]
+    moved: Node | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,9 +135,7 @@ def program_of(root: Node, *, default_varies: bool = False) -> PieceProgram:
         root: The root of the tree.
         default_varies: Whether the material of leaves without one depends on the place.
     """
-    writer = _ProgramWriter(default_varies=default_varies)
-    writer.write(root, _AboveNode(lambda node: node))
-    return PieceProgram(writer.leaves, writer.looks, writer.steps, list(writer.joins), writer.whole)
+    return _written(root, _AboveNode(lambda node: node), default_varies=default_varies)
 
 
 def values_of(root: Node, *, default_varies: bool = False) -> PieceProgram:
@@ -142,9 +143,17 @@ def values_of(root: Node, *, default_varies: bool = False) -> PieceProgram:
 
     Deformations of joined shapes are leaves. Arguments as for ``program_of``.
     """
+    above = _AboveNode(lambda node: node, is_exact=True)
+    return _written(root, above, default_varies=default_varies)
+
+
+def _written(root: Node, above: _AboveNode, *, default_varies: bool) -> PieceProgram:
     writer = _ProgramWriter(default_varies=default_varies)
-    writer.write(root, _AboveNode(lambda node: node, is_exact=True))
-    return PieceProgram(writer.leaves, writer.looks, writer.steps, list(writer.joins), writer.whole)
+    writer.write(root, above)
+    joins = list(writer.joins)
+    return PieceProgram(
+        writer.leaves, writer.looks, writer.steps, joins, writer.whole, writer.moved
+    )
 
 
 class _ProgramWriter:
@@ -156,6 +165,7 @@ class _ProgramWriter:
         self.steps: list[PieceStep] = []
         self.joins: dict[ValueJoin, int] = {}
         self.whole: list[WholeSubtree] = []
+        self.moved: Node | None = None
         self._looks: dict[Any, int] = {}
         self._default_varies = default_varies
         self._alive: list[Any] = []  # keys are ids
@@ -284,6 +294,8 @@ class _ProgramWriter:
         rule = node.rule
         if len(node.children) != 1 or not _is_taken_apart(node) or varies(node):
             return None
+        if moves_itself(node):
+            self.moved = self.moved or node
         inside = self._inside(node, above)
         placed = replace(inside, place=_wrapped(node, above.place))
         if only_moves(rule):

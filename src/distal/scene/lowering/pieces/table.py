@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.fields.combine.joins import UNION
+from distal.fields.guarantees import ENDLESS
 from distal.frontend import Assembly
 from distal.ir.nodes import Expr, Param, Read, Return
 from distal.ir.types import FLOAT, VEC3, Type
@@ -38,11 +39,11 @@ from distal.scene.lowering.parts.table import (
     ProgramData,
     TableNode,
 )
-from distal.scene.lowering.pieces.box_order import PieceTree
+from distal.scene.lowering.pieces.box_order import PieceTree, surface
 from distal.scene.lowering.pieces.builder import PieceLimits, build
 from distal.scene.lowering.pieces.cell_programs import ENDLESS_SOLID
 from distal.scene.lowering.pieces.emission import EmittedPrograms, StepMode
-from distal.scene.lowering.pieces.lone_leaves import unites_leaves
+from distal.scene.lowering.pieces.joins import JoinCode
 from distal.scene.lowering.pieces.operands import Floats, Whole
 from distal.scene.lowering.pieces.programs import (
     MANY,
@@ -56,18 +57,26 @@ from distal.scene.lowering.union_parts import united
 from distal.scene.tree.node import Node
 from distal.scene.tree.values import StatementList
 
-MOVING: Final = "it depends on parameters or time"
+MOVED: Final = "it moves joined shapes by parameters or time"
+FAR: Final = "shapes move so far that boxes that have them at all times overlap"
 MANY_JOINS: Final = "it is joined in too many different ways"
 MANY_ROWS: Final = "it has too many shapes"
 DEEP: Final = "more than three values of joined shapes are needed at once"
 EMPTY: Final = "it is empty"
+DENSE: Final = "boxes have most of its shapes: they overlap, or their blends are wide"
 # Limits of the numbers of a step (``render.pieces``).
 MOST_JOINS: Final = JOIN_MASK + 1
 MOST_ROWS: Final = 1 << 21
 MOST_ASIDE: Final = 3
 LIMITS: Final = PieceLimits(interior=True)
+# Fewer shapes without blends are drawn faster as they are.
+LEAST_HARD: Final = 32
 # More distances at once are computed by compiled code.
 MOST_INTERPRETED: Final = 200_000
+# Where programs have more of the whole's steps than this, on average, the tree itself is faster.
+LARGEST_SHARE: Final = 0.6
+# In how many boxes of shapes that move a point may be, on average.
+MOST_MOVING: Final = 6.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +115,9 @@ def _pieced(root: Node, *, default_varies: bool) -> Pieced:
     if found is None:
         return Pieced(root)
     program = program_of(found.node, default_varies=default_varies)
-    if not is_worth_programs(program):
+    blends = any(not join.is_hard for join in program.joins)
+    least = LEAST_PARTS if blends else LEAST_HARD
+    if len(program.leaves) < least or not is_worth_programs(program):
         return Pieced(root)
     table = _table_of(program)
     if isinstance(table, Refusal):
@@ -150,7 +161,8 @@ def joined_shapes(root: Node) -> JoinedShapes | None:
 
 def is_worth_programs(program: PieceProgram) -> bool:
     """Return whether a program joins many leaves, in other ways than by a union."""
-    return len(program.leaves) >= LEAST_PARTS and not unites_leaves(program)
+    only_united = all(j.code is JoinCode.UNION and j.is_hard for j in program.joins)
+    return len(program.leaves) >= LEAST_PARTS and not only_united
 
 
 def _is_linear(node: Node) -> bool:
@@ -179,16 +191,19 @@ def _table_of(program: PieceProgram) -> PartTable | Refusal:
         return Refusal(ENDLESS_SOLID)
     if tree.programs.depth > MOST_ASIDE:
         return Refusal(DEEP)
-    return _packed(tree, leaves) if len(tree.box) else Refusal(EMPTY)
+    if not len(tree.box):
+        return Refusal(EMPTY)
+    return Refusal(DENSE) if tree.share > LARGEST_SHARE else _packed(tree, leaves)
 
 
 def leaves_of(program: PieceProgram) -> LeafArrays | Refusal:
     """Return the leaves of a program as rows, or why they can be none."""
+    if program.moved is not None:
+        return Refusal(MOVED, program.moved)
     kinds = sorted(kinds_of(program.leaves), key=lambda kind: -len(kind.members))
     for kind in kinds:
-        reason = MOVING if kind.moving else THIN if not kind.node.solid else ""
-        if reason:
-            return Refusal(reason, kind.members[0].source)
+        if not kind.node.solid:
+            return Refusal(THIN, kind.members[0].source)
     if len(kinds) > MOST_KINDS:
         return Refusal(RARE)
     if len(program.joins) >= MOST_JOINS:
@@ -199,11 +214,15 @@ def leaves_of(program: PieceProgram) -> LeafArrays | Refusal:
         number, reason = next(iter(found.refused.items()))
         return Refusal(reason, source[number])
     leaves = LeafArrays(program.leaves, found.kinds, found.swept)
-    return leaves if len(leaves.rows) < MOST_ROWS else Refusal(MANY_ROWS)
+    if len(leaves.rows) >= MOST_ROWS:
+        return Refusal(MANY_ROWS)
+    return Refusal(FAR) if leaves.moving_boxes() > MOST_MOVING else leaves
 
 
 class LeafArrays:
     """The leaves of a program as arrays, in the order of the program.
+
+    What bounds leaves that move holds at all times and for all values of the parameters.
 
     Attributes:
         kinds: Their kinds.
@@ -241,9 +260,20 @@ class LeafArrays:
         self._functions = [LeafDistance(kind) for kind in kinds]
         self._columns = [columns_of(kind) for kind in kinds]
 
-    def distances(self, points: Floats, leaves: Whole) -> Floats:
-        """Return the values of points (n, 3) in the fields of leaves (n,)."""
-        found = np.empty(len(points))
+    def moving_boxes(self) -> float:
+        """Return the number of boxes of moving leaves that a point is in, on average."""
+        moves = np.array([kind.moving for kind in self.kinds])[self._kind]
+        if not moves.any():
+            return 0.0
+        is_finite = np.maximum(np.abs(self.low), np.abs(self.high)).max(axis=1) < ENDLESS
+        low, high = self.low[is_finite].min(axis=0), self.high[is_finite].max(axis=0)
+        low, high = np.vstack([low, self.low[moves]]), np.vstack([high, self.high[moves]])
+        around, *each = surface(low, high).tolist()
+        return float(sum(each) / around)
+
+    def distances(self, points: Floats, leaves: Whole) -> tuple[Floats, Floats]:
+        """Return the least and the largest values of points (n, 3) in the fields of leaves (n,)."""
+        least, largest = np.empty((2, len(points)))
         kinds = self._kind[leaves]
         for k, function in enumerate(self._functions):
             chosen = np.flatnonzero(kinds == k)
@@ -251,14 +281,30 @@ class LeafArrays:
                 continue
             ordinal = self._ordinal[leaves[chosen]]
             columns = [points[chosen], *(column[ordinal] for column in self._columns[k])]
-            if len(chosen) < MOST_INTERPRETED:
-                value = executor().call(function, tuple(columns), {}, device="reference")
+            if self.kinds[k].moving:
+                ((low, high),) = executor().sweep(function, columns)
+                low = np.maximum(low, self._outside(points[chosen], leaves[chosen]))
             else:
-                value = executor().evaluate(
-                    function, [np.asarray(c, np.float32) for c in columns], {}, 0.0
-                )
-            found[chosen] = value
+                low = high = _values(function, columns)
+            least[chosen], largest[chosen] = low, high
+        return least, largest
+
+    def _outside(self, points: Floats, leaves: Whole) -> Floats:
+        """Return how large values are at least because points are outside of boxes."""
+        beyond = np.maximum(self.low[leaves] - points, points - self.high[leaves]).max(axis=1)
+        growth = np.maximum(self.growth[leaves], 1.0)
+        found: Floats = np.where(beyond > 0.0, beyond / growth, -np.inf)
         return found
+
+
+def _values(function: LeafDistance, columns: Sequence[Floats]) -> Floats:
+    """Return the results of a function, one for each row of its arguments."""
+    if len(columns[0]) < MOST_INTERPRETED:
+        found = executor().call(function, tuple(columns), {}, device="reference")
+    else:
+        rows = [np.asarray(column, np.float32) for column in columns]
+        found = executor().evaluate(function, rows, {}, 0.0)
+    return np.asarray(found, np.float64)
 
 
 class LeafDistance(Composed):

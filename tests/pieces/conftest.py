@@ -1,0 +1,14 @@
+"""Pieces also for trees that are drawn faster without."""
+
+from __future__ import annotations
+
+import pytest
+
+from distal.scene.lowering.pieces import table
+
+
+@pytest.fixture
+def always_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Few shapes, and shapes that are everywhere, have pieces, too."""
+    monkeypatch.setattr(table, "LEAST_HARD", table.LEAST_PARTS)
+    monkeypatch.setattr(table, "LARGEST_SHARE", 1.0)
