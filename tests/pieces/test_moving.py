@@ -18,11 +18,11 @@ from distal.scene.lowering.pieces.table import FAR, MOVED, leaves_of, pieced
 
 RADIUS = slider("Radius", 0.12, low=0.04, high=0.18)
 SHIFT = slider("Shift", 0.0, low=-1.0, high=1.0)
-SOFT = slider("Soft", 0.01, low=0.0, high=0.02)
+SOFT = slider("Soft", 0.01, low=0.0, high=0.06)
 CASES = [
     (0.0, {}),
     (1.7, {"Radius": 0.04, "Shift": -1.0, "Soft": 0.0}),
-    (4.1, {"Radius": 0.18, "Shift": 0.97, "Soft": 0.02}),
+    (4.1, {"Radius": 0.18, "Shift": 0.97, "Soft": 0.06}),
     (1234.5, {"Radius": 0.1, "Shift": 0.3, "Soft": 0.001}),
 ]
 pytestmark = pytest.mark.usefixtures("always_pieces")
