@@ -1,7 +1,8 @@
 """Joined shapes as pieces: frames and first pictures beside those of a union of the same shapes.
 
 Scenes: a box less n balls and the box united with them, plates with holes, smooth unions of balls,
-shells, intersections. One sharp sun with shadows, 640x480, one sample. Each scene is measured in a
+shells, intersections; and plates and smooth unions that a slider changes, which are also measured
+without pieces. One sharp sun with shadows, 640x480, one sample. Each scene is measured in a
 fresh process with an empty kernel cache: seconds of the processor for the first picture and for the
 fastest of five more, how many pieces there are, and their size.
 
@@ -26,6 +27,7 @@ import json, sys
 from time import process_time
 import numpy
 from distal import Box, Camera, Cylinder, DistantLight, Ellipsoid, Scene, Sphere, union
+from distal.lang import slider
 from distal.scene.checks.piece_report import pieces_of
 
 kind, count = sys.argv[1], int(sys.argv[2])
@@ -36,11 +38,11 @@ def balls(radius, seed=0):
     return [Sphere(radius).translate(*p) for p in rng.uniform(-1, 1, (count, 3)).tolist()]
 
 
-def posts():
+def posts(size=0.3):
     side = round(count**0.5)
     step = 4.0 / side
     at = [(i + 0.5) * step - 2 for i in range(side)]
-    return union([Cylinder(0.3 * step, 1).translate(x, 0, z) for x in at for z in at])
+    return union([Cylinder(size * step, 1).translate(x, 0, z) for x in at for z in at])
 
 
 radius = 0.6 * count ** (-1 / 3)
@@ -48,6 +50,10 @@ SHAPES = {
     "difference": lambda: Box(2, 2, 2) - union(balls(radius)),
     "union": lambda: Box(2, 2, 2) | union(balls(radius)),
     "plate": lambda: Box(4, 0.1, 4) - posts(),
+    "sliders": lambda: Box(4, 0.1, 4) - posts(slider("Size", 0.3, low=0.1, high=0.45)),
+    "melting": lambda: union(
+        balls(radius), smooth=slider("Smooth", 0.1 * radius, low=0.0, high=0.2 * radius)
+    ),
     "pegs": lambda: Box(4, 0.1, 4) | posts(),
     "soft": lambda: union(balls(radius), smooth=0.1 * radius),
     "shell": lambda: union(balls(1.5 * radius)).shell(0.05) - Box(4, 4, 4).translate(2, 0, 0),
@@ -64,6 +70,7 @@ if sys.argv[3] == "mesh":
 begin = process_time()
 scene = Scene(
     SHAPES[kind](),
+    acceleration=sys.argv[3] != "whole",
     lights=DistantLight((1, 2, 1.5)),
     camera=Camera((3, 3, 4), target=(0, 0, 0)),
     floor=False,
@@ -77,7 +84,11 @@ found = pieces_of(scene.shape.node)
 print(json.dumps({"first": frames[0], "frame": min(frames[1:]),
     "pieces": found.count if found else 0, "bytes": found.bytes if found else 0}))
 """
+CHANGING = ("sliders", "melting")
 SCENES = (
+    ("sliders", 100),
+    ("sliders", 400),
+    ("melting", 400),
     ("union", 1000),
     ("difference", 1000),
     ("union", 10_000),
@@ -119,9 +130,13 @@ def print_frames(names: Sequence[str]) -> None:
             continue
         row = measured(kind, count, "frames")
         times = f"{row['first']:9.2f} s{1000 * row['frame']:8.1f} ms"
-        print(
-            f"{kind:13}{count:7,}{times}{row['pieces']:9,}{row['bytes'] / 1e6:8.2f} MB", flush=True
-        )
+        size = f"{row['pieces']:9,}{row['bytes'] / 1e6:8.2f} MB"
+        print(f"{kind:13}{count:7,}{times}{size}", flush=True)
+        if kind in CHANGING:
+            row = measured(kind, count, "whole")
+            print(
+                f"  whole{count:14,}{row['first']:9.2f} s{1000 * row['frame']:8.1f} ms", flush=True
+            )
 
 
 def print_meshes(names: Sequence[str]) -> None:

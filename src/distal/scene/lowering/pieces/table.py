@@ -39,7 +39,7 @@ from distal.scene.lowering.parts.table import (
     ProgramData,
     TableNode,
 )
-from distal.scene.lowering.pieces.box_order import PieceTree, surface
+from distal.scene.lowering.pieces.box_order import PieceTree
 from distal.scene.lowering.pieces.builder import PieceLimits, build
 from distal.scene.lowering.pieces.cell_programs import ENDLESS_SOLID
 from distal.scene.lowering.pieces.emission import EmittedPrograms, StepMode
@@ -268,7 +268,7 @@ class LeafArrays:
         is_finite = np.maximum(np.abs(self.low), np.abs(self.high)).max(axis=1) < ENDLESS
         low, high = self.low[is_finite].min(axis=0), self.high[is_finite].max(axis=0)
         low, high = np.vstack([low, self.low[moves]]), np.vstack([high, self.high[moves]])
-        around, *each = surface(low, high).tolist()
+        around, *each = (high - low).prod(axis=1).tolist()
         return float(sum(each) / around)
 
     def distances(self, points: Floats, leaves: Whole) -> tuple[Floats, Floats]:
