@@ -22,12 +22,14 @@ from distal.cli.application import application
 from distal.diagnostics import CompileError, LoadError
 from distal.error_codes import ErrorCode
 from distal.export import page_programs, resources
-from distal.export.payload import name_of
+from distal.export.page_options import PageOptions
+from distal.export.payload import name_of, payload
 from distal.export.poster import MOST_TRIANGLE_BYTES
 from distal.export.registry import export
 from distal.file_writer import SaveError
 from distal.ir.types import Buffer, Texture, TextureShape
 from distal.lang import resources as lang
+from distal.scene.viewing.viewable import viewable
 from distal.triangles import decode
 
 # The measure.
@@ -381,6 +383,25 @@ def test_a_texture_is_as_narrow_as_it_can_be(data, format, components):
     wide = np.asarray(data, np.float64) / (255.0 if np.asarray(data).dtype == np.uint8 else 1.0)
     wide = wide if wide.ndim == 3 else np.repeat(wide[..., None], 3, axis=-1)
     assert np.allclose(numbers, wide[..., :components], rtol=6e-4, atol=1e-7)
+
+
+def test_numbers_of_a_page_are_packed_and_shared(tmp_path):
+    hole = distal.Cylinder(0.1, 2.0)
+    holes = [hole.translate(0.5 * i, 0, 0.5 * j) for i in range(8) for j in range(8)]
+    scene = distal.Scene(distal.Box(9.0, 0.5, 9.0) - distal.union(holes), name="plate")
+    packed = exported(scene, tmp_path / "page.html").payload["resources"]
+    plain = payload(viewable(scene), PageOptions(), packed=False)["resources"]
+    assert list(packed) == list(plain) and any(entry.get("packed") for entry in packed.values())
+    for name, entry in packed.items():
+        data = base64.b64decode(entry["data"])
+        if entry.pop("packed", False):
+            assert len(entry["data"]) < 0.9 * len(plain[name]["data"])
+            data = zlib.decompress(data, -zlib.MAX_WBITS)
+        assert data == base64.b64decode(plain[name]["data"])
+        rest = {key: value for key, value in plain[name].items() if key != "data"}
+        assert {key: value for key, value in entry.items() if key != "data"} == rest
+    texts = [entry["data"] for entry in plain.values()]
+    assert len(set(texts)) == len(texts)
 
 
 def test_buffers_keep_every_bit():

@@ -6,7 +6,7 @@
  * follows. Only the script of pages of pictures that keep frames has this.
  */
 
-import { bytesOf } from "./payload";
+import { bytesOf, inflated } from "./payload";
 import type { SoundEntry } from "./payload";
 import { SILENT_WAVE, SOUND_WIDTH } from "./sound";
 
@@ -30,9 +30,7 @@ export class Music {
   constructor(readonly source: SoundEntry) {}
 
   async prepare(): Promise<void> {
-    const packed = new Blob([bytesOf(this.source.rows)]).stream();
-    const rows = packed.pipeThrough(new DecompressionStream("deflate-raw"));
-    this.#rows = new Uint8Array(await new Response(rows).arrayBuffer());
+    this.#rows = new Uint8Array(await inflated(this.source.rows).arrayBuffer());
   }
 
   texels(time: number): Uint8Array {

@@ -127,7 +127,10 @@ export interface Resource {
   /** One number stands for all components. */
   grey?: true;
   format: Format;
-  data: string;
+  /** Base64; bytes once they are unpacked. */
+  data: string | Uint8Array<ArrayBuffer>;
+  /** Whether the bytes are compressed. */
+  packed?: true;
 }
 
 export interface View {
@@ -188,16 +191,26 @@ export function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
   return Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
 }
 
+/** What was compressed, from a base64 text. */
+export function inflated(base64: string): Response {
+  const packed = new Blob([bytesOf(base64)]).stream();
+  return new Response(packed.pipeThrough(new DecompressionStream("deflate-raw")));
+}
+
 /**
  * The programs of a payload, unpacked where they came packed: field by field, and texts as the
- * numbers of their parts, which programs share.
+ * numbers of their parts, which programs share. The numbers of resources are unpacked in place.
  */
 export async function programsOf(payload: Payload): Promise<Program[]> {
   const { programs } = payload;
+  for (const resource of Object.values(payload.resources)) {
+    if (!resource.packed) continue;
+    const data = new Uint8Array(await inflated(resource.data as string).arrayBuffer());
+    // Another call may have been faster.
+    if (resource.packed) Object.assign(resource, { data, packed: undefined });
+  }
   if (programs.encoding === "plain") return programs.data;
-  const packed = new Blob([bytesOf(programs.data)]).stream();
-  const text = packed.pipeThrough(new DecompressionStream("deflate-raw"));
-  const { parts, ...columns } = (await new Response(text).json()) as Packed;
+  const { parts, ...columns } = (await inflated(programs.data).json()) as Packed;
   const joined = (numbers: number[]) => numbers.map((n) => parts[n]).join("");
   return columns.vertex.map((vertex, i) => {
     const fields = Object.entries(columns).map(([key, all]) => [key, all[i]]);

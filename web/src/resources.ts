@@ -79,7 +79,7 @@ function formats(gl: GL, format: Format, components: number): [number, number, n
 }
 
 function numbersOf({ format, data, grey, components }: Resource): Numbers {
-  const stored = new ARRAYS[format](bytesOf(data).buffer);
+  const stored = new ARRAYS[format]((typeof data === "string" ? bytesOf(data) : data).buffer);
   return grey ? new ARRAYS[format](stored.length * components).map((_, i) => stored[(i / components) | 0]!) : stored;
 }
 

@@ -10,7 +10,6 @@ import base64
 import hashlib
 import html
 import json
-import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -18,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from distal.diagnostics import CompileError
+from distal.export.deflating import deflated
 from distal.export.exported import Exported
 from distal.export.page_options import NO_POSTER, TRIANGLE_POSTER, WEBP, PageOptions
 from distal.export.page_programs import PagePrograms
@@ -203,9 +203,7 @@ def player_script(
     """
     files = [each for each in (before, file, behind) if each is not None]
     player = "\n".join(each.read_text(encoding="utf-8").strip() for each in files)
-    press = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS, 9)
-    packed = press.compress(player.encode("utf-8")) + press.flush()
-    text = _UNPACK % (base64.b64encode(packed).decode("ascii"), TOO_OLD)
+    text = _UNPACK % (deflated(player.encode("utf-8")), TOO_OLD)
     return PlayerScript(text, (_hash(text), _hash(player)))
 
 

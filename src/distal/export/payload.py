@@ -9,12 +9,12 @@ from __future__ import annotations
 import ast
 import base64
 import json
-import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
 from distal.diagnostics import CompileError, readable
+from distal.export.deflating import deflated
 from distal.export.page_options import PageOptions
 from distal.export.page_programs import Compile, PagePrograms
 from distal.export.pasted_code import code_around
@@ -66,7 +66,7 @@ def payload(
         omit: Called with the name and error of each view that WebGL 2 cannot show.
         variable: The variable that holds the object in a notebook; None if that is not known.
         compile: Compiles each program; None: ``compiled``.
-        packed: Whether to compress the programs.
+        packed: Whether to compress the programs and the numbers of resources.
         facts: What is known of the object; None: what ``seen`` finds out.
         guided: Whether the camera's guide is among the programs.
         more: Adds programs; returns further entries. It gets the programs and the page's name.
@@ -117,7 +117,7 @@ def payload(
         "poster": None,
         "files": programs.files,
         "programs": _packed(programs.made) if packed else _plain_programs(programs.made),
-        "resources": programs.resources,
+        "resources": _smaller(programs.resources) if packed else programs.resources,
     }
 
 
@@ -212,11 +212,20 @@ def _packed(programs: list[dict[str, Any]]) -> dict[str, Any]:
             for text in columns[key]
         ]
     text = json.dumps({"parts": list(parts), **columns}, separators=(",", ":"))
-    press = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS, 9)
-    packed = base64.b64encode(press.compress(text.encode()) + press.flush()).decode("ascii")
+    packed = deflated(text.encode())
     if len(packed) < len(plain):
         return {"encoding": "deflate-raw", "data": packed}
     return _plain_programs(programs)
+
+
+def _smaller(resources: Mapping[str, dict[str, Any]]) -> dict[str, Any]:
+    """Return textures and buffers with their numbers compressed, where that is smaller."""
+    found: dict[str, Any] = {}
+    for name, entry in resources.items():
+        data = deflated(base64.b64decode(entry["data"]))
+        is_smaller = len(data) < 0.9 * len(entry["data"])
+        found[name] = {**entry, "packed": True, "data": data} if is_smaller else entry
+    return found
 
 
 def _functions(text: str) -> Iterator[str]:

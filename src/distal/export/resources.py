@@ -7,7 +7,6 @@ format that shows the same picture. Does not depend on pages or programs.
 from __future__ import annotations
 
 import base64
-import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
@@ -16,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.devices.resources import load
+from distal.export.deflating import deflated
 from distal.images.png import encode_levels
 from distal.ir.types import Buffer, Texture, TextureShape
 from distal.lang.live_textures import SoundFile
@@ -43,12 +43,10 @@ def sound(name: str, source: SoundFile) -> dict[str, Any]:
     Raises:
         LoadError: The file cannot be read.
     """
-    packer = zlib.compressobj(9, zlib.DEFLATED, -15)
-    rows = packer.compress(table_of(source).tobytes()) + packer.flush()
     return {
         "name": name,
         "loop": source.loop,
-        "rows": base64.b64encode(rows).decode("ascii"),
+        "rows": deflated(table_of(source).tobytes()),
         "file": base64.b64encode(Path(source.path).read_bytes()).decode("ascii"),
     }
 

@@ -5,7 +5,7 @@
  * Output: columns of numbers. Pure.
  */
 
-import { bytesOf } from "../payload";
+import { inflated } from "../payload";
 
 export interface Packed {
   /** The size of the mesh's box; its largest side is 1. */
@@ -27,8 +27,7 @@ export interface Corners {
 }
 
 export async function unpacked({ points, triangles, data }: Packed): Promise<Corners> {
-  const plain = new Blob([bytesOf(data)]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
-  const bytes = new Uint8Array(await new Response(plain).arrayBuffer());
+  const bytes = new Uint8Array(await inflated(data).arrayBuffer());
   let at = 0;
   const read = <T extends Uint8Array | Int8Array | Uint16Array | Uint32Array>(column: T): T => {
     const count = column.length;
