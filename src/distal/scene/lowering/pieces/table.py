@@ -76,7 +76,7 @@ MOST_INTERPRETED: Final = 200_000
 # Where programs have more of the whole's steps than this, on average, the tree itself is faster.
 LARGEST_SHARE: Final = 0.6
 # In how many boxes of shapes that move a point may be, on average.
-MOST_MOVING: Final = 6.0
+MOST_MOVING: Final = 3.0
 
 
 @dataclass(frozen=True, slots=True)
