@@ -92,7 +92,8 @@ def test_drivers_draw_the_cpu_picture(ring, target):
 
 
 def test_a_page_carries_one_number_for_each_sample(ring):
-    made = payload(viewable(scene_of(ring)), PageOptions(size=SIZE, views=("color",)))
+    options = PageOptions(size=SIZE, views=("color",))
+    made = payload(viewable(scene_of(ring)), options, packed=False)
     volumes = [r for r in made["resources"].values() if r["type"] == "Texture3D"]
     (volume,) = volumes
     x, y, z = ring.imported[0].samples

@@ -127,9 +127,8 @@ export interface Resource {
   /** One number stands for all components. */
   grey?: true;
   format: Format;
-  /** Base64; bytes once they are unpacked. */
-  data: string | Uint8Array<ArrayBuffer>;
-  /** Whether the bytes are compressed. */
+  data: string;
+  /** Whether they are compressed, as in pages. */
   packed?: true;
 }
 
@@ -197,17 +196,22 @@ export function inflated(base64: string): Response {
   return new Response(packed.pipeThrough(new DecompressionStream("deflate-raw")));
 }
 
+const unpacked = new WeakMap<Resource, ArrayBuffer>();
+
+/** The numbers of a resource of a payload whose programs are known. */
+export function numbersIn(resource: Resource): ArrayBuffer {
+  return unpacked.get(resource) ?? bytesOf(resource.data).buffer;
+}
+
 /**
  * The programs of a payload, unpacked where they came packed: field by field, and texts as the
- * numbers of their parts, which programs share. The numbers of resources are unpacked in place.
+ * numbers of their parts, which programs share. The numbers of resources are unpacked, too.
  */
 export async function programsOf(payload: Payload): Promise<Program[]> {
   const { programs } = payload;
   for (const resource of Object.values(payload.resources)) {
-    if (!resource.packed) continue;
-    const data = new Uint8Array(await inflated(resource.data as string).arrayBuffer());
-    // Another call may have been faster.
-    if (resource.packed) Object.assign(resource, { data, packed: undefined });
+    if (!resource.packed || unpacked.has(resource)) continue;
+    unpacked.set(resource, await inflated(resource.data).arrayBuffer());
   }
   if (programs.encoding === "plain") return programs.data;
   const { parts, ...columns } = (await inflated(programs.data).json()) as Packed;

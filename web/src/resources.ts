@@ -5,7 +5,7 @@
  * before each draw. A buffer is a texture of one texel an element, row by row.
  */
 
-import { bytesOf, type BufferEntry, type Format, type Resource, type TextureEntry } from "./payload";
+import { numbersIn, type BufferEntry, type Format, type Resource, type TextureEntry } from "./payload";
 import type { Linked } from "./program";
 
 type GL = WebGL2RenderingContext;
@@ -78,8 +78,9 @@ function formats(gl: GL, format: Format, components: number): [number, number, n
   return [gl[`${channels}${end}`], gl[`${channels === "R" ? "RED" : channels}${whole}`], gl[type]];
 }
 
-function numbersOf({ format, data, grey, components }: Resource): Numbers {
-  const stored = new ARRAYS[format]((typeof data === "string" ? bytesOf(data) : data).buffer);
+function numbersOf(source: Resource): Numbers {
+  const { format, grey, components } = source;
+  const stored = new ARRAYS[format](numbersIn(source));
   return grey ? new ARRAYS[format](stored.length * components).map((_, i) => stored[(i / components) | 0]!) : stored;
 }
 

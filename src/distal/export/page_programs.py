@@ -193,18 +193,16 @@ class PagePrograms:
                 self._image_inputs.append({"name": name, "wrap": source.wrap})
             assert isinstance(type, Texture | Buffer)
             made = plain_resource(source, type) or resources.resource(source, type)
-            is_buffer = isinstance(type, Buffer)
-            self._names[key] = self._shared(name, made) if is_buffer else self._added(name, made)
+            self._names[key] = self._added(name, made)
         return self._names[key]
 
     def _table(self, entry: Mapping[str, Any]) -> str:
-        """Return the name of a table of the program, added as a buffer."""
-        return self._shared(entry["name"], table(entry))
-
-    def _shared(self, name: str, made: dict[str, Any]) -> str:
-        """Return the name of a buffer with these numbers, added if there is none yet."""
-        same = (known for known, other in self.resources.items() if other == made)
-        return next(same, None) or self._added(name, made)
+        """Return the name of a table of the program, added as a buffer; equal tables are shared."""
+        made = table(entry)
+        for name, known in self.resources.items():
+            if known == made:
+                return name
+        return self._added(entry["name"], made)
 
     def _added(self, name: str, made: dict[str, Any]) -> str:
         free, count = name, 2

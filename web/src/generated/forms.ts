@@ -35,7 +35,7 @@ export const FORMS: Readonly<Record<string, Form | FormRecord>> = {
   "PhotonPrograms": {"plan": "Program", "deposits": "Program", "tables": ["[]", "s"], "of_sample": "n", "fewest": "n", "most": "n"},
   "FrameProgram": {"passes": ["[]", "FramePass"], "itself": ["|", "FramePass", "0"], "keyboard": ["|", "s", "0"], "microphone": ["|", "s", "0"], "sounds": ["[]", "SoundEntry"], "images": ["[]", "ImageInput"]},
   "FramePass": {"program": "Program", "name": "s"},
-  "Resource": {"type": "s", "size": ["[]", "n"], "components": "n", "grey?": ["=", true], "format": "Format", "data": "s"},
+  "Resource": {"type": "s", "size": ["[]", "n"], "components": "n", "grey?": ["=", true], "format": "Format", "data": "s", "packed?": ["=", true]},
   "Format": ["=", "rgba8", "float16", "float32", "int32", "uint32"],
   "mistakes": {"id": "i", "revision": "i", "mistakes": ["[]", "Mistake"], "literals": ["|", ["[]", "SourceLiteral"], "0"], "edits": ["[]", "Edit"]},
   "Mistake": {"severity": ["=", "error", "warning", "note"], "code": "s", "message": "s", "hint": ["|", "s", "0"], "file": ["|", "s", "0"], "line": ["|", "i", "0"], "column": ["|", "i", "0"], "end_line": ["|", "i", "0"], "end_column": ["|", "i", "0"], "excerpt": ["|", "s", "0"], "labels": ["[]", "MistakeLabel"]},

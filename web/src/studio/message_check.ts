@@ -164,7 +164,7 @@ function programFault({ film, frames, uniforms }: Program, path: string): string
 
 /** Whether a resource has as many bytes as its size says. */
 function isWhole({ components, data, format, grey, packed, size, type }: Resource): boolean {
-  if (packed || typeof data !== "string") return false; // Only pages are packed.
+  if (packed) return false; // Only pages are.
   const sides = [...size, type === "TextureCube" ? 6 : 1];
   const count = sides.reduce((all, side) => all * side, 1);
   const isSize = sides.every((side) => Number.isInteger(side) && side >= 0) && size.length >= 1 && size.length <= 3;
