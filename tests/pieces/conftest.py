@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from distal.scene.lowering.pieces import table
+from distal.scene.lowering.pieces import brick_table, table
 
 
 @pytest.fixture
 def always_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few shapes, and shapes that are everywhere, have pieces, too."""
     monkeypatch.setattr(table, "LEAST_HARD", table.LEAST_PARTS)
-    monkeypatch.setattr(table, "LARGEST_SHARE", 1.0)
+    for module in (table, brick_table):
+        monkeypatch.setattr(module, "LARGEST_SHARE", 1.0)

@@ -17,6 +17,7 @@ from distal.scene.lowering.parts.table import LEAST_PARTS, MOST_WITHOUT, BrickNo
 from distal.scene.lowering.pieces import brick_table
 from distal.scene.lowering.pieces.brick_table import bricked
 from distal.scene.lowering.pieces.joins import MOVING_BLEND
+from distal.scene.lowering.pieces.table import DENSE
 from tests.pieces.random_trees import random_tree
 
 MANY = LEAST_PARTS + 8
@@ -215,8 +216,10 @@ def test_two_balls_among_others_have_a_closed_form():
 def test_bounds_outside_of_the_grid_are_bounds(seed):
     """A step by the value never passes a surface, and the value changes by the slope at most."""
     rng = np.random.default_rng(seed)
-    shape = union(balls(rng, 80), smooth=float(rng.uniform(0.01, 0.05)))
-    found = bricked(shape.node, exact=False)
+    shape = union(balls(rng, 80), smooth=float(rng.uniform(0.01, 0.3)))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(brick_table, "LARGEST_SHARE", 1.0)
+        found = bricked(shape.node, exact=False)
     (table,) = found.tables
     _, outside = places(table.table.programs.bricks, rng, 600)
     bounds = values(found.node, outside)
@@ -359,9 +362,17 @@ def test_widths_are_those_of_the_blends(name):
     assert (least - blended).max() > 0.1 * k
 
 
+def test_pictures_have_no_bricks_that_have_most_shapes():
+    wide = union(balls(np.random.default_rng(3), 80), smooth=0.3)
+    assert len(bricked(wide.node, exact=True).tables) == 1
+    found = bricked(wide.node, exact=False)
+    assert found.node is wide.node and [w.reason for w in found.whole] == [DENSE]
+
+
+@pytest.mark.usefixtures("always_pieces")
 def test_a_check_says_what_bricks_are():
     moving = Box(0.3).translate(abs(time), 2.0, 0.0)
-    found = check(union(balls(np.random.default_rng(3), 80), smooth=0.01) | moving)
+    found = check(union(balls(np.random.default_rng(3), 80), smooth=0.1) | moving)
     (report,) = found.bricks
     assert report.count == 80 and report.reason == "" and report.bricks > 0
     assert 1.0 <= report.mean <= report.longest <= 80

@@ -21,6 +21,7 @@ import { Mouse } from "./mouse";
 import { failureOf } from "./notices";
 import {
   bytesOf,
+  inflated,
   programsOf,
   type Parameter,
   type Payload,
@@ -61,7 +62,7 @@ export interface Options {
 export class Player {
   /** What scripts beside this one use, which have no copy of it. */
   static readonly kit = {
-    ...{ Resources, bytesOf, gpuDone, link, make, newTexture, programsOf, save, setUniforms, uploadBuffer },
+    ...{ Resources, bytesOf, gpuDone, inflated, link, make, newTexture, programsOf, save, setUniforms, uploadBuffer },
   };
   payload: Payload;
   readonly camera: Camera | null;

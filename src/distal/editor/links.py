@@ -11,6 +11,8 @@ import json
 import zlib
 from typing import Any, Final
 
+from distal.deflating import deflated
+
 PREFIX: Final = "#c="
 LONGEST: Final = 1_000_000  # characters of a link, and of the JSON in it
 
@@ -26,8 +28,7 @@ def link_of(shared: dict[str, Any]) -> str:
         shared: JSON values: "files", "main"; if they are shared, too, "values", "camera", "time".
     """
     text = json.dumps(shared, separators=(",", ":"), ensure_ascii=False)
-    press = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS, 9)
-    packed = press.compress(text.encode("utf-8", "surrogatepass")) + press.flush()
+    packed = deflated(text.encode("utf-8", "surrogatepass"))
     return PREFIX + base64.urlsafe_b64encode(packed).decode("ascii").rstrip("=")
 
 

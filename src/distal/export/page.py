@@ -16,8 +16,8 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from distal.deflating import deflated_text
 from distal.diagnostics import CompileError
-from distal.export.deflating import deflated
 from distal.export.exported import Exported
 from distal.export.page_options import NO_POSTER, TRIANGLE_POSTER, WEBP, PageOptions
 from distal.export.page_programs import PagePrograms
@@ -203,7 +203,7 @@ def player_script(
     """
     files = [each for each in (before, file, behind) if each is not None]
     player = "\n".join(each.read_text(encoding="utf-8").strip() for each in files)
-    text = _UNPACK % (deflated(player.encode("utf-8")), TOO_OLD)
+    text = _UNPACK % (deflated_text(player.encode("utf-8")), TOO_OLD)
     return PlayerScript(text, (_hash(text), _hash(player)))
 
 

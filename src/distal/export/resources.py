@@ -14,8 +14,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.deflating import deflated_text
 from distal.devices.resources import load
-from distal.export.deflating import deflated
 from distal.images.png import encode_levels
 from distal.ir.types import Buffer, Texture, TextureShape
 from distal.lang.live_textures import SoundFile
@@ -46,7 +46,7 @@ def sound(name: str, source: SoundFile) -> dict[str, Any]:
     return {
         "name": name,
         "loop": source.loop,
-        "rows": deflated(table_of(source).tobytes()),
+        "rows": deflated_text(table_of(source).tobytes()),
         "file": base64.b64encode(Path(source.path).read_bytes()).decode("ascii"),
     }
 

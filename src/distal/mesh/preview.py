@@ -7,14 +7,13 @@ other side of the format is ``web/src/mesh/unpacking.ts``.
 
 from __future__ import annotations
 
-import base64
-import zlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from distal.deflating import deflated_text
 from distal.mesh import preview_arithmetic
 from distal.mesh.files.parts import FilePart, corner_codes, display_codes, part_of
 from distal.mesh.files.shading import corner_normals
@@ -137,8 +136,7 @@ def _packed(rows: NDArray[np.void], corners: Integers) -> str:
     columns = [rows[name][:, axis] for name in ("place", "normal", "code") for axis in range(3)]
     planes = b"".join(_planes(column) for column in columns)
     planes += _planes(corners.reshape(-1).astype("<u4"))
-    press = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS, 9)
-    return base64.b64encode(press.compress(planes) + press.flush()).decode("ascii")
+    return deflated_text(planes)
 
 
 def _planes(column: NDArray[Any]) -> bytes:

@@ -6,13 +6,13 @@ and the tables of topology as bytes. Does not depend on pages.
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Final
 
 import numpy as np
 
+from distal.deflating import deflated
 from distal.frontend import Assembly
 from distal.ir.build import field, swizzle
 from distal.ir.nodes import Construct, EntryKind, Expr, Param, Read, Return
@@ -197,6 +197,4 @@ def packed_tables() -> tuple[list[int], bytes]:
     parts = [getattr(tables, name) for name in tables.__slots__]
     parts += [np.array(EDGES), *neighbor_tables()]
     numbers = [np.asarray(part, "<i2").reshape(-1) for part in parts]
-    press = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS, 9)
-    packed = press.compress(np.concatenate(numbers).tobytes()) + press.flush()
-    return [len(part) for part in numbers], packed
+    return [len(part) for part in numbers], deflated(np.concatenate(numbers).tobytes())

@@ -33,6 +33,7 @@ from distal.lang.render_options import (
     checked_time,
 )
 from distal.lang.runtime_access import cluster_kernels
+from distal.lang.value_of import ValueOf
 from distal.loading import loaded_from
 from distal.render import film
 from distal.runtime import accumulation, glow, sampling
@@ -46,7 +47,7 @@ from distal.runtime.lowered import Lowered
 from distal.runtime.moving import moved_resources
 from distal.runtime.passes import Passes, over_picture
 from distal.runtime.photons import PhotonPasses, PhotonProgram
-from distal.runtime.standard_executor import ValueOf, all_values
+from distal.runtime.standard_executor import all_values
 from distal.runtime.tape_executor import TapeExecutor
 from distal.runtime.uniform_values import DeclaredUniforms, chosen_uniforms
 

@@ -15,7 +15,7 @@ from distal.at_once import AtOnce
 from distal.backends import get_target
 from distal.compiler.constant_functions import evaluate
 from distal.compiler.driver import run_passes
-from distal.ir.nodes import FRAME_TIME, Expr, Module, Origin, Return, Uniform
+from distal.ir.nodes import FRAME_TIME, Expr, Module, Origin, Uniform
 from distal.ir.types import FLOAT, VEC4, Struct, Type, Vector
 from distal.ir.walk import expressions_in, map_expressions, substitute
 from distal.lang.composed import Composed
@@ -25,8 +25,8 @@ from distal.lang.identity_map import IdentityMap
 from distal.lang.live_textures import ImageInput, Keyboard, LiveTexture, SoundFile
 from distal.lang.names import LangFunction
 from distal.lang.parameters import Parameter
-from distal.lang.places import places_in
 from distal.lang.render_options import checked_time
+from distal.lang.value_of import ValueOf
 from distal.lang.values import VALUE_CLASSES
 from distal.packages import imported, is_installed
 from distal.passes.numbers import constant
@@ -178,27 +178,6 @@ class StandardExecutor:
             return lowered
 
         return self._at_once.result((id(function), types), found, made)
-
-
-class ValueOf(Composed):
-    """A function without parameters that returns the value of an expression."""
-
-    def __init__(self, expression: Expression) -> None:
-        """Keep the expression.
-
-        Raises:
-            TypeError: It depends on the cell or on the place.
-        """
-        if places_in(expression):
-            raise TypeError("the cell and the place are known only where a shape is evaluated")
-        self._expression = expression
-        self.name, self.signature, self.result = "value", (), expression.type
-
-    def compose(self, assembly: Any) -> str:
-        """Add the function to a program and return its name there."""
-        value = assembly.expression(self._expression)
-        name: str = assembly.define("value", (), self.result, (Return(value),))
-        return name
 
 
 def reads_time(module: Module) -> bool:

@@ -11,7 +11,7 @@ import { At, NO_NUMBER, ambiguousFaces, casesOf, cellsOf, meshOf, tablesOf, topo
 import { placed, type Frame, type Part } from "./files";
 import { runner, type Programs } from "./passes";
 import { reached } from "./reach";
-import { fail, sliced, through } from "./slices";
+import { fail, sliced } from "./slices";
 
 /** What a payload has of a mesh; `distal.export.printing` writes it. */
 export interface Printing extends Programs {
@@ -68,8 +68,7 @@ export async function makes(
       Print_tolerance: more[0],
     });
     const [field] = (await run("values", Math.ceil(more[2]! / 4))) as [Float32Array];
-    const packed = new Blob([kit.bytesOf(printing.tables)]);
-    const tables = tablesOf(printing.lengths, new Int16Array(await through(packed, new DecompressionStream("deflate-raw"))));
+    const tables = tablesOf(printing.lengths, new Int16Array(await kit.inflated(printing.tables).arrayBuffer()));
     const found = await sliced(cellsOf(field, counts, more[3]!), signal);
     const { scale, isSharp } = printing;
     if (!found.mask.length) {

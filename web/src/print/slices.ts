@@ -16,7 +16,7 @@ export async function sliced<T>(work: Generator<unknown, T>, signal: AbortSignal
 }
 
 /** The bytes that a stream makes of others. */
-export function through(bytes: Blob, stream: CompressionStream | DecompressionStream): Promise<ArrayBuffer> {
+export function through(bytes: Blob, stream: CompressionStream): Promise<ArrayBuffer> {
   return new Response(bytes.stream().pipeThrough(stream)).arrayBuffer();
 }
 

@@ -1,7 +1,7 @@
 """Trees whose joined shapes have bricks, so that any point can be asked for its value.
 
 Input: a tree. Output: the same tree, in which a node with a table of bricks takes the place of each
-subtree that joins many still solids; and why other such subtrees have none.
+subtree that joins many solids; and why other such subtrees have none.
 """
 
 from __future__ import annotations
@@ -91,10 +91,9 @@ def bricked(root: Node, *, exact: bool, default_varies: bool = False) -> Bricked
         exact: Whether values outside of the bricks are those of the tree, not only bounds.
         default_varies: Whether the material of shapes without one depends on the place.
     """
-    least = LEAST_PARTS if exact else LEAST_DRAWN
     key = f"bricks {exact} {default_varies}"
     found: BrickedTree = root.derived(
-        key, lambda: _Insertion(least, default_varies=default_varies).tree(root, exact=exact)
+        key, lambda: _Insertion(draws=not exact, default_varies=default_varies).tree(root)
     )
     return found
 
@@ -102,16 +101,17 @@ def bricked(root: Node, *, exact: bool, default_varies: bool = False) -> Bricked
 class _Insertion:
     """Puts bricks in place of joined shapes."""
 
-    def __init__(self, least: int, *, default_varies: bool) -> None:
-        self._least = least
+    def __init__(self, *, draws: bool, default_varies: bool) -> None:
+        self._draws = draws
+        self._least = LEAST_DRAWN if draws else LEAST_PARTS
         self._default_varies = default_varies
         self._tables: list[BrickNode] = []
         self._whole: list[WholeShapes] = []
         self._safe = SafeParts()
 
-    def tree(self, root: Node, *, exact: bool) -> BrickedTree:
+    def tree(self, root: Node) -> BrickedTree:
         """Return a tree with bricks."""
-        node = self._of(root, exact=exact, in_cells=False)
+        node = self._of(root, exact=not self._draws, in_cells=False)
         return BrickedTree(node, self._tables, self._whole)
 
     def _of(self, node: Node, *, exact: bool, in_cells: bool) -> Node:
@@ -131,7 +131,7 @@ class _Insertion:
             table = shapes.node.derived(
                 f"table of bricks {varies}", lambda: self._table_of(shapes.node)
             )
-            if isinstance(table, PartTable) and self._is_dense(table):
+            if isinstance(table, PartTable) and self._draws and _is_dense(table):
                 table = Refusal(DENSE)
             if isinstance(table, PartTable):
                 return shapes.with_shapes(self._inserted(shapes.node, table, exact=exact))
@@ -165,12 +165,6 @@ class _Insertion:
             return Refusal(ENDLESS_SOLID)
         return Refusal(DEEP) if grid.programs.depth > MOST_ASIDE else _packed(grid, leaves)
 
-    def _is_dense(self, table: PartTable) -> bool:
-        """Return whether pictures are drawn faster without the bricks."""
-        data = table.programs
-        assert data is not None and data.bricks is not None
-        return self._least == LEAST_DRAWN and data.bricks.share > LARGEST_SHARE
-
     def _below(self, node: Node, *, exact: bool, in_cells: bool) -> Node:
         """Return a tree that has no bricks as a whole, with bricks for what is below its root."""
         node = _still_first(node)
@@ -184,6 +178,13 @@ class _Insertion:
         made = _table_node(node, table, exact=exact)
         self._tables.append(made)
         return made
+
+
+def _is_dense(table: PartTable) -> bool:
+    """Return whether pictures are drawn faster without the bricks."""
+    data = table.programs
+    assert data is not None and data.bricks is not None
+    return data.bricks.share > LARGEST_SHARE
 
 
 def _replaced(node: Node, others: Mapping[int, Node]) -> Node:

@@ -19,6 +19,7 @@ import numpy as np
 from distal.scene.lowering.pieces.cell_programs import (
     HALVINGS,
     CellPrograms,
+    counts_around,
     joined_cells,
     ranges,
     shortens,
@@ -141,7 +142,7 @@ class _BrickDivision:
                 divides[:] = False
             rest, cells = np.flatnonzero(~divides), np.flatnonzero(divides)
             done.append(batch.taken(rest, batch.low[rest], batch.high[rest], batch.place[rest]))
-            around = np.repeat(np.column_stack([around[cells, 1:], count[cells]]), 2, axis=0)
+            around = counts_around(around, count, cells)
             batch = self._halved(batch, cells)
             if len(batch):
                 values, reach = pruning.values(batch)

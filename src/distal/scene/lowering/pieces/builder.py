@@ -25,6 +25,7 @@ from distal.scene.lowering.pieces.box_order import BoxNodes, PieceTree, surface
 from distal.scene.lowering.pieces.cell_programs import (
     HALVINGS,
     CellPrograms,
+    counts_around,
     joined_cells,
     ranges,
     shortens,
@@ -153,8 +154,8 @@ class _Division:
             cells = np.flatnonzero(is_divided & ~by_member & ~is_inside)
             halves, chosen, is_inside = self._halved(batch, cells)
             is_inside = np.concatenate([np.zeros(len(parted), bool), is_inside])
-            around = np.repeat(np.column_stack([around[cells, 1:], count[cells]]), 2, axis=0)
-            around = np.concatenate([np.full((len(parted), HALVINGS), np.inf), around[chosen]])
+            around = counts_around(around, count, cells)[chosen]
+            around = np.concatenate([np.full((len(parted), HALVINGS), np.inf), around])
             batch = joined_cells([parted, halves])
         return self._tree_of_pieces()
 

@@ -238,6 +238,11 @@ def shortens(tree: OperandTree, batch: CellPrograms, count: Whole, around: Float
     return found
 
 
+def counts_around(around: Floats, count: Whole, cells: Whole) -> Floats:
+    """Return ``around`` of ``shortens`` for both halves of some cells."""
+    return np.repeat(np.column_stack([around[cells, 1:], count[cells]]), 2, axis=0)
+
+
 def joined_cells(batches: Sequence[CellPrograms]) -> CellPrograms:
     """Return the cells of several batches, one after the other."""
     batches = [batch for batch in batches if len(batch)] or batches[:1]

@@ -68,15 +68,13 @@ from distal.fields.guarantees import (
 from distal.fields.place.flat import SCALE_FLAT
 from distal.fields.place.mirrors import SYMMETRY_PLANES, SYMMETRY_PLANES_FLAT
 from distal.fields.place.solid import SCALE, SHEAR, STRETCH
-from distal.frontend import Assembly
-from distal.ir.nodes import Return
-from distal.ir.types import FLOAT
-from distal.lang.composed import Composed
+from distal.lang.expressions import Expression
 from distal.lang.functions import Func
 from distal.lang.runtime_access import executor
+from distal.lang.value_of import ValueOf
 from distal.scene.tree.conversion import Number
 from distal.scene.tree.node import Node
-from distal.scene.tree.varying import VaryingNumber, expression_of
+from distal.scene.tree.varying import VaryingNumber
 
 MOVING_SIZE: Final = "its size depends on parameters or time"
 MOVING_SCALE: Final = "the scale of a shape with blends or offsets depends on parameters or time"
@@ -303,26 +301,12 @@ def _sized(
 
 def _largest(number: Number) -> float:
     """Return the largest value of a number, at any time and for any values of its parameters."""
-    if isinstance(number.plain, float | int):
-        return number.plain
-    ((_, high),) = executor().sweep(_NumberAlone(number), ())
+    value = number.value
+    if not isinstance(value, Expression):
+        assert isinstance(value, float | int)
+        return value
+    ((_, high),) = executor().sweep(ValueOf(value), ())
     return max(float(high), 0.0)
-
-
-class _NumberAlone(Composed):
-    """The value of a number."""
-
-    name = "number"
-    signature = ()
-    result = FLOAT
-
-    def __init__(self, number: Number) -> None:
-        self._number = number
-
-    def compose(self, assembly: Assembly) -> str:
-        """Add the function to the program, and return its name."""
-        value = expression_of(assembly, self._number, "number")
-        return assembly.define("number", (), FLOAT, [Return(value)])
 
 
 def _choices(node: Node) -> dict[str, int]:

@@ -92,7 +92,7 @@ class PieceProgram:
         steps: The steps.
         joins: What the steps do, each once.
         whole: The leaves that stay whole, and why.
-        moved: A node that moves joined shapes by parameters or time; None if there is none.
+        mover: A node that moves joined shapes by parameters or time; None if there is none.
     """
 
     leaves: Sequence[UnionMember]
@@ -100,7 +100,7 @@ class PieceProgram:
     steps: Sequence[PieceStep]
     joins: Sequence[ValueJoin]
     whole: Sequence[WholeSubtree]
-    moved: Node | None = None
+    mover: Node | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,7 +152,7 @@ def _written(root: Node, above: _AboveNode, *, default_varies: bool) -> PiecePro
     writer.write(root, above)
     joins = list(writer.joins)
     return PieceProgram(
-        writer.leaves, writer.looks, writer.steps, joins, writer.whole, writer.moved
+        writer.leaves, writer.looks, writer.steps, joins, writer.whole, writer.mover
     )
 
 
@@ -165,7 +165,7 @@ class _ProgramWriter:
         self.steps: list[PieceStep] = []
         self.joins: dict[ValueJoin, int] = {}
         self.whole: list[WholeSubtree] = []
-        self.moved: Node | None = None
+        self.mover: Node | None = None
         self._looks: dict[Any, int] = {}
         self._default_varies = default_varies
         self._alive: list[Any] = []  # keys are ids
@@ -295,7 +295,7 @@ class _ProgramWriter:
         if len(node.children) != 1 or not _is_taken_apart(node) or varies(node):
             return None
         if moves_itself(node):
-            self.moved = self.moved or node
+            self.mover = self.mover or node
         inside = self._inside(node, above)
         placed = replace(inside, place=_wrapped(node, above.place))
         if only_moves(rule):

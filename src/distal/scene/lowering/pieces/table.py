@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from distal.fields.combine.joins import UNION
-from distal.fields.guarantees import ENDLESS
 from distal.frontend import Assembly
 from distal.ir.nodes import Expr, Param, Read, Return
 from distal.ir.types import FLOAT, VEC3, Type
@@ -198,8 +197,8 @@ def _table_of(program: PieceProgram) -> PartTable | Refusal:
 
 def leaves_of(program: PieceProgram) -> LeafArrays | Refusal:
     """Return the leaves of a program as rows, or why they can be none."""
-    if program.moved is not None:
-        return Refusal(MOVED, program.moved)
+    if program.mover is not None:
+        return Refusal(MOVED, program.mover)
     kinds = sorted(kinds_of(program.leaves), key=lambda kind: -len(kind.members))
     for kind in kinds:
         if not kind.node.solid:
@@ -265,11 +264,9 @@ class LeafArrays:
         moves = np.array([kind.moving for kind in self.kinds])[self._kind]
         if not moves.any():
             return 0.0
-        is_finite = np.maximum(np.abs(self.low), np.abs(self.high)).max(axis=1) < ENDLESS
-        low, high = self.low[is_finite].min(axis=0), self.high[is_finite].max(axis=0)
-        low, high = np.vstack([low, self.low[moves]]), np.vstack([high, self.high[moves]])
-        around, *each = (high - low).prod(axis=1).tolist()
-        return float(sum(each) / around)
+        each = (self.high[moves] - self.low[moves]).prod(axis=1).sum()
+        around = (self.high.max(axis=0) - self.low.min(axis=0)).prod()
+        return float(each / (around or 1.0))
 
     def distances(self, points: Floats, leaves: Whole) -> tuple[Floats, Floats]:
         """Return the least and the largest values of points (n, 3) in the fields of leaves (n,)."""
@@ -300,11 +297,11 @@ class LeafArrays:
 def _values(function: LeafDistance, columns: Sequence[Floats]) -> Floats:
     """Return the results of a function, one for each row of its arguments."""
     if len(columns[0]) < MOST_INTERPRETED:
-        found = executor().call(function, tuple(columns), {}, device="reference")
+        values = executor().call(function, tuple(columns), {}, device="reference")
     else:
         rows = [np.asarray(column, np.float32) for column in columns]
-        found = executor().evaluate(function, rows, {}, 0.0)
-    return np.asarray(found, np.float64)
+        values = executor().evaluate(function, rows, {}, 0.0)
+    return np.asarray(values, np.float64)
 
 
 class LeafDistance(Composed):
